@@ -1,0 +1,40 @@
+"""What a filter asks of a motion and of a sensor. All arrays carry leading axes (…)."""
+
+from typing import Any, Protocol
+
+from ekfsim.geometry import Array, Booleans
+
+
+class Motion(Protocol):
+    """x⁺ = f(x, u + noise of covariance M) + noise of covariance Q, linearised by F = ∂f/∂x and G = ∂f/∂u."""
+
+    def f(self, x: Array, u: Array) -> Array:
+        """The next state. x : (…, n), u : (…, m) → (…, n)"""
+
+    def F(self, x: Array, u: Array) -> Array:
+        """∂f/∂x : (…, n, n)"""
+
+    def G(self, x: Array, u: Array) -> Array:
+        """∂f/∂u : (…, n, m)"""
+
+    def M(self, u: Array) -> Array:
+        """Covariance of the input's noise : (…, m, m)"""
+
+    def Q(self, u: Array) -> Array | float:
+        """Covariance of the process noise : (…, n, n), or 0 where there is none."""
+
+
+class Sensor(Protocol):
+    """z = h(x) + noise of covariance R, linearised by H = ∂h/∂x."""
+
+    def h(self, x: Array) -> Array:
+        """The reading that the state x predicts : (…, k), nan where it predicts none."""
+
+    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
+        """h (…, k), H (…, k, n) and R (…, k, k) at x. H is 0 and R nan where h is nan."""
+
+    def residual(self, z: Array, h: Array) -> Array:
+        """z − h, wrapped where it is an angle : (…, k)"""
+
+    def sight(self, x: Array, P: Array) -> Any:
+        """What this sensor alone knows of a reading before it is used; None where it knows no more."""

@@ -1,0 +1,125 @@
+"""The two seams: what was asked (Command), what happened (Entry), what the filter made of it (Step).
+
+A simulation is a log being written, a recording a log already written: both are Entries, and no filter can tell them
+apart. Every output is a function of Steps, and none touches a filter. All records are frozen; arrays carry leading
+axes (…): none for one run, (N,) for a study of N runs.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from ekfsim.consistency import Nees
+from ekfsim.filters.belief import Correction, Gaussian, Prediction
+from ekfsim.geometry import Array, Integers
+from ekfsim.models.laser import Sighting
+from ekfsim.models.protocols import Motion, Sensor
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """Drive `distance` m straight ahead, then turn in place by `angle` rad; slipping wheels move the robot less."""
+
+    distance: float
+    angle: float
+    slip: float = 0.0  # in [0, 1]
+
+
+@dataclass(frozen=True, slots=True)
+class Sense:
+    """Measure the range along `angle` rad from straight ahead, counter-clockwise."""
+
+    angle: float
+
+
+@dataclass(frozen=True, slots=True)
+class Kidnap:
+    """Carry the true robot to x, y (m), θ (rad), and tell the filter nothing."""
+
+    x: float
+    y: float
+    theta: float
+
+
+@dataclass(frozen=True, slots=True)
+class Say:
+    """A sentence for the narrative and the picture."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Repeat:
+    """The same commands, `times` times over."""
+
+    times: int
+    commands: tuple["Command", ...]
+
+
+Command = Move | Sense | Kidnap | Say | Repeat
+Plain = Move | Sense | Kidnap | Say  # what is left when every Repeat is expanded
+
+
+def expand(commands: Iterable[Command]) -> Iterator[Plain]:
+    """Every command in the order of its execution, with the repetitions written out.
+
+    >>> [c.angle for c in expand([Sense(0.0), Repeat(2, (Sense(1.0),))])]
+    [0.0, 1.0, 1.0]
+    """
+    for command in commands:
+        if isinstance(command, Repeat):
+            for _ in range(command.times):
+                yield from expand(command.commands)
+        else:
+            yield command
+
+
+def expanded_length(commands: Iterable[Command]) -> int:
+    """How many commands `expand` yields, counted without expanding.
+
+    >>> expanded_length([Repeat(1000, (Repeat(1000, (Sense(0.0),)),))])
+    1000000
+    """
+    return sum(c.times * expanded_length(c.commands) if isinstance(c, Repeat) else 1 for c in commands)
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """A motion input as the filter is given it. u : (…, m) in the motion's units."""
+
+    motion: Motion
+    u: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """The reading of one sensor. z : (…, k) in the sensor's units, nan where it met nothing."""
+
+    sensor: Sensor
+    z: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What happened at one command or instant.
+
+    index counts from 1 in the order of the log; 0 is the start, where nothing has happened yet.
+    """
+
+    index: int
+    given: Control | Reading | None  # what the filter is given; None where it is told nothing
+    truth: Array | None = None  # (…, 3) true state after it, where it is known
+    command: Plain | None = None  # what was asked for; None at the start and in recorded logs
+    bump: Integers | None = None  # (…) the true wall that cut a move short, −1 where none did
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What the filter made of one entry. Every number of every output is read from here."""
+
+    entry: Entry
+    prior: Gaussian  # the belief the step began with
+    posterior: Gaussian  # the belief it ended with
+    prediction: Prediction | None = None  # F and G, after a motion input
+    correction: Correction | None = None  # ν, S, H, K, NIS, refused, after a reading
+    sighting: Sighting | None = None  # what the laser alone knows
+    nees: Nees | None = None  # where the truth is known

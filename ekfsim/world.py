@@ -1,0 +1,94 @@
+"""What stands where, how noisy the robot is, and what the filter is told of both."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from ekfsim.geometry import Array
+from ekfsim.geometry.walls import Walls
+
+BOUNDARY = "boundary"  # the name that the boundary's ring goes by among the obstacles
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """A polygon that stops robots and beams. points : (n, 2) m, in the file's order, not closed."""
+
+    name: str
+    points: Array
+
+
+@dataclass(frozen=True)
+class Landmark:
+    """A point that a sensor can tell apart from all others. x, y in m."""
+
+    id: int
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class Map:
+    """A floor plan: the true one, or the one that the filter believes."""
+
+    boundary: Array | None = None  # (n, 2) m
+    obstacles: tuple[Obstacle, ...] = ()
+
+    def rings(self) -> Iterator[tuple[str, Array]]:
+        """Every outline with its name, the boundary first."""
+        if self.boundary is not None:
+            yield BOUNDARY, self.boundary
+        for obstacle in self.obstacles:
+            yield obstacle.name, obstacle.points
+
+    @cached_property
+    def walls(self) -> Walls:
+        """All edges, ready for ray casting; built once."""
+        return Walls.of(dict(self.rings()))
+
+
+@dataclass(frozen=True)
+class Noise:
+    """The assignment's five ratios: σ = ratio · |magnitude|."""
+
+    execution_distance: float
+    execution_angle: float
+    odometry_distance: float
+    odometry_angle: float
+    range: float
+
+
+@dataclass(frozen=True)
+class Faults:
+    """What is wrong with the robot and no one knows."""
+
+    range_bias: float = 0.0  # m
+    range_scale: float = 1.0
+    short_returns: float = 0.0  # probability
+    odometry_distance_scale: float = 1.0
+    odometry_angle_scale: float = 1.0
+
+
+@dataclass(frozen=True)
+class Told:
+    """What the filter is told: its first belief, its noise, its map. The truth may differ in each."""
+
+    start: Array  # (3,) x, y, θ in m, m, rad
+    sigma: Array  # (3,) standard deviations of the first belief
+    noise: Noise
+    map: Map
+
+
+@dataclass(frozen=True)
+class World:
+    """A world file: the truth, and beside it what the filter is told."""
+
+    name: str
+    map: Map
+    start: Array  # (3,) x, y, θ in m, m, rad
+    start_sigma: Array  # (3,) the true start of each run is drawn from N(start, start_sigma²)
+    noise: Noise
+    told: Told
+    faults: Faults = Faults()
+    landmarks: tuple[Landmark, ...] = ()
+    description: str = ""
