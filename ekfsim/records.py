@@ -8,9 +8,8 @@ axes (…): none for one run, (N,) for a study of N runs.
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from ekfsim.consistency import Nees
 from ekfsim.filters.belief import Correction, Gaussian, Prediction
-from ekfsim.geometry import Array, Integers
+from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.laser import Sighting
 from ekfsim.models.protocols import Motion, Sensor
 
@@ -110,6 +109,15 @@ class Entry:
     truth: Array | None = None  # (…, 3) true state after it, where it is known
     command: Plain | None = None  # what was asked for; None at the start and in recorded logs
     bump: Integers | None = None  # (…) the true wall that cut a move short, −1 where none did
+
+
+@dataclass(frozen=True, slots=True)
+class Nees:
+    """The error of a belief, squared and measured by its covariance: eᵀ P⁺ e. Arrays carry leading axes (…)."""
+
+    value: Array  # (…) nan where the belief is impossible
+    dof: Integers  # (…) the rank of P
+    impossible: Booleans  # (…) the error has a part where P claims certainty
 
 
 @dataclass(frozen=True, slots=True)

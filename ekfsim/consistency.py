@@ -1,0 +1,127 @@
+"""Whether to believe the filter: NEES, NIS, inside or outside, and the verdict on a run."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from ekfsim.filters.belief import Gaussian
+from ekfsim.filters.chi_square import band, quantile
+from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.geometry.angles import wrap
+from ekfsim.geometry.ellipse import cone_factor, radius_factor
+from ekfsim.records import Nees, Step
+
+RANK = 1e-10  # an eigenvalue of the correlation matrix above this counts towards the rank
+OUTSIDE = 1e-6  # m, rad; a longer part of the error outside the range of P makes the belief impossible
+LOST = 0.999  # NEES beyond this χ² quantile: lost
+BAND = 0.99  # the two-sided band that ΣNIS is held against
+
+
+def error(belief: Gaussian, truth: Array, headings: tuple[int, ...] = (2,)) -> Array:
+    """e = estimate − truth : (…, n), headings wrapped"""
+    e = belief.mean - truth
+    for i in headings:
+        e[..., i] = wrap(e[..., i])
+    return e
+
+
+def nees(belief: Gaussian, truth: Array) -> Nees:
+    """Normalised estimation error squared, aware of the rank of P. truth : (…, n)"""
+    value, rank, impossible = squared_error(error(belief, truth), belief.covariance)
+    return Nees(np.where(impossible, np.nan, value), rank, impossible)
+
+
+def inside_ellipse(belief: Gaussian, truth: Array, probability: float) -> Booleans:
+    """Whether the true position lies inside the ellipse : (…)   eᵀ P⁺ e ≤ k² on the position's block"""
+    e, P = error(belief, truth)[..., :2], belief.covariance[..., :2, :2]
+    value, _, impossible = squared_error(e, P)
+    return ~impossible & (value <= radius_factor(probability) ** 2)
+
+
+def inside_cone(belief: Gaussian, truth: Array, probability: float) -> Booleans:
+    """Whether the true heading lies inside the cone : (…)"""
+    e, variance = error(belief, truth)[..., 2], belief.covariance[..., 2, 2]
+    reach = cone_factor(probability) * np.sqrt(np.maximum(variance, 0.0))
+    return np.abs(e) <= np.where(variance > 0, reach, OUTSIDE)
+
+
+def squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
+    """eᵀ P⁺ e, the rank of P, and whether e has a part outside the range of P : (…) each
+
+    P is often singular: it starts at 0, and a straight move adds no heading noise. Metres and radians must not decide
+    the rank, so it is counted on the correlation matrix: with D = diag(P),
+
+        C = D^{-1/2} P D^{-1/2} = V Λ Vᵀ      rank = #{λ > 1e-10}      B = D^{1/2} V spans the range of P
+        eᵀ P⁺ e = yᵀ Λ⁻¹ y      where y = Vᵀ D^{-1/2} e, for an e inside that range
+    """
+    σ = np.sqrt(np.maximum(np.diagonal(P, axis1=-2, axis2=-1), 0.0))
+    per_σ = np.divide(1.0, σ, out=np.zeros_like(σ), where=σ > 0)
+    λ, V = np.linalg.eigh(P * per_σ[..., :, None] * per_σ[..., None, :])
+    kept = λ > RANK
+    rank = np.count_nonzero(kept, axis=-1)
+    within = e if np.all(kept) else _projected(e, σ[..., :, None] * V, kept)
+    y = np.vecmat(within * per_σ, V)
+    value = np.sum(np.divide(y * y, λ, out=np.zeros_like(y), where=kept), axis=-1)
+    return value, rank, np.linalg.norm(e - within, axis=-1) > OUTSIDE
+
+
+def _projected(e: Array, B: Array, kept: Booleans) -> Array:
+    """The part of e in the span of the kept columns of B, which come last. e : (…, n), B : (…, n, n)"""
+    Q, _ = np.linalg.qr(np.where(kept[..., None, :], B, 0.0)[..., ::-1])  # the kept columns first
+    Q = np.where(kept[..., None, ::-1], Q, 0.0)
+    return np.matvec(Q, np.vecmat(e, Q))
+
+
+def lost(measured: Nees) -> bool:
+    """Whether one run's NEES lies beyond its χ² 99.9 % quantile, or its belief is impossible."""
+    return bool(measured.impossible) or float(measured.value) > quantile(LOST, int(measured.dof))
+
+
+class Verdict(Enum):
+    """What can be said of one run. The value is the word; `Evidence.sentence` gives its reason."""
+
+    LOST = "lost"
+    OVER_CONFIDENT = "over-confident"
+    OVER_CAUTIOUS = "over-cautious"
+    CONSISTENT = "consistent"
+    NO_EVIDENCE = "no evidence"
+
+
+@dataclass
+class Evidence:
+    """What the steps of one run say for and against its filter, gathered one at a time."""
+
+    nis_sum: float = 0.0
+    nis_dof: int = 0  # one for each update that had a NIS, refused ones included
+    lost_from: int | None = None  # index of the step from which on the run is lost without a gap
+    last_nees: Nees | None = None
+
+    def add(self, step: Step) -> None:
+        """Take one more step into account."""
+        if step.correction is not None and not np.isnan(step.correction.nis):
+            self.nis_sum += float(step.correction.nis)
+            self.nis_dof += step.correction.innovation.shape[-1]
+        if step.nees is not None:
+            self.last_nees = step.nees
+            if not lost(step.nees):
+                self.lost_from = None
+            elif self.lost_from is None:
+                self.lost_from = step.entry.index
+
+    @property
+    def nis_band(self) -> tuple[float, float]:
+        """The two-sided 99 % band of χ² for ΣNIS."""
+        return band(BAND, self.nis_dof)
+
+    @property
+    def verdict(self) -> Verdict:
+        """Lost, else by ΣNIS against its band. NEES over time is correlated and never summed into a verdict."""
+        low, high = self.nis_band
+        if self.lost_from is not None:
+            return Verdict.LOST
+        if self.nis_dof == 0:
+            return Verdict.NO_EVIDENCE
+        if self.nis_sum > high:
+            return Verdict.OVER_CONFIDENT
+        return Verdict.OVER_CAUTIOUS if self.nis_sum < low else Verdict.CONSISTENT

@@ -1,0 +1,52 @@
+"""The few lines of matrix algebra that the filters share."""
+
+import numpy as np
+
+from ekfsim.filters.belief import Refused
+from ekfsim.filters.chi_square import quantile
+from ekfsim.geometry import Array, Booleans, Integers
+
+CERTAIN = 1e-20  # S below this share of |H|² tr P is rounding: nothing is uncertain along H
+
+
+def symmetric(P: Array) -> Array:
+    """The symmetric part, without the asymmetry that rounding leaves. P : (…, n, n)"""
+    return 0.5 * (P + P.mT)
+
+
+def innovation_covariance(P: Array, H: Array, R: Array) -> Array:
+    """S = H P Hᵀ + R : (…, k, k), exactly 0 where all of it is rounding."""
+    S = H @ P @ H.mT + R
+    rounding = CERTAIN * np.sum(H * H, axis=(-2, -1)) * np.trace(P, axis1=-2, axis2=-1)
+    return np.where(np.abs(S) <= rounding[..., None, None], 0.0, S)
+
+
+def gain(P: Array, H: Array, S: Array) -> Array:
+    """K = P Hᵀ S⁻¹ : (…, n, k), zero where nothing is uncertain (S = 0) or nothing was predicted (S is nan)."""
+    PHt = P @ H.mT
+    if S.shape[-1] == 1:
+        return np.divide(PHt, S, out=np.zeros_like(PHt), where=S > 0)
+    return PHt @ np.linalg.pinv(np.nan_to_num(S), hermitian=True)
+
+
+def normalized_square(innovation: Array, S: Array) -> Array:
+    """NIS = νᵀ S⁻¹ ν : (…), nan where S = 0 or nothing was measured or predicted."""
+    if S.shape[-1] == 1:
+        s, ν = S[..., 0, 0], innovation[..., 0]
+        return np.divide(ν * ν, s, out=np.full(np.broadcast_shapes(ν.shape, s.shape), np.nan), where=s > 0)
+    solved = np.matvec(np.linalg.pinv(np.nan_to_num(S), hermitian=True), innovation)
+    return np.where(np.any(S != 0, axis=(-2, -1)), np.vecdot(innovation, solved), np.nan)
+
+
+def refusal(z: Array, h: Array, nis: Array, skip: Booleans | bool, gate: float | None) -> Integers:
+    """Why each reading is refused : (…) of `Refused`; the first reason that holds. z, h : (…, k)"""
+    limit = np.inf if gate is None else quantile(gate, z.shape[-1])
+    reasons = [
+        (np.isnan(z).any(axis=-1), Refused.NO_ECHO),
+        (np.isnan(h).any(axis=-1), Refused.NO_WALL),
+        (np.asarray(skip), Refused.GUARD),
+        (nis > limit, Refused.GATE),
+    ]
+    shape = np.broadcast_shapes(nis.shape, *(holds.shape for holds, _ in reasons))
+    conditions = [np.broadcast_to(holds, shape) for holds, _ in reasons]
+    return np.select(conditions, [np.int64(reason) for _, reason in reasons], np.int64(Refused.NOT))

@@ -1,0 +1,51 @@
+"""What a filter believes, and what it says of each step."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import NamedTuple
+
+from ekfsim.geometry import Array, Integers
+
+
+class Gaussian(NamedTuple):
+    """A belief with a mean and a covariance: `x, P = belief`."""
+
+    mean: Array  # (…, n)
+    covariance: Array  # (…, n, n)
+
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """How a motion input was linearised."""
+
+    F: Array  # ∂f/∂x : (…, n, n)
+    G: Array  # ∂f/∂u : (…, n, m)
+
+
+class Refused(IntEnum):
+    """Why a reading was not used. The first reason that holds is told."""
+
+    NOT = 0
+    NO_ECHO = 1  # the sensor met nothing
+    NO_WALL = 2  # the filter expected to meet nothing
+    GUARD = 3  # the reading is ambiguous, and the guard skips those
+    GATE = 4  # NIS beyond the gate
+
+    @property
+    def word(self) -> str | None:
+        """As the trace has it: "gate", "no echo", …; None for a reading that was used."""
+        return None if self is Refused.NOT else self.name.lower().replace("_", " ")
+
+
+@dataclass(frozen=True, slots=True)
+class Correction:
+    """What a reading did to the belief. nan where a number is undefined; K is 0 where the reading was refused."""
+
+    predicted: Array  # h(x⁻) : (…, k)
+    innovation: Array  # ν : (…, k)
+    R: Array  # (…, k, k)
+    S: Array  # (…, k, k)
+    H: Array  # (…, k, n)
+    K: Array  # (…, n, k)
+    nis: Array  # νᵀ S⁻¹ ν : (…), refused readings included; nan where S = 0
+    refused: Integers  # (…) one of Refused

@@ -1,0 +1,87 @@
+"""From a covariance to what is drawn of it: the ellipse of a position, the cone of a heading."""
+
+import math
+from dataclasses import dataclass
+from statistics import NormalDist
+
+import numpy as np
+
+from ekfsim.geometry import Array
+
+ROUNDING = 4 * float(np.finfo(float).eps)  # an eigenvalue below this share of the largest is rounding
+
+
+@dataclass(frozen=True, slots=True)
+class Ellipse:
+    """Radii in m, orientation of the major axis in rad, in [0, π). All (…)."""
+
+    major: Array
+    minor: Array
+    orientation: Array
+
+
+def radius_factor(probability: float) -> float:
+    """How many standard deviations the ellipse of this probability reaches: k = √(−2 ln(1 − p)).
+
+    Two dimensions: 2 standard deviations hold only 86.5 % of a 2-D Gaussian.
+
+    >>> round(radius_factor(0.954), 4)
+    2.4816
+    """
+    return math.sqrt(-2 * math.log(1 - probability))
+
+
+def cone_factor(probability: float) -> float:
+    """How many standard deviations the heading's cone reaches to each side; one dimension.
+
+    The assignment's ± 2σ goes by the name 95.4 % (it is 95.45 %).
+
+    >>> cone_factor(0.954), round(cone_factor(0.99), 4)
+    (2.0, 2.5758)
+    """
+    return 2.0 if probability == 0.954 else NormalDist().inv_cdf((1 + probability) / 2)
+
+
+def ellipse(P: Array, probability: float) -> Ellipse:
+    """The confidence ellipse of a position. P : (…, 2, 2) m² or larger, of which the first block is taken.
+
+    >>> e = ellipse(np.diag([0.04, 0.01]), 0.954)
+    >>> round(float(e.major), 4), round(float(e.minor), 4), float(e.orientation)
+    (0.4963, 0.2482, 0.0)
+    """
+    λ, V = _axes(P)
+    k = radius_factor(probability)
+    orientation = np.arctan2(V[..., 1, 1], V[..., 0, 1]) % np.pi
+    # −0.0 % π is 0, but an angle just below 0 rounds up to π itself
+    return Ellipse(k * np.sqrt(λ[..., 1]), k * np.sqrt(λ[..., 0]), np.where(orientation < np.pi, orientation, 0.0))
+
+
+def outline(center: Array, P: Array, probability: float, n: int = 73) -> Array:
+    """Points on the confidence ellipse, the last equal to the first. center : (2,) m, P : (2, 2) m² → (n, 2) m"""
+    λ, V = _axes(P)
+    t = np.linspace(0, 2 * np.pi, n)
+    circle = np.stack([np.cos(t), np.sin(t)], axis=-1)
+    return center[:2] + radius_factor(probability) * circle * np.sqrt(λ) @ V.mT
+
+
+def cone_halfwidth(variance: float, probability: float) -> float:
+    """Half the opening of the heading's cone in rad. variance : σ_θ² in rad²"""
+    return cone_factor(probability) * math.sqrt(max(variance, 0.0))
+
+
+def conditioned(mean: Array, P: Array, offset: float) -> tuple[Array, Array]:
+    """The position, were the heading known to lie `offset` rad from its mean.
+
+    p | θ ~ N(p̂ + P_pθ/σ_θ² · offset,  P_pp − P_pθ P_θp/σ_θ²)          mean : (3,), P : (3, 3) → (2,), (2, 2)
+
+    Where the heading is certain there is nothing to learn: the position's own mean and covariance.
+    """
+    variance = P[2, 2]
+    regression = P[:2, 2] / variance if variance > 0 else np.zeros(2)
+    return mean[:2] + regression * offset, P[:2, :2] - np.outer(regression, P[2, :2])
+
+
+def _axes(P: Array) -> tuple[Array, Array]:
+    """Eigenvalues (…, 2), ascending, without the negatives that rounding makes, and eigenvectors (…, 2, 2)."""
+    λ, V = np.linalg.eigh(P[..., :2, :2])
+    return np.where(λ > ROUNDING * np.abs(λ[..., -1:]), λ, 0.0), V

@@ -1,0 +1,90 @@
+"""The classroom's sensor: one laser beam to the first wall (the assignment's sections 2 and 3.2)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.geometry.walls import Walls
+
+GRAZING = np.radians(15.0)  # below this angle between beam and wall a small turn moves the beam's end far
+ALONG = 1e-9  # rad; a beam this close to its wall's direction has no usable derivative
+REACH = 3.0  # standard deviations to the poses from which the beam is cast again
+FLAT = 1e-10  # a variance below this share of the largest opens no direction to look in
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """What the laser alone knows of a beam before its reading is used. Arrays carry leading axes (…)."""
+
+    wall: Integers  # (…) the wall that the estimate predicts, −1 where it predicts none
+    incidence: Array  # (…) rad between beam and wall, 0 along it, π/2 at right angles; nan where there is no wall
+    ambiguous: Booleans  # (…) from a pose 3σ away the beam would meet another wall line, or none
+    probes: Array  # (…, 6, 3) those poses; the mean itself where P has no such direction
+    probe_ranges: Array  # (…, 6) m from each of them, nan where the beam meets no wall
+
+    @property
+    def grazing(self) -> Booleans:
+        """(…) the beam meets its wall at less than 15°."""
+        return self.incidence < GRAZING
+
+
+@dataclass(frozen=True, slots=True)
+class Laser:
+    """A beam `bearing` rad from straight ahead, counter-clockwise, from x = (x, y, θ) in m, m, rad."""
+
+    walls: Walls
+    bearing: float
+    range_ratio: float
+
+    def h(self, x: Array) -> Array:
+        """r = the distance to the first wall : (…, 1) m, nan where there is none"""
+        return self.linearize(x)[0]
+
+    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
+        """h (…, 1), its Jacobian H (…, 1, 3) and C_v (…, 1, 1).
+
+        A beam of direction d from p meets the wall through a with normal n:
+
+            r = n·(a − p) / n·d      ∂r/∂p = −n / n·d      ∂r/∂θ = −r n·d⊥ / n·d      C_v = (ratio · r)²
+
+        C_v comes from the prediction: taken from the reading, short echoes would be believed too much.
+        """
+        direction = x[..., 2] + self.bearing
+        hit = self.walls.cast(x[..., :2], direction)
+        d = np.stack([np.cos(direction), np.sin(direction)], axis=-1)
+        d_perp = np.stack([-d[..., 1], d[..., 0]], axis=-1)
+        n = self._normal(hit.wall)
+        n_d = np.vecdot(n, d)
+        met = np.abs(n_d) > ALONG
+        r = np.where(met, hit.range, np.nan)
+        per = np.divide(-1.0, n_d, out=np.zeros_like(n_d), where=met)
+        H = np.concatenate([n * per[..., None], (np.where(met, r, 0) * np.vecdot(n, d_perp) * per)[..., None]], axis=-1)
+        return r[..., None], H[..., None, :], ((self.range_ratio * r) ** 2)[..., None, None]
+
+    def residual(self, z: Array, h: Array) -> Array:
+        """ν = z − h : (…, 1) m; a range needs no wrapping"""
+        return z - h
+
+    def sight(self, x: Array, P: Array) -> Sighting:
+        """Look along the beam before using its reading. x : (…, 3), P : (…, 3, 3)
+
+        The beam is cast again from the six poses x ± 3√λᵢ·vᵢ, λᵢ and vᵢ the eigenpairs of P (m and rad as they are).
+        """
+        λ, V = np.linalg.eigh(P)
+        reach = REACH * np.sqrt(np.where(λ > FLAT * λ[..., -1:], λ, 0.0))
+        arms = (V * reach[..., None, :]).mT  # (…, 3, 3): a row for each eigenvector
+        poses = x[..., None, :] + np.concatenate([np.zeros_like(arms[..., :1, :]), arms, -arms], axis=-2)
+        direction = poses[..., 2] + self.bearing
+        hit = self.walls.cast(poses[..., :2], direction)
+        line = np.where(hit.wall >= 0, self.walls.line[hit.wall], -1) if len(self.walls.line) else hit.wall
+        wall = hit.wall[..., 0]
+        sine = np.vecdot(self._normal(wall), np.stack([np.cos(direction[..., 0]), np.sin(direction[..., 0])], axis=-1))
+        incidence = np.where(wall >= 0, np.arcsin(np.minimum(np.abs(sine), 1.0)), np.nan)
+        ambiguous = np.any(line[..., 1:] != line[..., :1], axis=-1)
+        return Sighting(wall, incidence, ambiguous, poses[..., 1:, :], hit.range[..., 1:])
+
+    def _normal(self, wall: Integers) -> Array:
+        """Unit normals : (…, 2), zero where there is no wall."""
+        normals = np.concatenate([self.walls.normals, np.zeros((1, 2))])  # the wall −1 takes the last row
+        return normals[wall]

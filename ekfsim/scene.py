@@ -1,0 +1,38 @@
+"""A scene: a world, the commands given in it, and the settings of the filter that watches."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from ekfsim.records import Command
+from ekfsim.world import World
+
+Guard = Literal["off", "warn", "skip"]
+Level = Literal["silent", "high", "low"]
+Share = tuple[float, float]  # from, to; both in [0, 1]
+
+
+@dataclass(frozen=True, slots=True)
+class Expect:
+    """What a study of this scene must find: the word that the scene keeps. None where it promises nothing."""
+
+    lost: Share | None = None
+    nis: Level | None = None
+    nees: Level | None = None
+    coverage: Share | None = None
+    runs: int = 300
+
+
+@dataclass(frozen=True)
+class Scene:
+    """All that fixes a run but its number. `dataclasses.replace` makes another of it."""
+
+    world: World
+    commands: tuple[Command, ...]
+    seed: int = 0
+    filter: str = "ekf"
+    gate: float | None = None  # probability in (0, 1)
+    guard: Guard = "warn"
+    description: str = ""
+    expect: Expect | None = None
+    world_source: str = "world"  # how outputs name the two files they were made from
+    commands_source: str = "commands"
