@@ -1,0 +1,1 @@
+"""Text ↔ objects: world and commands files. Nothing heavy is imported here; see `load`, `packaged`, `template`."""

@@ -1,0 +1,120 @@
+"""Models → the objects a run is made of: degrees become radians, lists arrays, and belief what the filter is told."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ekfsim.files.commands_file import CommandKeys, CommandsKeys, ExpectKeys
+from ekfsim.files.fields import Pose
+from ekfsim.files.world_file import BeliefKeys, ObstacleKeys, SigmaKeys, WorldKeys
+from ekfsim.geometry import Array
+from ekfsim.geometry.angles import wrap
+from ekfsim.records import Command, Kidnap, Move, Repeat, Say, Sense
+from ekfsim.scene import Expect, Scene
+from ekfsim.world import Faults, Landmark, Map, Noise, Obstacle, Told, World
+
+
+def world_of(keys: WorldKeys) -> World:
+    """The world that a file describes."""
+    floor_plan = Map(array(keys.boundary), obstacles_of(keys.obstacles))
+    start, noise = pose(keys.start), Noise(**keys.noise.model_dump())
+    return World(
+        name=keys.name,
+        map=floor_plan,
+        start=start,
+        start_sigma=sigma(keys.start.sigma),
+        noise=noise,
+        told=told(keys, floor_plan, start, noise),
+        faults=Faults(**keys.faults.model_dump()) if keys.faults else Faults(),
+        landmarks=tuple(Landmark(mark.id, mark.x, mark.y) for mark in keys.landmarks),
+        description=keys.description,
+    )
+
+
+def told(keys: WorldKeys, floor_plan: Map, start: Array, noise: Noise) -> Told:
+    """What the filter is told: the truth, except where `belief` differs."""
+    belief = keys.belief or BeliefKeys()
+    return Told(
+        start=pose(belief.start) if belief.start else start,
+        sigma=sigma(belief.sigma, keys.start.sigma),
+        noise=replace(noise, **belief.noise.model_dump(exclude_none=True)) if belief.noise else noise,
+        map=told_map(belief, floor_plan),
+    )
+
+
+def told_map(belief: BeliefKeys, floor_plan: Map) -> Map:
+    """The filter's map: the true one itself where nothing differs, so that its walls are built once."""
+    if belief.boundary is None and belief.obstacles is None and not belief.missing:
+        return floor_plan
+    missing = belief.missing or []
+    return Map(
+        boundary=floor_plan.boundary if belief.boundary is None else array(belief.boundary),
+        obstacles=obstacles_of(belief.obstacles)
+        if belief.obstacles is not None
+        else tuple(obstacle for obstacle in floor_plan.obstacles if obstacle.name not in missing),
+    )
+
+
+def obstacles_of(obstacles: Iterable[ObstacleKeys]) -> tuple[Obstacle, ...]:
+    """Obstacles with their corners as arrays."""
+    return tuple(Obstacle(keys.name, np.array(keys.points, dtype=float)) for keys in obstacles)
+
+
+def array(points: list[list[float]] | None) -> Array | None:
+    """points : (n, 2) m"""
+    return None if points is None else np.array(points, dtype=float)
+
+
+def pose(keys: Pose) -> Array:
+    """x, y, θ : (3,) m, m, rad in (−π, π]"""
+    return np.array([keys.x, keys.y, float(wrap(np.radians(keys.theta)))])
+
+
+def sigma(*choices: SigmaKeys | None) -> Array:
+    """Standard deviations : (3,) m, m, rad; each from the first mapping that tells it, 0 where none does."""
+    x, y, theta = (
+        next((value for keys in choices if keys and (value := getattr(keys, axis)) is not None), 0.0)
+        for axis in ("x", "y", "theta")
+    )
+    return np.array([x, y, np.radians(theta)])
+
+
+def scene_of(keys: CommandsKeys, world: World, world_source: str, commands_source: str) -> Scene:
+    """The scene that a commands file plays in a world."""
+    return Scene(
+        world=world,
+        commands=tuple(commands_of(keys.commands)),
+        seed=keys.seed,
+        filter=keys.filter,
+        gate=keys.gate,
+        guard=keys.guard,
+        description=keys.description,
+        expect=expect(keys.expect) if keys.expect else None,
+        world_source=world_source,
+        commands_source=commands_source,
+    )
+
+
+def expect(keys: ExpectKeys) -> Expect:
+    """What a study must find."""
+    lost = (keys.lost[0], keys.lost[1]) if keys.lost else None
+    coverage = (keys.coverage[0], keys.coverage[1]) if keys.coverage else None
+    return Expect(lost, keys.nis, keys.nees, coverage, keys.runs)
+
+
+def commands_of(items: Iterable[CommandKeys]) -> Iterator[Command]:
+    """The commands of a list, angles in radians; repetitions of nothing are left out."""
+    for item in items:
+        if item.move is not None:
+            yield Move(float(item.move.distance), float(np.radians(item.move.angle)), float(item.move.slip))
+        elif item.sense is not None:
+            yield Sense(float(np.radians(item.sense.angle)))
+        elif item.kidnap is not None:
+            yield Kidnap(*pose(item.kidnap).tolist())
+        elif item.say is not None:
+            yield Say(item.say)
+        elif item.repeat is not None:
+            repeated = tuple(commands_of(item.repeat.commands))
+            if item.repeat.times and repeated:
+                yield Repeat(item.repeat.times, repeated)

@@ -1,0 +1,213 @@
+"""What no single key can tell: polygons, names, places to stand, how many commands there are.
+
+The checks read the raw tree and skip whatever a model has found wrong, so that all mistakes of a file are told at once.
+"""
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from ekfsim.errors import Mistake
+from ekfsim.files import polygons
+from ekfsim.files.commands_file import MAX_COMMANDS, CommandKeys
+from ekfsim.files.marked import Node, Path
+from ekfsim.files.polygons import Points
+from ekfsim.files.telling import at, nearest
+from ekfsim.world import BOUNDARY, Map
+
+COMMANDS = list(CommandKeys.model_fields)
+
+
+class Sound:
+    """A file without what is known to be wrong with it."""
+
+    def __init__(self, file: str, root: Node, wrong: set[Path]) -> None:
+        self.file = file
+        self.root = root
+        self.wrong = {path[:length] for path in wrong for length in range(len(path) + 1)}
+
+    def value(self, *path: str | int) -> Any:
+        """The plain value at a path, None where there is none or a mistake lies in it."""
+        node = self.root.at(path)
+        return None if node is None or path in self.wrong else node.plain()
+
+    def count(self, *path: str | int) -> int:
+        """The length of a list, right or wrong; 0 where there is none."""
+        node = self.root.at(path)
+        return len(node.value) if node and isinstance(node.value, list) else 0
+
+    def mistake(self, path: Path, wrong: str, right: str) -> Mistake:
+        """A mistake in the value at a path."""
+        return at(self.file, self.root.nearest(path).mark, path, wrong, right)
+
+
+def check_world(file: Sound) -> Iterator[Mistake]:
+    """Mistakes of a world file that lie between its keys."""
+    yield from check_polygons(file)
+    for owner in ((), ("belief",)):
+        yield from check_names(file, owner)
+    yield from check_landmarks(file)
+    yield from check_missing(file)
+    x, y = file.value("start", "x"), file.value("start", "y")
+    if x is not None and y is not None:
+        for wrong in in_the_way(file.value("boundary"), sound_obstacles(file), x, y):
+            yield file.mistake(("start",), f"the robot starts {wrong}", "start it where it can move")
+
+
+def sound_obstacles(file: Sound) -> Iterator[tuple[str, Points]]:
+    """The obstacles whose points are right, with their names."""
+    for index in range(file.count("obstacles")):
+        points = file.value("obstacles", index, "points")
+        if points is not None:
+            yield file.value("obstacles", index, "name") or f"obstacles[{index}]", points
+
+
+def check_polygons(file: Sound) -> Iterator[Mistake]:
+    """Polygons that are none. Each is known as wrong from here on."""
+    for path in polygon_paths(file):
+        points = file.value(*path)
+        if points is not None and (fault := polygons.fault_of(points)):
+            index, wrong, right = fault
+            place = path if index is None else (*path, index)
+            yield file.mistake(place, wrong, right)
+            file.wrong.add(path)
+
+
+def polygon_paths(file: Sound) -> Iterator[Path]:
+    """Where a world file holds polygons."""
+    for owner in ((), ("belief",)):
+        yield (*owner, "boundary")
+        for index in range(file.count(*owner, "obstacles")):
+            yield (*owner, "obstacles", index, "points")
+
+
+def check_names(file: Sound, owner: Path) -> Iterator[Mistake]:
+    """Two obstacles of one name, and an obstacle named like the boundary."""
+    seen: dict[str, int] = {}
+    for index in range(file.count(*owner, "obstacles")):
+        path = (*owner, "obstacles", index, "name")
+        name = file.value(*path)
+        if name == BOUNDARY:
+            yield file.mistake(path, f"'{BOUNDARY}' is the name of the room's own wall", "choose another name")
+        elif name in seen:
+            line = file.root.nearest((*owner, "obstacles", seen[name], "name")).mark[0]
+            yield file.mistake(
+                path, f"'{name}' is already the name of the obstacle on line {line}", "choose another name"
+            )
+        elif name is not None:
+            seen[name] = index
+
+
+def check_landmarks(file: Sound) -> Iterator[Mistake]:
+    """Two landmarks that no sensor could tell apart."""
+    seen: dict[int, int] = {}
+    for index in range(file.count("landmarks")):
+        path = ("landmarks", index, "id")
+        number = file.value(*path)
+        if number in seen:
+            line = file.root.nearest(("landmarks", seen[number], "id")).mark[0]
+            yield file.mistake(path, f"{number} is already the id of the landmark on line {line}", "choose another id")
+        elif number is not None:
+            seen[number] = index
+
+
+def check_missing(file: Sound) -> Iterator[Mistake]:
+    """Obstacles that the filter cannot lack."""
+    belief = file.root.at(("belief",))
+    if belief and belief.get("missing") and belief.get("obstacles"):
+        wrong = "belief.obstacles lists all that the filter's map holds"
+        yield file.mistake(("belief", "missing"), wrong, "delete either 'missing' or 'obstacles'")
+        return
+    count = file.count("obstacles")
+    names = [file.value("obstacles", index, "name") for index in range(count)]
+    if None in names or (count == 0 and ("obstacles",) in file.wrong):
+        return
+    for index in range(file.count("belief", "missing")):
+        path = ("belief", "missing", index)
+        name = file.value(*path)
+        if name is not None and name not in names:
+            near = nearest(name, names)
+            right = f"did you mean '{near}'?" if near else f"the obstacles are: {', '.join(names) or 'none'}"
+            yield file.mistake(path, f"no obstacle is named '{name}'", right)
+
+
+def in_the_way(boundary: Points | None, obstacles: Iterable[tuple[str, Points]], x: float, y: float) -> Iterator[str]:
+    """Why a robot cannot stand at a point, as the ends of sentences."""
+    where = f"at {polygons.pair([x, y])},"
+    if boundary is not None and not polygons.stands_inside(boundary, x, y):
+        yield f"{where} outside the boundary or on its wall"
+    for name, points in obstacles:
+        if not polygons.is_clear_of(points, x, y):
+            yield f"{where} inside the obstacle '{name}' or on its wall"
+
+
+def check_commands(file: Sound) -> Iterator[Mistake]:
+    """Mistakes of a commands file that lie between its keys."""
+    yield from check_items(file, ("commands",))
+    count = expanded(file, ("commands",))
+    if count > MAX_COMMANDS:
+        number = f"{count:,}".replace(",", " ") if count < 10**12 else f"about {float(min(count, 10**300)):.0e}"
+        wrong = f"the commands expand to {number}, more than 1 000 000"
+        yield file.mistake(("commands",), wrong, "repeat fewer times")
+
+
+def check_items(file: Sound, path: Path) -> Iterator[Mistake]:
+    """Items that hold no command, or two."""
+    for index in range(file.count(*path)):
+        item = file.root.at((*path, index))
+        if item is None or not isinstance(item.value, dict):
+            continue
+        held = [key for key in item.keys if key in COMMANDS]
+        if len(held) > 1:
+            wrong = f"{' and '.join(repr(key) for key in held)} stand in one item"
+            yield file.mistake((*path, index), wrong, "begin each command with '- ' on a line of its own")
+        elif not item.keys:
+            yield file.mistake((*path, index), "the command is missing", f"write one of {', '.join(COMMANDS)}")
+        yield from check_items(file, (*path, index, "repeat", "commands"))
+
+
+def expanded(file: Sound, path: Path) -> int:
+    """How many commands a list expands to, as far as it is right."""
+    total = 0
+    for index in range(file.count(*path)):
+        repeat = (*path, index, "repeat")
+        if file.root.at(repeat) is None:
+            total += 1
+        else:
+            times = file.value(*repeat, "times")
+            total += (times if times is not None else 1) * expanded(file, (*repeat, "commands"))
+    return total
+
+
+def angle_warnings(file: Sound) -> Iterator[str]:
+    """Angles that are hardly meant as degrees."""
+    for path, node in file.root.walk():
+        if path and path[-1] in ("theta", "angle") and isinstance(node.value, int | float) and path not in file.wrong:
+            if abs(node.value) > 360:
+                wrong, right = f"{node.written} is more than a full turn", "angles are in degrees: 90 is a quarter turn"
+            elif is_radians(node.value, node.written):
+                degrees = f"{math.degrees(node.value):.0f}"
+                wrong, right = f"{node.written} looks like radians", f"angles are in degrees: write {degrees}"
+            else:
+                continue
+            yield str(at(file.file, node.mark, path, wrong, right))
+
+
+def kidnap_warnings(file: Sound, floor_plan: Map) -> Iterator[str]:
+    """Kidnaps to where no robot can stand."""
+    rings = [(obstacle.name, obstacle.points) for obstacle in floor_plan.obstacles]
+    for path, node in file.root.walk():
+        if path[-1:] == ("kidnap",) and (target := file.value(*path)) is not None:
+            for wrong in in_the_way(floor_plan.boundary, rings, target["x"], target["y"]):
+                yield str(at(file.file, node.mark, path, f"the robot is carried {wrong}", "it cannot move there"))
+
+
+def is_radians(angle: float, written: str) -> bool:
+    """Whether an angle is a multiple of π/4 to all its decimals, of which it has two or more.
+
+    >>> is_radians(1.5708, "1.5708"), is_radians(1.5, "1.5"), is_radians(45.25, "45.25")
+    (True, False, False)
+    """
+    decimals = len(written.partition(".")[2])
+    eighths = round(angle / (math.pi / 4))
+    return decimals >= 2 and 0 < abs(eighths) <= 8 and round(eighths * math.pi / 4, decimals) == angle

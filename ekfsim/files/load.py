@@ -1,0 +1,178 @@
+"""World and commands files → World and Scene; all mistakes of a file at once."""
+
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from ekfsim.errors import InputError, Mistake, UsageError
+from ekfsim.files.building import scene_of, world_of
+from ekfsim.files.checks import Sound, angle_warnings, check_commands, check_world, kidnap_warnings
+from ekfsim.files.commands_file import CommandsKeys
+from ekfsim.files.marked import Mark, Node, parse
+from ekfsim.files.marked import Path as Route
+from ekfsim.files.packaged import source_name
+from ekfsim.files.schema import MODELS, Kind
+from ekfsim.files.source import bytes_of, text_of
+from ekfsim.files.telling import at, tell
+from ekfsim.files.world_file import WorldKeys
+from ekfsim.scene import Scene
+from ekfsim.world import World
+
+T = TypeVar("T")
+LATER = {"recording": "recorded logs", "drive": "driven paths"}  # keys of commands files that are not read yet
+ONLY_IN_WORLDS = {"name", "boundary", "obstacles", "landmarks", "start", "noise", "belief", "faults"}
+
+
+@dataclass
+class Loaded(Generic[T]):
+    """What a file holds, or the mistakes in it; and the warnings."""
+
+    value: T | None = None
+    mistakes: list[Mistake] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+    def get(self) -> T:
+        """The value. Raises InputError with all mistakes where there are any."""
+        if self.value is None or self.mistakes:
+            raise InputError(self.mistakes)
+        return self.value
+
+
+def load_world(path: str | Path) -> World:
+    """The world that a file describes. Raises UsageError where there is no file, InputError with all its mistakes."""
+    return read_world(path).get()
+
+
+def load_scene(path: str | Path, world: str | Path | None = None) -> Scene:
+    """The scene that a commands file describes, in its own world or in the one given.
+
+    Raises UsageError where a file is missing, InputError with all mistakes of both files.
+    """
+    return read_scene(path, world).get()
+
+
+def read_world(path: str | Path, shown: str | None = None) -> Loaded[World]:
+    """A world file, with its mistakes and warnings; `shown` is how messages name it.
+
+    Raises UsageError where there is no such file.
+    """
+    file = read(Path(path), shown or str(path), "world")
+    loaded = Loaded[World](mistakes=file.mistakes, warnings=file.warnings)
+    if isinstance(file.keys, WorldKeys) and not file.mistakes:
+        loaded.value = world_of(file.keys)
+    return loaded
+
+
+def read_scene(path: str | Path, world: str | Path | None = None) -> Loaded[Scene]:
+    """A commands file and its world, with the mistakes and warnings of both.
+
+    Raises UsageError where there is no such file.
+    """
+    path = Path(path)
+    file = read(path, str(path), "commands")
+    if file.sound is None:  # nothing can be read in it, not even its world
+        return Loaded(mistakes=file.mistakes)
+    source = Path(world) if world is not None else path.parent / (file.sound.value("world") or "")
+    found = read_world(source) if world is not None else own_world(file, source)
+    warnings = [*file.warnings, *found.warnings]
+    if found.value is not None:
+        warnings += kidnap_warnings(file.sound, found.value.map)
+    loaded = Loaded[Scene](mistakes=[*file.mistakes, *found.mistakes], warnings=warnings)
+    if isinstance(file.keys, CommandsKeys) and found.value is not None and not loaded.mistakes:
+        loaded.value = scene_of(file.keys, found.value, source_name(source), source_name(path))
+    return loaded
+
+
+def own_world(file: "File", source: Path) -> Loaded[World]:
+    """The world that a commands file names. A missing one is a mistake in that file."""
+    sound = file.sound
+    assert sound is not None
+    named = sound.value("world")
+    if named is None:
+        if sound.root.at(("world",)) is None:
+            right = "write e.g. world: ../worlds/classroom.yaml, or name one with --world"
+            file.mistakes.insert(0, sound.mistake((), "the scene has no world", right))
+        return Loaded()
+    try:
+        bytes_of(source, named)
+    except UsageError as error:
+        wrong, _, right = str(error).partition("; ")
+        file.mistakes.append(sound.mistake(("world",), wrong, right or "write its path relative to this file"))
+        file.mistakes.sort(key=in_order_of_place)
+        return Loaded()
+    return read_world(source, os.path.normpath(source))
+
+
+def kind_of(path: str | Path) -> Kind:
+    """Whether a file is a world or a commands file. Raises UsageError or InputError where it cannot be read."""
+    root, _ = parse(text_of(Path(path), str(path)), str(path))
+    return "commands" if is_commands(root) else "world"
+
+
+def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
+    """All mistakes and warnings of a file of either kind, a scene's world included.
+
+    Raises UsageError where there is no such file.
+    """
+    try:
+        kind = kind_of(path)
+    except InputError as error:
+        return Loaded[World](mistakes=error.mistakes)
+    return read_world(path) if kind == "world" else read_scene(path)
+
+
+@dataclass
+class File:
+    """What was found in a file of either kind."""
+
+    mistakes: list[Mistake]
+    sound: Sound | None = None  # None where nothing in the file can be told apart
+    keys: BaseModel | None = None  # None where a key is wrong
+    warnings: list[str] = field(default_factory=list)
+
+
+def read(path: Path, shown: str, kind: Kind) -> File:
+    """Read a file as one of a kind. Raises UsageError where there is no such file."""
+    try:
+        root, mistakes = parse(text_of(path, shown), shown)
+    except InputError as error:
+        return File(error.mistakes)
+    if refusal := other_kind(root, kind):
+        return File([*mistakes, at(shown, *refusal)])
+    keys, wrong = None, set[tuple[str | int, ...]]()
+    try:
+        keys = MODELS[kind].model_validate(root.plain())
+    except ValidationError as error:
+        mistakes += tell(error, kind, root, shown)
+        wrong = {detail["loc"] for detail in error.errors(include_url=False)}
+    sound = Sound(shown, root, wrong)
+    mistakes += check_world(sound) if kind == "world" else check_commands(sound)
+    return File(sorted(mistakes, key=in_order_of_place), sound, keys, list(angle_warnings(sound)))
+
+
+def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
+    """Why a file is not of the kind that is wanted: its place and field, what is wrong, what would be right."""
+    if not isinstance(root.value, dict):
+        held = "a list" if isinstance(root.value, list) else "no 'key: value'"
+        return root.mark, (), f"the file holds {held}", "see `ekfsim new` for one to start from"
+    for key, what in LATER.items():
+        if key in root.keys:
+            return root.keys[key], (), f"'{key}' ({what}) is not read by this version", "write 'commands' instead"
+    if kind == "world" and is_commands(root):
+        return root.mark, (), "this is a commands file", "name a world file here"
+    if kind == "commands" and not is_commands(root) and root.keys.keys() & ONLY_IN_WORLDS:
+        return root.mark, (), "this is a world file: it has no 'commands'", "name a commands file here"
+    return None
+
+
+def is_commands(root: Node) -> bool:
+    """Whether a file is a commands file, by its keys."""
+    return not root.keys.keys().isdisjoint(("commands", *LATER))
+
+
+def in_order_of_place(mistake: Mistake) -> tuple[int, int]:
+    """Mistakes are told in the order of the file."""
+    return mistake.place.line, mistake.place.column

@@ -1,0 +1,68 @@
+"""The worlds and commands that come with ekfsim, and how outputs name files."""
+
+import difflib
+import os
+from pathlib import Path
+from typing import Literal
+
+from ekfsim.errors import EkfsimError, UsageError
+
+Folder = Literal["worlds", "commands"]
+PACKAGE = Path(__file__).resolve().parent.parent
+
+
+def folder(kind: Folder) -> Path:
+    """Where the packaged files of a kind lie: inside the installed package, or beside it in a checkout."""
+    installed = PACKAGE / "_packaged" / kind
+    return installed if installed.is_dir() else PACKAGE.parent / kind
+
+
+def packaged(kind: Folder) -> dict[str, Path]:
+    """The packaged files of a kind by their bare names, in alphabetical order."""
+    return {path.stem: path for path in sorted(folder(kind).glob("*.yaml"))}
+
+
+def resolve(name_or_path: str | Path, kind: Folder) -> Path:
+    """The file that a path, or the bare name of a packaged file, stands for. What exists wins over a name.
+
+    Raises UsageError where it is neither.
+    """
+    path = Path(name_or_path)
+    known = packaged(kind)
+    name = os.fspath(name_or_path)
+    try:
+        exists = path.exists()
+    except (OSError, ValueError):  # a name too long, or with a NUL in it
+        exists = False
+    if exists or name not in known:
+        is_bare = not path.suffix and path.name == name
+        if not exists and is_bare:
+            near = difflib.get_close_matches(name, known, 3)
+            right = f"did you mean {' or '.join(map(repr, near))}?" if near else "see `ekfsim list`, or name a file"
+            raise UsageError(f"'{name}' is neither a file nor one of the packaged {kind}; {right}")
+        return path
+    return known[name]
+
+
+def source_name(path: str | Path) -> str:
+    """How outputs name a file: a packaged one alike on every machine, any other as it was given."""
+    given = os.path.normpath(path)
+    here = Path(path).resolve()
+    for kind in ("worlds", "commands"):
+        if here.parent == folder(kind).resolve():
+            return f"{kind}/{here.name}"
+    return given
+
+
+def description_of(path: Path) -> str:
+    """The first line of a file's description, "" where it has none or cannot be read."""
+    from ekfsim.files.marked import parse
+    from ekfsim.files.source import text_of
+
+    try:
+        root, _ = parse(text_of(path, str(path)), str(path))
+    except EkfsimError:
+        return ""
+    description = root.at(("description",))
+    text = description.value if description else ""
+    return text.strip().partition("\n")[0] if isinstance(text, str) else ""

@@ -1,0 +1,58 @@
+"""The JSON Schema of each kind of file: editors complete and check with it, and messages read it."""
+
+from functools import cache
+from typing import Any, Literal
+
+from pydantic import BaseModel
+from pydantic.json_schema import GenerateJsonSchema
+
+from ekfsim.files.commands_file import CommandsKeys
+from ekfsim.files.world_file import WorldKeys
+
+Kind = Literal["world", "commands"]
+Schema = dict[str, Any]
+MODELS: dict[Kind, type[BaseModel]] = {"world": WorldKeys, "commands": CommandsKeys}
+
+
+class WithoutNull(GenerateJsonSchema):
+    """An optional key may be left out; it may not hold null."""
+
+    def nullable_schema(self, schema: Any) -> Schema:
+        """What the key may hold."""
+        return self.generate_inner(schema["schema"])
+
+    def default_schema(self, schema: Any) -> Schema:
+        """Only defaults that could be written."""
+        if schema.get("default", 0) is None:
+            return self.generate_inner(schema["schema"])
+        return super().default_schema(schema)
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        """A key is its own title."""
+        return False
+
+    def sort(self, value: Any, parent_key: str | None = None) -> Any:
+        """The order of the models is the one to read in."""
+        return value
+
+
+@cache
+def json_schema(kind: Kind) -> Schema:
+    """The schema of a kind of file, for an editor.
+
+    >>> json_schema("world")["required"]
+    ['name', 'start', 'noise']
+    """
+    schema = MODELS[kind].model_json_schema(schema_generator=WithoutNull)
+    return {"$schema": WithoutNull.schema_dialect, **schema}
+
+
+def schema_at(kind: Kind, path: tuple[str | int, ...]) -> Schema:
+    """What the schema says of one value of a file; {} where it knows nothing."""
+    whole = json_schema(kind)
+    found = whole
+    for part in path:
+        found = found.get("items", {}) if isinstance(part, int) else found.get("properties", {}).get(part, {})
+        if "$ref" in found:
+            found = {**whole["$defs"][found["$ref"].rpartition("/")[2]], **found}
+    return found

@@ -1,0 +1,76 @@
+"""Bytes → text: what can be wrong with a file before anything in it is read."""
+
+import difflib
+import os
+import re
+from pathlib import Path
+
+from ekfsim.errors import InputError, Mistake, Place, UsageError
+
+MAX_BYTES = 10_000_000
+
+# What YAML allows in a file: printable characters, tab and line breaks.
+UNPRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]")
+
+
+def text_of(path: Path, shown: str) -> str:
+    """The text of a file that a person wrote; `shown` is how messages name it.
+
+    Raises UsageError where there is no such file to read, InputError where it holds no text.
+    """
+    raw = bytes_of(path, shown)
+    if len(raw) > MAX_BYTES:
+        raise mistake(shown, 1, 1, "the file is larger than 10 MB", "write a smaller one: no world needs that much")
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        raise mistake(shown, 1, 1, "the file is UTF-16, not UTF-8", "save it as UTF-8 in your editor")
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line, column = position(raw[: error.start].decode("utf-8-sig"))
+        wrong = f"the byte 0x{raw[error.start]:02x} is not UTF-8"
+        raise mistake(shown, line, column, wrong, "save the file as UTF-8 in your editor") from None
+    if found := UNPRINTABLE.search(text):
+        line, column = position(text[: found.start()])
+        raise mistake(shown, line, column, f"{character(found[0])} cannot stand in a text file", "delete it")
+    if not text.strip():
+        raise mistake(shown, 1, 1, "the file is empty", "see `ekfsim new` for one to start from")
+    return text
+
+
+def bytes_of(path: Path, shown: str) -> bytes:
+    """At most MAX_BYTES + 1 bytes of a file. Raises UsageError where it cannot be read."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        raise UsageError(f"{shown}: no such file" + nearest_file(path, shown)) from None
+    except IsADirectoryError:
+        raise UsageError(f"{shown}: is a folder; name a file in it") from None
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        raise UsageError(f"{shown}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+
+
+def nearest_file(path: Path, shown: str) -> str:
+    """`; did you mean '…'?` where a file beside the missing one has nearly its name, else nothing."""
+    try:
+        neighbours = os.listdir(path.parent)
+    except OSError:
+        return ""
+    near = difflib.get_close_matches(path.name, sorted(neighbours), 1)
+    return f"; did you mean '{os.path.join(os.path.dirname(shown), near[0])}'?" if near else ""
+
+
+def position(before: str) -> tuple[int, int]:
+    """Line and column, from 1, of the character that follows the text `before`."""
+    lines = re.split("\r\n|\r|\n", before)
+    return len(lines), len(lines[-1]) + 1
+
+
+def character(char: str) -> str:
+    """How messages name a character that cannot be shown."""
+    return f"the character U+{ord(char):04X}" + (" (NUL)" if char == "\0" else "")
+
+
+def mistake(file: str, line: int, column: int, wrong: str, right: str) -> InputError:
+    """One mistake in the file as a whole."""
+    return InputError([Mistake(Place(file, line, column), "", wrong, right)])

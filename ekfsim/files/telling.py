@@ -1,0 +1,210 @@
+"""Each mistake that a model finds in a file, in words for the one who wrote it."""
+
+import difflib
+import math
+import re
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from ekfsim.errors import Mistake, Place
+from ekfsim.files.marked import Mark, Node, Path, field_of
+from ekfsim.files.schema import Kind, Schema, schema_at
+
+NOUNS = {
+    "number": "a number",
+    "integer": "a whole number",
+    "string": "text",
+    "array": "a list",
+    "object": "a mapping 'key: value'",
+}
+
+
+def tell(error: ValidationError, kind: Kind, root: Node, file: str) -> list[Mistake]:
+    """Every mistake that a model found, each at its place; none where a mistake was already told."""
+    found = (tell_one(detail, kind, root, file) for detail in error.errors(include_url=False))
+    return [mistake for mistake in found if mistake is not None]
+
+
+def tell_one(detail: ErrorDetails, kind: Kind, root: Node, file: str) -> Mistake | None:
+    """One mistake, or None where one was told of that value already."""
+    path: Path = detail["loc"]
+    node, schema = root.nearest(path), schema_at(kind, path)
+    if node.faulty:
+        return None
+    mark = node.mark
+    match detail["type"]:
+        case "missing":
+            wrong, right = "the key is missing", f"write {path[-1]}: {example(schema)}"
+        case "extra_forbidden":
+            mark, path = root.nearest(path[:-1]).keys[str(path[-1])], path[:-1]
+            wrong, right = unknown_key(str(detail["loc"][-1]), root.nearest(path), kind, path)
+        case "order":
+            wrong, _, right = detail["msg"].partition("; ")
+        case "literal_error":
+            wrong, right = unknown_word(node, schema)
+        case "too_short" | "too_long":
+            wrong, right = wrong_length(node, schema)
+        case "string_pattern_mismatch":
+            wrong, right = f"{shown(node)} is no name", f"write one line of text, e.g. {example(schema)}"
+        case "finite_number" | "greater_than" | "greater_than_equal" | "less_than" | "less_than_equal":
+            wrong, right = out_of_range(node, schema)
+        case _:
+            wrong, right = wrong_kind(node, schema)
+    return at(file, mark, path, wrong, right)
+
+
+def at(file: str, mark: Mark, path: Path, wrong: str, right: str) -> Mistake:
+    """A mistake at a place of a file."""
+    return Mistake(Place(file, *mark), field_of(path), wrong, right)
+
+
+def unknown_key(key: str, mapping: Node, kind: Kind, path: Path) -> tuple[str, str]:
+    """A key that nothing reads."""
+    schema = schema_at(kind, path)
+    known = list(schema.get("properties", {}))
+    command = schema.get("title") == "a command"
+    wrong = f"{quoted(key)} is not a command" if command else f"unknown key {quoted(key)}"
+    for other in mapping.keys:
+        if key in schema_at(kind, (*path, other)).get("properties", {}):
+            return wrong, f"indent it further than '{other}' to put it under it"
+    name, colon, value = key.partition(":")
+    if colon and name in known:
+        return wrong, f"write a space after the colon: '{name}: {value}'"
+    if near := nearest(key, known):
+        return wrong, f"did you mean '{near}'?"
+    return wrong, f"known {'commands' if command else 'keys'} here: {', '.join(known)}"
+
+
+def unknown_word(node: Node, schema: Schema) -> tuple[str, str]:
+    """A word that is none of the few allowed."""
+    if not isinstance(node.value, str):
+        return wrong_kind(node, schema)
+    words = schema["enum"]
+    near = nearest(node.value, words)
+    right = f"did you mean '{near}'?" if near else f"write {' or '.join(words)}"
+    return f"{shown(node)} is not known here", right
+
+
+def wrong_length(node: Node, schema: Schema) -> tuple[str, str]:
+    """Too few points, or no pair."""
+    count = len(node.value) if isinstance(node.value, list) else 0
+    values = f"{count} value{'' if count == 1 else 's'}"
+    if "maxItems" in schema:
+        return (
+            f"{values} stand{'s' if count == 1 else ''} where {noun(schema)} belongs",
+            f"write e.g. {example(schema)}",
+        )
+    points = values.replace("value", "point")
+    return f"{points} make{'s' if count == 1 else ''} no polygon", f"write at least three, e.g. {example(schema)}"
+
+
+def wrong_kind(node: Node, schema: Schema) -> tuple[str, str]:
+    """Text for a number, a number for text, a list for a mapping, …"""
+    wanted = schema.get("type")
+    value = node.value
+    right = f"write e.g. {example(schema)}"
+    if wanted == "integer" and isinstance(value, float):
+        if not math.isfinite(value) or abs(value) >= 2**63:
+            return out_of_range(node, schema)
+        if value == int(value):
+            right = f"write {int(value)}"
+        return f"{shown(node)} is not written as a whole number", right
+    if wanted in ("number", "integer") and isinstance(value, str) and (number := number_in(value)):
+        right = f"write {number}"
+    if wanted == "string" and node.written:
+        right = f"write it in quotes: '{node.written}'"
+    return f"{what_stands(node)} where {noun(schema)} belongs", right
+
+
+def number_in(text: str) -> str:
+    """The number that a text holds beside a unit, a separator or a decimal comma; "" where it holds none.
+
+    >>> number_in("1,5"), number_in("90°"), number_in("1_000"), number_in("two")
+    ('1.5', '90', '1000', '')
+    """
+    number = re.fullmatch(r"\s*([-+]?[0-9_]*[.,]?[0-9_]+([eE][-+]?[0-9]+)?)\s*(°|[a-zA-Z]*)\s*", text)
+    return number[1].replace(",", ".").replace("_", "") if number else ""
+
+
+def what_stands(node: Node) -> str:
+    """What was written, as the beginning of a sentence."""
+    match node.value:
+        case str():
+            return f"{shown(node)} is text"
+        case bool():
+            return f"{node.written} is a yes-or-no value"
+        case int() | float():
+            return f"{shown(node)} is a number"
+        case list():
+            return "a list stands"
+        case dict():
+            return "a mapping stands"
+    return "nothing stands"
+
+
+def out_of_range(node: Node, schema: Schema) -> tuple[str, str]:
+    """A number that is too small, too large or none."""
+    value = node.value
+    low, high = schema.get("minimum"), schema.get("maximum")
+    if isinstance(value, float) and not math.isfinite(value):
+        huge = node.written.strip("+-")[:1].isdigit()
+        return f"{shown(node)} is {'too large' if huge else 'not a finite number'}", f"write e.g. {example(schema)}"
+    if low is None or high is None:
+        low, high = schema["exclusiveMinimum"], schema["exclusiveMaximum"]
+        return f"{shown(node)} is not between {low} and {high}", f"write e.g. {example(schema)}"
+    small = isinstance(value, int | float) and value < low
+    wrong = "is negative" if small and low == 0 else "is too small" if small else "is too large"
+    return f"{shown(node)} {wrong}", f"write a number from {spaced(low)} to {spaced(high)}"
+
+
+def spaced(number: float) -> str:
+    """A bound, in groups of three digits."""
+    return f"{int(number):,}".replace(",", " ")
+
+
+def noun(schema: Schema) -> str:
+    """What belongs at a place."""
+    title = str(schema.get("title", ""))
+    return title if title.startswith("a ") else NOUNS[schema["type"]]
+
+
+def example(schema: Schema) -> str:
+    """A value that would be right."""
+    return flow(schema["examples"][0])
+
+
+def flow(value: Any) -> str:
+    """A value as one writes it on a line of YAML.
+
+    >>> flow([{"name": "desk", "points": [[4, 3.5]]}])
+    '[{name: desk, points: [[4, 3.5]]}]'
+    """
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {flow(inner)}" for key, inner in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(flow, value)) + "]"
+    return str(value)
+
+
+def shown(node: Node) -> str:
+    """A scalar as it was written: numbers bare, text in quotes, both short."""
+    return quoted(node.written) if isinstance(node.value, str) else short(node.written)
+
+
+def quoted(text: str) -> str:
+    """Text in quotes, on one line, and short."""
+    return f"'{short(' '.join(text.split()))}'"
+
+
+def short(text: str) -> str:
+    """At most 40 characters of a text."""
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
+def nearest(word: str, known: list[str]) -> str:
+    """The known word that is nearest to another, "" where none is near."""
+    lower = {name.lower(): name for name in known}
+    near = difflib.get_close_matches(word.lower()[:100], lower, 1)
+    return lower[near[0]] if near else ""

@@ -1,0 +1,161 @@
+"""The keys of a world file."""
+
+from pydantic import ConfigDict, Field
+
+from ekfsim.files.fields import Degrees, Metres, Name, Polygon, Pose, Probability, Ratio, Scale, Spread, Strict, Text
+
+POSE = {"x": 1.0, "y": 1.0, "theta": 90}
+SIGMA = {"x": 0.1, "y": 0.1, "theta": 5}
+OBSTACLES = [{"name": "desk", "points": [[4, 3], [5, 3], [5, 4], [4, 4]]}]
+ROOM = [[0, 0], [10, 0], [10, 8], [0, 8]]
+
+
+class SigmaKeys(Strict):
+    """Standard deviations of a pose."""
+
+    x: Spread | None = Field(None, description="m")
+    y: Spread | None = Field(None, description="m")
+    theta: Degrees | None = Field(None, ge=0, description="degrees", examples=[5])
+
+
+class StartKeys(Pose):
+    """Where the robot starts."""
+
+    sigma: SigmaKeys | None = Field(
+        None,
+        description="Standard deviations from which the true start of each run is drawn, x and y in m, theta in "
+        "degrees. The first belief has the same, unless `belief` says otherwise. 0 where nothing is said.",
+        examples=[SIGMA],
+    )
+
+
+class NoiseKeys(Strict):
+    """The five noise ratios: the standard deviation is the ratio times the magnitude of what is done or measured."""
+
+    execution_distance: Ratio = Field(
+        alias="executionDstSigmaRatio", description="Noise of the distance that the wheels drive, per metre commanded."
+    )
+    execution_angle: Ratio = Field(
+        alias="executionAngSigmaRatio", description="Noise of the angle that the robot turns, per degree commanded."
+    )
+    odometry_distance: Ratio = Field(
+        alias="odometryDstSigmaRatio",
+        description="Noise of the distance that the odometry measures, per metre.",
+        examples=[0.02],
+    )
+    odometry_angle: Ratio = Field(
+        alias="odometryAngSigmaRatio",
+        description="Noise of the angle that the odometry measures, per degree.",
+        examples=[0.02],
+    )
+    range: Ratio = Field(
+        alias="rangeSigmaRatio", description="Noise of the range that the laser measures, per metre.", examples=[0.01]
+    )
+
+
+class ToldNoiseKeys(Strict):
+    """The noise ratios that the filter is told, where they differ from the true ones; any of the five."""
+
+    execution_distance: Ratio | None = Field(None, alias="executionDstSigmaRatio", description="See noise.")
+    execution_angle: Ratio | None = Field(None, alias="executionAngSigmaRatio", description="See noise.")
+    odometry_distance: Ratio | None = Field(None, alias="odometryDstSigmaRatio", description="See noise.")
+    odometry_angle: Ratio | None = Field(None, alias="odometryAngSigmaRatio", description="See noise.")
+    range: Ratio | None = Field(None, alias="rangeSigmaRatio", description="See noise.")
+
+
+class ObstacleKeys(Strict):
+    """A polygon that stops robots and beams."""
+
+    name: Name = Field(description="What messages and pictures call it; no two obstacles share a name.")
+    points: Polygon = Field(description="Its corners in order, [x, y] in m; the outline closes by itself.")
+
+
+class LandmarkKeys(Strict):
+    """A point that a sensor can tell apart from all others."""
+
+    id: int = Field(description="A number of its own.", ge=0, le=2**31 - 1, examples=[3])
+    x: Metres = Field(description="m")
+    y: Metres = Field(description="m")
+
+
+class BeliefKeys(Strict):
+    """What the filter is told, where that differs from the truth."""
+
+    start: Pose | None = Field(None, description="Where the filter believes the robot to start.", examples=[POSE])
+    sigma: SigmaKeys | None = Field(
+        None,
+        description="Standard deviations of the first belief, x and y in m, theta in degrees; each left out is that "
+        "of start.sigma, and 0 where nothing is said. Moves nothing in the truth.",
+        examples=[SIGMA],
+    )
+    noise: ToldNoiseKeys | None = Field(
+        None, description="Noise ratios that the filter is told.", examples=[{"odometryDstSigmaRatio": 0.001}]
+    )
+    missing: list[Name] | None = Field(
+        None, description="Names of the obstacles that the filter's map lacks.", examples=[["desk"]]
+    )
+    obstacles: list[ObstacleKeys] | None = Field(
+        None, description="The filter's whole list of obstacles, in place of the true one.", examples=[OBSTACLES]
+    )
+    boundary: Polygon | None = Field(None, description="The filter's own idea of the boundary.", examples=[ROOM])
+
+
+class FaultKeys(Strict):
+    """What is wrong with the robot, and no one knows."""
+
+    range_bias: Metres = Field(0.0, alias="rangeBias", description="m added to every range.", examples=[0.1])
+    range_scale: Scale = Field(1.0, alias="rangeScale", description="Every range is multiplied by it.")
+    short_returns: Probability = Field(
+        0.0,
+        alias="shortReturns",
+        description="Probability that something unknown returns the beam before the wall does.",
+    )
+    odometry_distance_scale: Scale = Field(
+        1.0, alias="odometryDstScale", description="Every distance that the odometry measures is multiplied by it."
+    )
+    odometry_angle_scale: Scale = Field(
+        1.0, alias="odometryAngScale", description="Every angle that the odometry measures is multiplied by it."
+    )
+
+
+class WorldKeys(Strict):
+    """What stands where, how noisy the robot is, and what the filter is told of both. Metres and degrees."""
+
+    model_config = ConfigDict(title="ekfsim world")
+
+    name: Name = Field(description="What pictures and reports call this world.", examples=["classroom"])
+    description: Text = Field("", description="What this world is for; its first line is shown by `ekfsim list`.")
+    boundary: Polygon | None = Field(
+        None,
+        description="The room: corners in order, [x, y] in m. Its ring is a wall. Unbounded without.",
+        examples=[ROOM],
+    )
+    obstacles: list[ObstacleKeys] = Field(
+        [],
+        description="Polygons that stop robots and beams; they may overlap, and cross the boundary.",
+        examples=[OBSTACLES],
+    )
+    landmarks: list[LandmarkKeys] = Field(
+        [], description="Points for the sensors that see landmarks.", examples=[[{"id": 3, "x": 5.0, "y": -5.0}]]
+    )
+    start: StartKeys = Field(description="Where the robot truly starts.", examples=[POSE])
+    noise: NoiseKeys = Field(
+        description="The five noise ratios, all required.",
+        examples=[
+            {
+                "executionDstSigmaRatio": 0.05,
+                "executionAngSigmaRatio": 0.05,
+                "odometryDstSigmaRatio": 0.02,
+                "odometryAngSigmaRatio": 0.02,
+                "rangeSigmaRatio": 0.01,
+            }
+        ],
+    )
+    belief: BeliefKeys | None = Field(
+        None,
+        description="What the filter is told, where that differs from the truth.",
+        examples=[{"start": {"x": 1.2, "y": 1.0, "theta": 80}}],
+    )
+    faults: FaultKeys | None = Field(
+        None, description="What is wrong with the robot, and no one knows.", examples=[{"rangeBias": 0.1}]
+    )
