@@ -37,14 +37,14 @@ def advance(filter: Filter, belief: Gaussian, entry: Entry, guard: Guard = "warn
     return Step(entry, belief, posterior, prediction, correction, sighting, measured)
 
 
-def first_belief(scene: Scene, runs: int | Integers = 0) -> Gaussian:
+def first_belief(scene: Scene, axes: tuple[int, ...] = ()) -> Gaussian:
     """What the filter is told of the start : (…, 3), (…, 3, 3)"""
-    told, axes = scene.world.told, np.shape(runs)
+    told = scene.world.told
     mean = np.broadcast_to(told.start, (*axes, 3))
     return Gaussian(mean, np.broadcast_to(np.diag(told.sigma**2), (*axes, 3, 3)))
 
 
-def play(scene: Scene, runs: int | Integers = 0) -> Iterator[Step]:
-    """Simulate a scene and localize in it: every Step of one run, or of N runs side by side."""
+def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
+    """Simulate a scene and localize in it: every Step of its run, or of N runs side by side. runs : (N,)"""
     filter = FILTERS[scene.filter](gate=scene.gate)
-    return localize(simulate(scene, runs), filter, first_belief(scene, runs), scene.guard)
+    return localize(simulate(scene, runs), filter, first_belief(scene, np.shape(scene.run if runs is None else runs)), scene.guard)

@@ -29,6 +29,7 @@ class Scene:
     world: World
     commands: tuple[Command, ...]
     seed: int = 0
+    run: int = 0  # which of the seed's runs is played
     filter: str = "ekf"
     gate: float | None = None  # probability in (0, 1)
     guard: Guard = "warn"

@@ -53,12 +53,12 @@ class Draws:
         return normals_of, uniforms_of
 
 
-def simulate(scene: Scene, runs: int | Integers = 0) -> Iterator[Entry]:
-    """The log of one run, or of N runs side by side. runs : () or (N,) numbers from 0.
+def simulate(scene: Scene, runs: Integers | None = None) -> Iterator[Entry]:
+    """The log of the scene's run, or of N runs side by side. runs : (N,) numbers from 0
 
     Entry 0 is the start; then one for each expanded command.
     """
-    world, numbers = scene.world, np.asarray(runs, dtype=np.int64)
+    world, numbers = scene.world, np.asarray(scene.run if runs is None else runs, dtype=np.int64)
     draws, drawn = Draws(scene.seed, numbers), 0
     motion = MoveTurn(world.told.noise.odometry_distance, world.told.noise.odometry_angle)
     truth = world.start + world.start_sigma * draws.normals(0)[..., :3]

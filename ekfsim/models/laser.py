@@ -22,6 +22,7 @@ class Sighting:
     ambiguous: Booleans  # (…) from a pose 3σ away the beam would meet another wall line, or none
     probes: Array  # (…, 6, 3) those poses; the mean itself where P has no such direction
     probe_ranges: Array  # (…, 6) m from each of them, nan where the beam meets no wall
+    probe_walls: Integers  # (…, 6) the walls met there, −1 where none is
 
     @property
     def grazing(self) -> Booleans:
@@ -82,7 +83,7 @@ class Laser:
         sine = np.vecdot(self._normal(wall), np.stack([np.cos(direction[..., 0]), np.sin(direction[..., 0])], axis=-1))
         incidence = np.where(wall >= 0, np.arcsin(np.minimum(np.abs(sine), 1.0)), np.nan)
         ambiguous = np.any(line[..., 1:] != line[..., :1], axis=-1)
-        return Sighting(wall, incidence, ambiguous, poses[..., 1:, :], hit.range[..., 1:])
+        return Sighting(wall, incidence, ambiguous, poses[..., 1:, :], hit.range[..., 1:], hit.wall[..., 1:])
 
     def _normal(self, wall: Integers) -> Array:
         """Unit normals : (…, 2), zero where there is no wall."""

@@ -1,0 +1,151 @@
+"""The trace: a JSON object a line for each step, SI units, angles in radians, null where a number is undefined."""
+
+import json
+import math
+from typing import Any, TextIO
+
+import numpy as np
+
+from ekfsim.filters.belief import Correction, Gaussian, Refused
+from ekfsim.geometry import Array
+from ekfsim.geometry.ellipse import ellipse
+from ekfsim.models.laser import Laser, Sighting
+from ekfsim.provenance import provenance
+from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense, Step
+from ekfsim.scene import Scene
+
+FORMAT = 1
+STATE = ("x", "y", "theta")
+
+
+class Trace:
+    """Writes the steps of one run to a file, each as it comes."""
+
+    def __init__(self, file: TextIO, scene: Scene, confidence: float) -> None:
+        self._file, self._scene, self._confidence = file, scene, confidence
+
+    def write(self, step: Step) -> None:
+        """Append the line of this step; the first is the start."""
+        line = line_of(step, self._scene, self._confidence)
+        self._file.write(json.dumps(line, allow_nan=False, ensure_ascii=False, separators=(",", ":")) + "\n")
+
+
+def line_of(step: Step, scene: Scene, confidence: float) -> dict[str, Any]:
+    """The trace's line of one step."""
+    match step.entry.command:
+        case None:
+            return _start(step, scene, confidence)
+        case Move() as move:
+            return _move(step, move, scene, confidence)
+        case Sense(angle):
+            return _sense(step, angle, confidence)
+        case Kidnap(x, y, theta):
+            return _told("kidnap", {"x": x, "y": y, "theta": theta}, step)
+        case Say(text):
+            return _told("say", {"text": text}, step)
+
+
+def _start(step: Step, scene: Scene, confidence: float) -> dict[str, Any]:
+    return {
+        "type": "start",
+        "format": FORMAT,
+        **provenance(scene),
+        "confidence": confidence,
+        "state": list(STATE),
+        **_gaussian(step.posterior),
+        "truth": _numbers(step.entry.truth),
+    }
+
+
+def _move(step: Step, move: Move, scene: Scene, confidence: float) -> dict[str, Any]:
+    assert isinstance(step.entry.given, Control) and step.prediction is not None and step.entry.bump is not None
+    distance, angle = step.entry.given.u.tolist()
+    bump = int(step.entry.bump)
+    return {
+        "type": "move",
+        "index": step.entry.index,
+        "command": {"distance": move.distance, "angle": move.angle, **({"slip": move.slip} if move.slip else {})},
+        "odometry": {"distance": distance, "angle": angle},
+        "F": _numbers(step.prediction.F),
+        "G": _numbers(step.prediction.G),
+        "prior": _gaussian(step.prior),
+        "posterior": _gaussian(step.posterior),
+        "truth": _numbers(step.entry.truth),
+        "bump": scene.world.map.walls.name(bump)[0] if bump >= 0 else None,
+        **_judged(step, confidence),
+    }
+
+
+def _sense(step: Step, angle: float, confidence: float) -> dict[str, Any]:
+    assert isinstance(step.entry.given, Reading) and step.correction is not None
+    return {
+        "type": "sense",
+        "index": step.entry.index,
+        "command": {"angle": angle},
+        "range": _number(step.entry.given.z[0]),
+        **_corrected(step.correction),
+        **_sighted(step.entry.given.sensor, step.sighting),
+        "prior": _gaussian(step.prior),
+        "posterior": _gaussian(step.posterior),
+        "truth": _numbers(step.entry.truth),
+        **_judged(step, confidence),
+    }
+
+
+def _corrected(c: Correction) -> dict[str, Any]:
+    predicted = not np.isnan(c.predicted[0])
+    return {
+        "predicted_range": _number(c.predicted[0]),
+        "range_variance": _number(c.R[0, 0]),
+        "H": _numbers(c.H[0]) if predicted else None,
+        "innovation": _number(c.innovation[0]),
+        "innovation_variance": _number(c.S[0, 0]),
+        "gain": _numbers(c.K[:, 0]) if predicted else None,
+        "nis": _number(c.nis),
+        "updated": bool(c.refused == Refused.NOT),
+        "refused": Refused(int(c.refused)).word,
+    }
+
+
+def _sighted(sensor: Any, sighting: Sighting | None) -> dict[str, Any]:
+    if not isinstance(sensor, Laser) or sighting is None or sighting.wall < 0:
+        wall = None
+    else:
+        name, edge = sensor.walls.name(int(sighting.wall))
+        wall = {"name": name, "edge": edge}
+    return {
+        "wall": wall,
+        "incidence": None if sighting is None else _number(sighting.incidence),
+        "ambiguous": None if sighting is None else bool(sighting.ambiguous),
+    }
+
+
+def _judged(step: Step, confidence: float) -> dict[str, Any]:
+    drawn, measured = ellipse(step.posterior.covariance, confidence), step.nees
+    return {
+        "ellipse": {
+            "major": float(drawn.major),
+            "minor": float(drawn.minor),
+            "orientation": float(drawn.orientation),
+        },
+        "nees": None if measured is None else _number(measured.value),
+        "nees_dof": None if measured is None else int(measured.dof),
+        "impossible": None if measured is None else bool(measured.impossible),
+    }
+
+
+def _told(kind: str, command: dict[str, Any], step: Step) -> dict[str, Any]:
+    return {"type": kind, "index": step.entry.index, "command": command, "truth": _numbers(step.entry.truth)}
+
+
+def _gaussian(belief: Gaussian) -> dict[str, Any]:
+    return {"mean": belief.mean.tolist(), "covariance": belief.covariance.tolist()}
+
+
+def _number(value: Any) -> float | None:
+    number = float(value)
+    return number if math.isfinite(number) else None
+
+
+def _numbers(values: Array | None) -> Any:
+    return None if values is None else values.tolist()

@@ -1,0 +1,27 @@
+"""Which world, commands, seed and version made an output: every output says it."""
+
+from importlib.metadata import version
+
+from ekfsim.scene import Scene
+
+VERSION = version("ekfsim")
+
+
+def provenance(scene: Scene) -> dict[str, str | int | float | None]:
+    """All that another needs to make the same output again, by name."""
+    return {
+        "ekfsim": VERSION,
+        "world": scene.world_source,
+        "commands": scene.commands_source,
+        "filter": scene.filter,
+        "gate": scene.gate,
+        "guard": scene.guard,
+        "seed": scene.seed,
+        "run": scene.run,
+    }
+
+
+def told_in_a_line(scene: Scene) -> str:
+    """The same for a person."""
+    facts = (f"{name} {value}" for name, value in provenance(scene).items() if value is not None)
+    return ", ".join(facts)

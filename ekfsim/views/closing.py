@@ -1,0 +1,82 @@
+"""What is said when a run is over: what was done, how far off it ended, and one plain verdict with its evidence."""
+
+import math
+
+from ekfsim.consistency import BAND, LOST, Evidence, Verdict
+from ekfsim.filters.chi_square import quantile
+from ekfsim.records import Nees
+from ekfsim.summary import Errors, Summary
+from ekfsim.views.numbers import number, turn
+
+
+def conclude(summary: Summary) -> str:
+    """The closing lines, each ended by a newline."""
+    lines = [f"The run is over after {_count(summary.steps, 'command')}: {_readings(summary)}"]
+    if summary.position.n:
+        lines += [
+            f"Position error: {_metres(summary.position)}; by odometry alone {_metres(summary.reckoned_position)}",
+            f"Heading error: {_degrees(summary.heading)}; by odometry alone {_degrees(summary.reckoned_heading)}",
+        ]
+    return "".join(f"{line}\n" for line in [*lines, f"Verdict: {sentence(summary.evidence)}"])
+
+
+def sentence(evidence: Evidence) -> str:
+    """The verdict on one run and its evidence."""
+    verdict = evidence.verdict
+    match verdict:
+        case Verdict.LOST:
+            assert evidence.last_nees is not None
+            return f"{verdict.value} from step {evidence.lost_from} on: at the last step {_nees(evidence.last_nees)}"
+        case Verdict.NO_EVIDENCE:
+            return f"{verdict.value}: not one reading could be held against a prediction"
+        case Verdict.CONSISTENT:
+            return f"{verdict.value}: {_nis(evidence, 'within')}{_also(evidence)}"
+        case Verdict.OVER_CONFIDENT:
+            return f"{verdict.value}: {_nis(evidence, 'above')}: the filter trusts itself more than its readings allow"
+        case Verdict.OVER_CAUTIOUS:
+            return f"{verdict.value}: {_nis(evidence, 'below')}: the filter trusts itself less than it could"
+
+
+def _nis(evidence: Evidence, side: str) -> str:
+    low, high = evidence.nis_band
+    readings = "1 reading is" if evidence.nis_dof == 1 else f"{evidence.nis_dof} readings sums to"
+    return (
+        f"the NIS of {readings} {number(evidence.nis_sum)}, {side} the {100 * BAND:.0f} % band "
+        f"{number(low)} to {number(high)}"
+    )
+
+
+def _also(evidence: Evidence) -> str:
+    return "" if evidence.last_nees is None else f"; at the last step {_nees(evidence.last_nees)}"
+
+
+def _nees(measured: Nees) -> str:
+    if measured.impossible:
+        return "the belief is impossible: the error has a part where the covariance claims certainty"
+    dof = int(measured.dof)
+    bound = quantile(LOST, dof)
+    side = "beyond" if measured.value > bound else "below"
+    return (
+        f"NEES is {number(float(measured.value))}, {side} its {100 * LOST:.1f} % bound {number(bound)} "
+        f"({_count(dof, 'degree')} of freedom)"
+    )
+
+
+def _readings(summary: Summary) -> str:
+    refused = ", ".join(f"{n} {reason.word}" for reason, n in sorted(summary.refused.items()))
+    told = f"; {_count(sum(summary.refused.values()), 'reading')} not used ({refused})" if refused else ""
+    return f"{_count(summary.updates, 'update')}{told}"
+
+
+def _metres(errors: Errors) -> str:
+    assert errors.rmse is not None
+    return f"RMSE {number(errors.rmse)} m, at most {number(errors.largest)} m"
+
+
+def _degrees(errors: Errors) -> str:
+    assert errors.rmse is not None
+    return f"RMSE {turn(errors.rmse)} degrees, at most {turn(errors.largest)} degrees"
+
+
+def _count(n: int, thing: str) -> str:
+    return f"{n} {thing}" if n == 1 else f"{n} {thing}s"

@@ -1,0 +1,99 @@
+"""The interactive run: keys in, narrative and pictures out."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol, TextIO
+
+from ekfsim.scene import Scene
+from ekfsim.summary import Summary
+from ekfsim.views.closing import conclude
+from ekfsim.views.keyboard import HELP, Action, Counted, Key
+from ekfsim.views.narrative import narrate
+from ekfsim.views.playback import Playback, View
+
+
+class Screen(Protocol):
+    """Where the pictures of an interactive run are seen."""
+
+    def show(self, view: View) -> None:
+        """Draw this view in place of the last one."""
+
+
+@dataclass
+class Player:
+    """Steps through a run as keys are pressed. What it says goes to `out`, what it draws to `screen`."""
+
+    scene: Scene
+    playback: Playback
+    screen: Screen
+    save: Callable[[View], str]  # saves the picture of a view and says where
+    out: TextIO
+    probability: float
+    number: int = 0  # of the view on the screen
+    _told: int = -1  # the last view that was narrated
+    _summary: Summary = field(default_factory=Summary)
+
+    def play(self, next_key: Callable[[], Key]) -> None:
+        """From the first view until a key quits."""
+        self._tell(self._view(0))
+        self.screen.show(self._view(0))
+        counted = Counted()
+        while True:
+            pressed = counted.press(next_key())
+            if pressed is None:
+                continue
+            action, count = pressed
+            if action is Action.QUIT:
+                return
+            self.press(action, count)
+            self.out.flush()
+
+    def press(self, action: Action, count: int = 1) -> None:
+        """Do what one key asks for."""
+        match action:
+            case Action.NEXT:
+                self._forward(count)
+            case Action.BACK:
+                self._jump(max(self.number - count, 0))
+            case Action.RESTART:
+                self._jump(0)
+            case Action.SAVE:
+                self.out.write(f"{self.save(self._view(self.number))}\n")
+            case Action.HELP:
+                self.out.write(f"{HELP}\n")
+            case _:
+                self.out.write("That key does nothing here; ? shows those that do\n")
+
+    def _forward(self, count: int) -> None:
+        start = self.number
+        for _ in range(count):
+            view = self.playback.view(self.number + 1)
+            if view is None:
+                break
+            self.number = view.number
+            self._tell(view)
+        if self.number == start:
+            self.out.write("The run is over: q quits, p goes back, r starts again\n")
+        else:
+            self.screen.show(self._view(self.number))
+
+    def _jump(self, number: int) -> None:
+        """Go back: what was told stays told, the picture is the old one."""
+        self.number = number
+        self.out.write(f"<==Back at view {number}\n\n")
+        self.screen.show(self._view(number))
+
+    def _tell(self, view: View) -> None:
+        """The narrative of a view, and after the last one the closing summary."""
+        self.out.write(narrate(view, self.scene, self.probability))
+        if view.number > self._told:
+            self._told = view.number
+            if not view.beam:
+                self._summary.add(view.step)
+        if self.playback.view(view.number + 1) is None:
+            self.out.write(conclude(self._summary))
+
+    def _view(self, number: int) -> View:
+        view = self.playback.view(number)
+        assert view is not None
+        return view
