@@ -1,0 +1,299 @@
+"""One key at a time, from a terminal, a console window or a pipe.
+
+    with keys() as next_key:
+        while (key := next_key()) is not Action.QUIT:
+            ...
+
+The terminal hands over single keys without echo for the whole block, so that keys held down or typed ahead while a step
+is computed wait their turn. It is put back on every way out: end of block, exception, Ctrl-C, SIGTERM, Ctrl-Z.
+"""
+
+import math
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from enum import Enum
+from types import FrameType
+from typing import NoReturn, TextIO, overload
+
+
+class Action(Enum):
+    """What a key asks for."""
+
+    NEXT = "next"
+    BACK = "back"
+    QUIT = "quit"
+    RESTART = "restart"
+    SAVE = "save"
+    HELP = "help"
+    UNKNOWN = "unknown"
+
+
+Key = Action | int  # a digit is its number
+
+HELP = """\
+n  space  Enter  right  down  PageDown    next view
+p  Backspace  left  up  PageUp            previous view
+12n  12p                                  twelve of them
+r  restart      s  save the picture       ?  h  this help
+q  Esc  Ctrl-D  quit"""
+
+CHARACTERS: dict[str, Key] = {
+    **{str(digit): digit for digit in range(10)},
+    **dict.fromkeys("n \r\n", Action.NEXT),
+    **dict.fromkeys("p\b\x7f", Action.BACK),
+    **dict.fromkeys("q\x04", Action.QUIT),
+    **dict.fromkeys("?h", Action.HELP),
+    "r": Action.RESTART,
+    "s": Action.SAVE,
+}
+SEQUENCES: dict[str, Action] = {  # what follows "Esc [" or "Esc O", modifiers left out
+    **dict.fromkeys(["C", "B", "6~"], Action.NEXT),  # → ↓ PageDown
+    **dict.fromkeys(["D", "A", "5~"], Action.BACK),  # ← ↑ PageUp
+    **dict.fromkeys(["P", "[A", "11~"], Action.HELP),  # F1 of xterm, of the Linux console, of rxvt
+}
+ESCAPE_DELAY = 0.05  # s after which an Esc stands for itself; the bytes of one key arrive together
+CONTINUATIONS = {0b1100: 1, 0b1101: 1, 0b1110: 2, 0b1111: 3}  # of UTF-8, by the upper half of the first byte
+SIGNAL_DELAY = 0.2  # s; a signal that comes just before a wait begins is noticed when that wait ends
+MOST = 9999  # repetitions: more digits than that are a hand resting on the keyboard
+
+# Waits at most so many s (None: without end) → the next byte or bytes, b"" at the end, None where nothing came.
+Source = Callable[[float | None], bytes | None]
+
+
+class Counted:
+    """Digits before a key repeat it: 1, 2, n is twelve times `next`.
+
+    >>> counted = Counted()
+    >>> [counted.press(key) for key in (1, 2, Action.NEXT, Action.NEXT)]
+    [None, None, (<Action.NEXT: 'next'>, 12), (<Action.NEXT: 'next'>, 1)]
+    """
+
+    def __init__(self) -> None:
+        self.typed = 0  # the number so far, 0 where none was typed
+
+    def press(self, key: Key) -> tuple[Action, int] | None:
+        """The action and how often, or None while a number is being typed. Only next and back repeat."""
+        if not isinstance(key, Action):
+            self.typed = min(10 * self.typed + key, MOST)
+            return None
+        count, self.typed = max(self.typed, 1), 0
+        return key, count if key in (Action.NEXT, Action.BACK) else 1
+
+
+class Keyboard:
+    """Puts bytes together to keys. Holds back no more than the bytes of the key it is reading."""
+
+    def __init__(self, source: Source, skipped: str = "") -> None:
+        self._source = source
+        self._skipped = skipped  # characters that are no keys here
+        self._ahead = b""  # read, but not part of the last key
+
+    @overload
+    def __call__(self) -> Key: ...
+    @overload
+    def __call__(self, timeout: float | None) -> Key | None: ...
+    def __call__(self, timeout: float | None = None) -> Key | None:
+        """The next key, QUIT at the end of the input, or None where none was pressed for `timeout` s."""
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while True:
+            character = self._character(None if deadline is None else max(0.0, deadline - time.monotonic()))
+            if character is None:
+                return None
+            if character == "":
+                return Action.QUIT
+            if character == "\x1b":
+                return self._sequence()
+            if character not in self._skipped:
+                return CHARACTERS.get(character.lower(), Action.UNKNOWN)
+
+    def _byte(self, timeout: float | None) -> bytes | None:
+        """The next byte, b"" at the end, None where it does not come in time."""
+        if not self._ahead:
+            arrived = self._source(timeout)
+            if not arrived:
+                return arrived
+            self._ahead = arrived
+        byte, self._ahead = self._ahead[:1], self._ahead[1:]
+        return byte
+
+    def _character(self, timeout: float | None) -> str | None:
+        """The next character of UTF-8, however many bytes it has; U+FFFD for bytes that are none."""
+        read = self._byte(timeout)
+        if not read:
+            return None if read is None else ""
+        for _ in range(CONTINUATIONS.get(read[0] >> 4, 0)):
+            following = self._byte(ESCAPE_DELAY)
+            if not following or following[0] >> 6 != 0b10:  # not its continuation: a key of its own
+                self._ahead = (following or b"") + self._ahead
+                break
+            read += following
+        return read.decode(errors="replace")
+
+    def _sequence(self) -> Action:
+        """What an Esc just read stands for: itself, or the beginning of the sequence that a special key sends.
+
+        Before any other character it is itself: an Esc typed ahead must quit, even if Alt and a letter then do so too.
+        """
+        following = self._byte(ESCAPE_DELAY) or b""
+        if following in (b"[", b"O"):
+            return SEQUENCES.get(self._parameters(), Action.UNKNOWN)
+        if following and following in b"]P_^X":  # a terminal's late answer to a question of some other program
+            while (byte := self._byte(ESCAPE_DELAY)) and byte not in b"\a\\":
+                pass
+            return Action.UNKNOWN
+        self._ahead = following + self._ahead
+        return Action.QUIT
+
+    def _parameters(self) -> str:
+        """The rest of a sequence to its final byte, without modifiers: "C" for "1;5C", "5~" for "5;2~"."""
+        read = ""
+        while byte := self._byte(ESCAPE_DELAY):
+            if not b" " <= byte <= b"~":  # no part of any sequence: a key of its own
+                self._ahead = byte + self._ahead
+                return ""
+            read += byte.decode()
+            if byte >= b"@" and read != "[":  # the Linux console sends F1 as Esc [ [ A
+                break
+        final = read[-1:]
+        if final == "~":
+            return read.rstrip("~").split(";")[0] + "~"
+        return read if read.startswith("[") else final
+
+
+@contextmanager
+def keys(stream: TextIO | None = None) -> Iterator[Keyboard]:
+    """Single keys from a stream, standard input where none is given. Not a terminal: its characters, less line ends."""
+    stream = stream or sys.stdin
+    if stream is None or stream.closed:  # some start a program without standard input
+        yield Keyboard(lambda timeout: b"")
+    elif not stream.isatty():
+        yield Keyboard(_piped(stream), skipped="\r\n")
+    else:
+        with _terminal(stream) as source:
+            yield Keyboard(source)
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    CODES = {"H": "A", "P": "B", "M": "C", "K": "D", "I": "5~", "Q": "6~", ";": "11~"}  # as a terminal has them
+
+    def _piped(stream: TextIO) -> Source:
+        """Windows cannot wait for a pipe, so a timeout counts for nothing here."""
+        return lambda timeout: stream.read(1).encode()
+
+    @contextmanager
+    def _terminal(stream: TextIO) -> Iterator[Source]:
+        """The console hands over single keys anyhow."""
+
+        def source(timeout: float | None) -> bytes | None:
+            deadline = None if timeout is None else time.monotonic() + timeout
+            while deadline is not None and not msvcrt.kbhit():
+                if time.monotonic() >= deadline:
+                    return None
+                time.sleep(0.01)
+            character = msvcrt.getwch()
+            if character in "\x00\xe0":
+                return b"\x1b[" + CODES.get(msvcrt.getwch(), "?~").encode()
+            if character == "\x03":
+                raise KeyboardInterrupt
+            return b"\x04" if character == "\x1a" else character.encode(errors="replace")
+
+        yield source
+
+else:
+    import select
+    import termios
+    import tty
+
+    def _piped(stream: TextIO) -> Source:
+        """A pipe or file by its descriptor; where there is none (a stream made of text), by its characters."""
+        try:
+            return _descriptor(stream.fileno())
+        except OSError:
+            return lambda timeout: stream.read(1).encode()
+
+    def _descriptor(fd: int) -> Source:
+        """One byte at a time past all buffers: what is not used stays for the next reader."""
+
+        def source(timeout: float | None) -> bytes | None:
+            deadline = math.inf if timeout is None else time.monotonic() + timeout
+            while True:
+                wait = min(max(0.0, deadline - time.monotonic()), SIGNAL_DELAY)
+                if not select.select([fd], [], [], wait)[0]:
+                    if time.monotonic() >= deadline:
+                        return None
+                    continue
+                try:
+                    return os.read(fd, 1)
+                except BlockingIOError:  # someone else was quicker
+                    continue
+                except OSError:  # the terminal is gone, or is no longer ours
+                    return b""
+
+        return source
+
+    @contextmanager
+    def _terminal(stream: TextIO) -> Iterator[Source]:
+        """Single keys without echo (cbreak: Ctrl-C and Ctrl-Z still signal) until the block ends."""
+        fd = stream.fileno()
+        original: list[list[int | list[bytes | int]]] = []  # the terminal's own settings, once they were changed
+
+        def enter(*_: object) -> None:
+            if _in_foreground(fd):  # from the background it would stop us; `fg` brings us here again
+                with suppress(termios.error):  # the terminal is gone
+                    if not original:
+                        original.append(termios.tcgetattr(fd))
+                    tty.setcbreak(fd, termios.TCSADRAIN)  # DRAIN, not FLUSH: keeps what was typed ahead
+
+        def leave() -> None:
+            if original and _in_foreground(fd):
+                with suppress(termios.error):
+                    termios.tcsetattr(fd, termios.TCSADRAIN, original[0])
+
+        def suspend(*_: object) -> None:
+            leave()
+            signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+            os.kill(os.getpid(), signal.SIGTSTP)  # stops here, until `fg` or `bg`
+            signal.signal(signal.SIGTSTP, suspend)
+            enter()
+
+        endings = dict.fromkeys((signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT), _end)
+        with _handling({signal.SIGCONT: enter, signal.SIGTSTP: suspend, **endings}):
+            try:
+                enter()
+                yield _descriptor(fd)
+            finally:
+                leave()
+
+    def _in_foreground(fd: int) -> bool:
+        """Whether the terminal listens to us; one that controls no jobs listens to everybody."""
+        try:
+            return os.tcgetpgrp(fd) == os.getpgrp()
+        except OSError:
+            return True
+
+    Handler = Callable[[int, FrameType | None], object]
+
+    @contextmanager
+    def _handling(handlers: Mapping[signal.Signals, Handler]) -> Iterator[None]:
+        """Signal handlers for a block; Python allows them on the main thread only. What is ignored stays ignored."""
+        previous = {}
+        if threading.current_thread() is threading.main_thread():
+            for number, handler in handlers.items():
+                if signal.getsignal(number) is not signal.SIG_IGN:
+                    previous[number] = signal.signal(number, handler)
+        try:
+            yield
+        finally:
+            for number, before in previous.items():
+                signal.signal(number, before if before is not None else signal.SIG_DFL)
+
+    def _end(number: int, _: FrameType | None) -> NoReturn:
+        """Leave by an exception, so that every `finally` on the way is kept."""
+        raise SystemExit(128 + number)
