@@ -1,37 +1,22 @@
-"""Where a beam meets the first wall.
+"""The walls of a map: which polygon each belongs to, and which of them a beam meets first.
 
-A wall is a straight edge of a polygon, from a to b; a beam leaves the origin o in the unit direction d. Seen from the
-beam, a point v lies `along` = (v − o)·d ahead and `across` = (v − o)×d to the right. A wall whose ends lie on different
-sides is crossed, and the crossing is the mean of the ends' `along`, weighted with the distances across:
-
-    r = (along_a across_b − along_b across_a) / (across_b − across_a)
-
-What rounding must not decide is decided within `reach`, a few units in the last place of the coordinates:
-
-- A beam that passes within reach of a wall's end hits that end. Two edges that share a corner get the same numbers for
-  it, so nothing slips between them.
-- A beam along a wall hits its nearer end.
-- A beam that starts within reach of a wall has range 0, whatever its direction.
-- Of several walls at the same range (within `tie`), the one with the lowest index is hit.
-
-A wall is hit from either side, so a beam that starts inside an obstacle, or outside the boundary, meets the first edge
-on its way.
+A wall is met from either side: a beam that starts inside an obstacle, or outside the boundary, meets the first edge on
+its way, whosesoever it is. What a beam through a corner, along a wall or from a wall meets is told in grid.py.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property, partial
+from math import cos, isfinite, nan, sin
 from typing import Self
 
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
+from ekfsim.geometry.grid import CHUNK, REACH, TIE, Grid, meet, see
 
-REACH = 16 * float(
-    np.finfo(float).eps
-)  # of the largest coordinate: what an aimed beam misses its mark by, and to spare
-TIE = 1e-12  # of the largest coordinate: ranges that differ by less are equal
 COLLINEAR = 1e-9  # rad, and of the polygon's size: edges that differ by less lie on one line
-CHUNK = 1 << 18  # beams × walls that brute force holds in memory at a time
+FEW = 128  # beams that are sooner followed one by one than all at once
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,17 +64,45 @@ class Walls:
 
     def cast(self, origin: Array, heading: Array) -> Hit:
         """Follow beams to their first walls. origin : (…, 2) m; heading : (…) rad; broadcast together."""
+        if origin.ndim == 1 and np.ndim(heading) == 0:
+            r, wall = self.first(float(origin[0]), float(origin[1]), float(heading))
+            return Hit(np.array(r), np.array(wall))
         x, y, heading = np.broadcast_arrays(origin[..., 0], origin[..., 1], heading)
-        shape = heading.shape
-        distance, wall = brute_force(
-            self.segments, x.ravel(), y.ravel(), np.cos(heading).ravel(), np.sin(heading).ravel()
-        )
-        return Hit(distance.reshape(shape), wall.reshape(shape))
+        if heading.size > FEW:
+            ranges, walls = self._all(x.ravel(), y.ravel(), heading.ravel())
+        else:
+            hits = [self.first(*beam) for beam in zip(*(v.ravel().tolist() for v in (x, y, heading)), strict=True)]
+            ranges, walls = np.array([r for r, _ in hits]), np.array([wall for _, wall in hits], np.int64)
+        return Hit(ranges.reshape(heading.shape), walls.reshape(heading.shape))
 
     def first(self, x: float, y: float, heading: float) -> tuple[float, int]:
         """Range and wall of one beam from (x, y) m towards `heading` rad; nan and -1 where it meets none."""
-        hit = self.cast(np.array([x, y]), np.array(heading))
-        return float(hit.range), int(hit.wall)
+        grid = self.grid
+        if grid is None or not isfinite(x + y + heading):
+            return nan, -1
+        if abs(x) + abs(y) < grid.horizon:
+            return grid.walk(x, y, cos(heading), sin(heading))
+        r, wall = brute_force(self.segments, *np.array([[x], [y], [cos(heading)], [sin(heading)]]))
+        return float(r[0]), int(wall[0])
+
+    def _all(self, x: Array, y: Array, heading: Array) -> tuple[Array, Integers]:
+        """`first` of many beams, all (n,)."""
+        ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
+        if self.grid is not None:
+            finite = np.isfinite(x + y + heading)
+            near = np.abs(x) + np.abs(y) < self.grid.horizon
+            for some, find in (
+                (finite & near, self.grid.march),
+                (finite & ~near, partial(brute_force, self.segments)),
+            ):
+                angle = heading[some]
+                ranges[some], walls[some] = find(x[some], y[some], np.cos(angle), np.sin(angle))
+        return ranges, walls
+
+    @cached_property
+    def grid(self) -> Grid | None:
+        """What makes a cast fast, built at the first one; None where there is no wall."""
+        return Grid.over(self.segments) if len(self.segments) else None
 
 
 def brute_force(segments: Array, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
@@ -100,40 +113,14 @@ def brute_force(segments: Array, x: Array, y: Array, dx: Array, dy: Array) -> tu
     for start in range(0, len(x) if len(segments) else 0, step):
         part = slice(start, start + step)
         span = size + np.abs(x[part]) + np.abs(y[part])
-        beams = [v[part, None] for v in (x, y, dx, dy)]
-        each = meet(segments, *beams, REACH * span[:, None])
+        seen = see(segments, x[part, None], y[part, None], dx[part, None], dy[part, None])
+        each = meet(seen, REACH * span[:, None])
         nearest = each.min(-1)
         lowest = (each <= (nearest + TIE * span)[:, None]).argmax(-1)
         met = nearest < np.inf
         ranges[part] = np.where(met, nearest, np.nan)
         walls[part] = np.where(met, lowest, -1)
     return ranges, walls
-
-
-def meet(segments: Array, x: Array, y: Array, dx: Array, dy: Array, reach: Array) -> Array:
-    """The range at which each beam meets each wall, inf where it does not; see the top of this file.
-
-    segments : (…, 2, 2) m; the beams' origin and unit direction, and reach in m, broadcast with its leading axes.
-    """
-    ax, ay, bx, by = segments[..., 0, 0] - x, segments[..., 0, 1] - y, segments[..., 1, 0] - x, segments[..., 1, 1] - y
-    along_a, across_a = ax * dx + ay * dy, ax * dy - ay * dx
-    along_b, across_b = bx * dx + by * dy, bx * dy - by * dx
-    at_a, at_b = np.abs(across_a) <= reach, np.abs(across_b) <= reach
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        crossing = (along_a * across_b - along_b * across_a) / (across_b - across_a)
-    r = np.where((across_a < 0) != (across_b < 0), crossing, np.inf)
-    r = np.where(at_b, along_b, r)
-    r = np.where(at_a, np.where(at_b, np.minimum(along_a, along_b), along_a), r)
-    r = np.where(_distance(along_a, across_a, along_b, across_b) <= reach, 0.0, r)
-    return np.where(r >= 0, r, np.inf)
-
-
-def _distance(ax: Array, ay: Array, bx: Array, by: Array) -> Array:
-    """How far the segments from a to b are from the origin of coordinates, in m."""
-    ex, ey = bx - ax, by - ay
-    with np.errstate(divide="ignore", invalid="ignore"):
-        foot = np.clip(-(ax * ex + ay * ey) / (ex * ex + ey * ey), 0, 1)
-    return np.hypot(ax + foot * ex, ay + foot * ey)
 
 
 def _edges(points: Array) -> Array:

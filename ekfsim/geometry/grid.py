@@ -1,0 +1,299 @@
+"""Where a beam meets its first wall: what that means, and how to find it fast.
+
+A wall is a straight line from a to b; a beam leaves its origin o in the unit direction d. Seen from the beam, a point v
+lies `along` = (v − o)·d ahead and `across` = (v − o)×d to the right. A wall whose ends lie on different sides is
+crossed, and the crossing is the mean of the ends' `along`, each weighted with the other's distance across:
+
+    r = (along_a across_b − along_b across_a) / (across_b − across_a)
+
+What rounding must not decide is decided within `reach`, some units in the last place of the coordinates:
+
+- A beam that passes within reach of a wall's end hits that end. Edges that share a corner get the same numbers for
+  it, so nothing slips between them.
+- A beam along a wall hits its nearer end.
+- A beam that starts within reach of a wall has range 0, whatever its direction.
+- Of several walls at the same range (within `tie`), the one with the lowest index is hit.
+
+`meet` says all this in full. `Grid` finds the first wall without trying each: a cell lists the walls that cross it, and
+a beam looks only into the cells on its way (Amanatides & Woo, A Fast Voxel Traversal Algorithm, 1987).
+"""
+
+from dataclasses import dataclass
+from math import hypot, inf, nan
+from typing import Self
+
+import numpy as np
+
+from ekfsim.geometry import Array, Booleans, Integers
+
+REACH = 16 * float(np.finfo(float).eps)  # of the coordinates' size: what an aimed beam misses its mark by, and to spare
+TIE = 1e-12  # of the coordinates' size: ranges that differ by less are equal
+PAD = 1 / 64  # of a cell: a wall is listed in the cells it passes as near as this, so rounding on the way is harmless
+CHUNK = 1 << 18  # beams × walls that are held in memory at a time
+
+Wall = tuple[float, float, float, float, int]  # its ends' x, y, x, y in m, and its index
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Square cells over all walls, about as many as there are walls, and round them a border that ends every walk.
+
+    Cell (i, j) covers x = left + [i, i + 1) cell, y = bottom + [j, j + 1) cell and has the number i · rows + j.
+    """
+
+    segments: Array  # (W, 2, 2) m: the ends of each wall
+    size: float  # m, the largest coordinate of any wall
+    horizon: float  # m: as long as |x| + |y| is less, rounding is small against a cell, and the walls are found
+    left: float  # m
+    bottom: float  # m
+    cell: float  # m
+    columns: int
+    rows: int
+    start: Integers  # (cells + 1,): cell c lists walls[start[c] : start[c + 1]]
+    walls: Integers  # (listed,) indices of walls, cell after cell
+    border: Booleans  # (cells,)
+    lists: list[list[Wall] | None]  # the same for a single beam: each cell's walls, None for the border
+
+    @classmethod
+    def over(cls, segments: Array) -> Self:
+        """Lay the cells so that even walls that all cross the whole map are listed some 16 times each at most."""
+        count, extent = len(segments), np.ptp(segments, axis=(0, 1))
+        lengths = np.abs(segments[:, 1] - segments[:, 0]).sum()
+        cell = float(max(np.sqrt(extent.prod() / count), extent.max() / count, lengths / (16 * count + 4096)))
+        left, bottom = segments.min((0, 1)) - (1 + 2 * PAD) * cell
+        columns, rows = (int(n) for n in extent // cell + 4)  # 2 for border, 2 for what is over and the pads
+
+        wall, at = crossed((segments - [left, bottom]) / cell, columns, rows)
+        order = np.argsort(at, kind="stable")
+        start = np.concatenate([[0], np.cumsum(np.bincount(at, minlength=columns * rows))])
+        border = np.pad(np.zeros((columns - 2, rows - 2), bool), 1, constant_values=True).ravel()
+
+        tuples = list(zip(*segments.reshape(-1, 4).T.tolist(), range(count), strict=True))
+        listed = [tuples[k] for k in wall[order].tolist()]
+        bounds = start.tolist()
+        lists = [
+            None if outside else listed[a:b]
+            for outside, a, b in zip(border.tolist(), bounds[:-1], bounds[1:], strict=True)
+        ]
+        size = float(np.abs(segments).max())
+        horizon = PAD / 64 * cell / TIE - size
+        place = horizon, float(left), float(bottom), cell, columns, rows
+        return cls(segments, size, *place, start, wall[order], border, lists)
+
+    def walk(self, x: float, y: float, dx: float, dy: float) -> tuple[float, int]:
+        """Range and wall of one beam, from cell to cell in plain floats; nan and -1 where it meets none."""
+        span = self.size + abs(x) + abs(y)
+        tie, doubt = TIE * span, 4 * REACH * span * span
+        cell, rows = self.cell, self.rows
+        u, v = (x - self.left) / cell, (y - self.bottom) / cell
+        i, j = int(u), int(v)
+        if not (0 < i < self.columns - 1 and 0 < j < rows - 1):
+            entry = _entry(u, v, dx, dy, self.columns, rows)
+            if entry is None:
+                return nan, -1
+            i, j = entry
+        x_step, x_exit, x_cell = _way(u, i, dx, cell, rows)
+        y_step, y_exit, y_cell = _way(v, j, dy, cell, 1)
+
+        at, lists = i * rows + j, self.lists
+        best, limit = inf, inf
+        found: list[tuple[float, int]] = []
+        while (listed := lists[at]) is not None:
+            for ax, ay, bx, by, wall in listed:
+                ax -= x
+                ay -= y
+                bx -= x
+                by -= y
+                across_a = ax * dy - ay * dx
+                across_b = bx * dy - by * dx
+                sides = across_a * across_b
+                if sides > doubt:
+                    continue  # both ends on one side
+                along_a, along_b = ax * dx + ay * dy, bx * dx + by * dy
+                area = along_a * across_b - along_b * across_a
+                if sides < -doubt and not -doubt <= area <= doubt:
+                    r = area / (across_b - across_a)
+                else:
+                    r = _meet(along_a, across_a, along_b, across_b, REACH * span)
+                if not 0 <= r <= limit:
+                    continue
+                if r < best - tie:
+                    found = []
+                found.append((r, wall))
+                if r < best:
+                    best, limit = r, r + tie
+            if x_exit < y_exit:
+                if limit < x_exit:
+                    break
+                at += x_step
+                x_exit += x_cell
+            else:
+                if limit < y_exit:
+                    break
+                at += y_step
+                y_exit += y_cell
+        if len(found) < 2:
+            return found[0] if found else (nan, -1)
+        return best, min(wall for r, wall in found if r <= limit)
+
+    def march(self, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
+        """Ranges and walls of many beams, all (n,): every beam steps into its next cell at once."""
+        ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
+        listed = int(np.diff(self.start).max())
+        step = max(16, min(4096, CHUNK // listed))
+        for first in range(0, len(x), step):
+            part = slice(first, first + step)
+            ranges[part], walls[part] = self._march(x[part], y[part], dx[part], dy[part])
+        return ranges, walls
+
+    def _march(self, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
+        cell, rows = self.cell, self.rows
+        span = self.size + np.abs(x) + np.abs(y)
+        reach, tie = REACH * span, TIE * span
+        u, v = (x - self.left) / cell, (y - self.bottom) / cell
+        beam, i, j = _entries(u, v, dx, dy, self.columns, rows)
+        x_step, x_exit, x_cell = _ways(u[beam], i, dx[beam], cell, rows)
+        y_step, y_exit, y_cell = _ways(v[beam], j, dy[beam], cell, 1)
+
+        at = i * rows + j
+        best = np.full(len(x), np.inf)
+        found = [(beam[:0], beam[:0], best[:0])]
+        while len(beam):
+            which, wall = self._listed(at)
+            which = beam[which]
+            seen = see(self.segments[wall], x[which], y[which], dx[which], dy[which])
+            maybe = np.flatnonzero(seen[1] * seen[3] <= 4 * (reach * span)[which])  # not both ends on one side
+            which, wall = which[maybe], wall[maybe]
+            r = meet(seen[:, maybe], reach[which])
+            met = (r < np.inf) & (r <= (best + tie)[which])
+            found.append((which[met], wall[met], r[met]))
+            np.minimum.at(best, which[met], r[met])
+
+            east = x_exit < y_exit
+            leaving = np.where(east, x_exit, y_exit)
+            at = at + np.where(east, x_step, y_step)
+            x_exit = np.where(east, x_exit + x_cell, x_exit)
+            y_exit = np.where(east, y_exit, y_exit + y_cell)
+            on = ((best + tie)[beam] >= leaving) & ~self.border[at]
+            beam, at, x_step, x_exit, x_cell, y_step, y_exit, y_cell = (
+                each[on] for each in (beam, at, x_step, x_exit, x_cell, y_step, y_exit, y_cell)
+            )
+        which, wall, r = (np.concatenate(each) for each in zip(*found, strict=True))
+        equal = r <= (best + tie)[which]
+        nearest = np.full(len(x), len(self.segments))
+        np.minimum.at(nearest, which[equal], wall[equal])
+        met = best < np.inf
+        return np.where(met, best, np.nan), np.where(met, nearest, -1)
+
+    def _listed(self, at: Integers) -> tuple[Integers, Integers]:
+        """All pairs of a place in `at` and a wall that its cell lists."""
+        begin, counts = self.start[at], self.start[at + 1] - self.start[at]
+        which, nth = spread(counts)
+        return which, self.walls[begin[which] + nth]
+
+
+def crossed(segments: Array, columns: int, rows: int) -> tuple[Integers, Integers]:
+    """All pairs of a segment and a cell that it crosses or passes within PAD; segments (n, 2, 2) in units of cells.
+
+    Each segment is cut into its columns, and what lies in one column runs through neighbouring rows.
+    """
+    eastward = segments[:, 0, 0] <= segments[:, 1, 0]
+    ax, ay, bx, by = np.where(eastward[:, None, None], segments, segments[:, ::-1]).reshape(-1, 4).T
+    low = np.floor(ax - PAD).astype(np.int64)
+    wall, nth = spread(np.floor(bx + PAD).astype(np.int64) - low + 1)
+    column = low[wall] + nth
+
+    ax, ay, bx, by = ax[wall], ay[wall], bx[wall], by[wall]
+    enter, leave = np.maximum(ax, column - PAD), np.minimum(bx, column + 1 + PAD)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = np.where(bx > ax, (by - ay) / (bx - ax), 0.0)
+        y = np.stack([ay + slope * (enter - ax), by + slope * (leave - bx)])
+    y = np.where(bx > ax, np.clip(y, np.minimum(ay, by), np.maximum(ay, by)), [ay, by])
+    low = np.floor(y.min(0) - PAD).astype(np.int64)
+    part, nth = spread(np.floor(y.max(0) + PAD).astype(np.int64) - low + 1)
+    column, row = np.clip(column[part], 1, columns - 2), np.clip(low[part] + nth, 1, rows - 2)
+    return wall[part], column * rows + row
+
+
+def spread(counts: Integers) -> tuple[Integers, Integers]:
+    """Counts (2, 0, 3) give owners (0, 0, 2, 2, 2) and numbers (0, 1, 0, 1, 2)."""
+    owner = np.repeat(np.arange(len(counts)), counts)
+    return owner, np.arange(len(owner)) - (np.cumsum(counts) - counts)[owner]
+
+
+def see(segments: Array, x: Array, y: Array, dx: Array, dy: Array) -> Array:
+    """Walls as beams see them: along and across of the first end, then of the second, (4, …) m.
+
+    segments : (…, 2, 2) m, broadcast with the beams' origin (x, y) in m and unit direction (dx, dy).
+    """
+    ax, ay, bx, by = segments[..., 0, 0] - x, segments[..., 0, 1] - y, segments[..., 1, 0] - x, segments[..., 1, 1] - y
+    return np.stack([ax * dx + ay * dy, ax * dy - ay * dx, bx * dx + by * dy, bx * dy - by * dx])
+
+
+def meet(seen: Array, reach: Array) -> Array:
+    """(…): the range in m at which beams meet the walls that they `see`, inf where not; told at the top."""
+    along_a, across_a, along_b, across_b = seen
+    at_a, at_b = np.abs(across_a) <= reach, np.abs(across_b) <= reach
+    ahead, aside = along_b - along_a, across_b - across_a
+    square = ahead * ahead + aside * aside
+    foot = np.clip(-(along_a * ahead + across_a * aside) / np.where(square, square, 1), 0, 1)  # nearest to the origin
+    distance = np.hypot(along_a + foot * ahead, across_a + foot * aside)
+    crossing = (along_a * across_b - along_b * across_a) / np.where(aside, aside, 1)
+    r = np.where((across_a < 0) != (across_b < 0), crossing, np.inf)
+    r = np.where(at_b, along_b, r)
+    r = np.where(at_a, np.where(at_b, np.minimum(along_a, along_b), along_a), r)
+    r = np.where(distance <= reach, 0.0, r)
+    return np.where(r >= 0, r, np.inf)
+
+
+def _meet(along_a: float, across_a: float, along_b: float, across_b: float, reach: float) -> float:
+    """`meet` of one beam and one wall; less than 0 or nan where they do not."""
+    ahead, aside = along_b - along_a, across_b - across_a
+    square = ahead * ahead + aside * aside or 1.0
+    foot = min(max(-(along_a * ahead + across_a * aside) / square, 0.0), 1.0)
+    if hypot(along_a + foot * ahead, across_a + foot * aside) <= reach:
+        return 0.0
+    if abs(across_a) <= reach or abs(across_b) <= reach:
+        return min(along for along, across in ((along_a, across_a), (along_b, across_b)) if abs(across) <= reach)
+    return (along_a * across_b - along_b * across_a) / aside if (across_a < 0) != (across_b < 0) else nan
+
+
+def _way(u: float, i: int, d: float, cell: float, stride: int) -> tuple[int, float, float]:
+    """One axis of a walk: the step to the next cell's number, the range at which it is due, and that to one more."""
+    if d > 0:
+        return stride, (i + 1 - u) * cell / d, cell / d
+    if d < 0:
+        return -stride, (i - u) * cell / d, -cell / d
+    return 0, inf, inf
+
+
+def _ways(u: Array, i: Integers, d: Array, cell: float, stride: int) -> tuple[Integers, Array, Array]:
+    """`_way` of many beams."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        due = np.where(d == 0, np.inf, (i + (d > 0) - u) * cell / d)
+        return np.where(d > 0, stride, -stride), due, np.abs(cell / d)
+
+
+def _entry(u: float, v: float, dx: float, dy: float, columns: int, rows: int) -> tuple[int, int] | None:
+    """The first cell inside the border on the way of a beam that starts outside, at (u, v) in units of cells."""
+    enter, leave = 0.0, inf
+    for place, d, count in ((u, dx, columns), (v, dy, rows)):
+        if d:
+            first, last = (1 - place) / d, (count - 1 - place) / d
+            enter, leave = max(enter, min(first, last)), min(leave, max(first, last))
+        elif not 1 <= place <= count - 1:
+            return None
+    i, j = min(max(int(u + enter * dx), 1), columns - 2), min(max(int(v + enter * dy), 1), rows - 2)
+    return (i, j) if enter <= leave else None
+
+
+def _entries(u: Array, v: Array, dx: Array, dy: Array, columns: int, rows: int) -> tuple[Integers, Integers, Integers]:
+    """Which beams come into the cells inside the border, and by which cell (column, row) each."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        to_x = np.sort([(1 - u) / dx, (columns - 1 - u) / dx], axis=0)  # where dx is 0: -inf and inf inside, nan or
+        to_y = np.sort([(1 - v) / dy, (rows - 1 - v) / dy], axis=0)  # both alike outside
+        enter = np.maximum(np.maximum(to_x[0], to_y[0]), 0.0)
+        beam = np.flatnonzero(enter <= np.minimum(to_x[1], to_y[1]))
+    u, v = u[beam] + enter[beam] * dx[beam], v[beam] + enter[beam] * dy[beam]
+    i = np.clip(u.astype(np.int64), 1, columns - 2)
+    return beam, i, np.clip(v.astype(np.int64), 1, rows - 2)
