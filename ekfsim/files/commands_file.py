@@ -53,7 +53,9 @@ class RepeatKeys(Strict):
 class CommandKeys(Strict):
     """One command: exactly one of move, sense, repeat, kidnap, say."""
 
-    model_config = ConfigDict(title="a command", json_schema_extra={"minProperties": 1, "maxProperties": 1})
+    model_config = ConfigDict(
+        title="a command", json_schema_extra={"minProperties": 1, "maxProperties": 1, "examples": [{"move": MOVE}]}
+    )
 
     move: MoveKeys | None = Field(None, description="Drive straight ahead, then turn in place.", examples=[MOVE])
     sense: SenseKeys | None = Field(None, description="Measure the range to the first wall.", examples=[{"angle": 90}])

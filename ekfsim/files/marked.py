@@ -269,10 +269,10 @@ class Tree:
 
     def give_up(self, mark: Mark, wrong: str, right: str) -> None:
         """Raises InputError with every mistake so far."""
-        self.refuse(mark, wrong, right)
-        raise InputError(self.mistakes)
+        raise InputError([*self.mistakes, Mistake(Place(self.file, *mark), "", wrong, right)])
 
 
 def mark_of(event: yaml.Event) -> Mark:
     """Where an event begins."""
-    return event.start_mark.line + 1, event.start_mark.column + 1
+    mark = event.start_mark
+    return (mark.line + 1, mark.column + 1) if mark else (1, 1)

@@ -9,7 +9,7 @@ CLOSE = "close each bracket, and separate values with ','"
 
 # What the parser says of a text → what is wrong, and what would be right.
 WORDS = {
-    "tab character that violates indentation": ("a tab stands in the indentation", SPACES),
+    "found a tab": ("a tab stands in the indentation", SPACES),
     "mapping values are not allowed": (
         "a ':' stands where no key can begin",
         "put text that holds ': ' in quotes, and indent all keys of one mapping alike",
@@ -39,6 +39,10 @@ WORDS = {
     "<document start>": ("this stands behind the end of the document", "indent it, or delete it"),
     "undefined tag handle": ("tags ('!name!') are not read", "write the value without it"),
     "incompatible YAML document": ("the file asks for another version of YAML", "delete the line '%YAML'"),
+    "expected alphabetic or numeric character": (
+        "a '*' or '&' stands without a name",
+        "put text that begins with one in quotes",
+    ),
     "node content": ("a value is missing before this", "write it"),
 }
 
@@ -58,7 +62,7 @@ def words_for(problem: str, char: str) -> tuple[str, str]:
     """What is wrong and what would be right; `char` is the character that the parser stopped at."""
     if "cannot start any token" in problem:
         if char == "\t":
-            return WORDS["tab character that violates indentation"]
+            return WORDS["found a tab"]
         shown = char.replace("{", "{{").replace("}", "}}")
         return f"a value cannot begin with '{shown}'", "put it in quotes"
     for part, words in WORDS.items():

@@ -22,17 +22,24 @@ NOUNS = {
 
 
 def tell(error: ValidationError, kind: Kind, root: Node, file: str) -> list[Mistake]:
-    """Every mistake that a model found, each at its place; none where a mistake was already told."""
-    found = (tell_one(detail, kind, root, file) for detail in error.errors(include_url=False))
-    return [mistake for mistake in found if mistake is not None]
+    """Every mistake that a model found, each at its place.
+
+    Nothing more is told of a value that a mistake was told of already, nor of a missing key that was only misspelt.
+    """
+    details = error.errors(include_url=False)
+    unknown = [detail["loc"] for detail in details if detail["type"] == "extra_forbidden"]
+    misspelt = {(*path[:-1], meant(str(path[-1]), kind, path[:-1])) for path in unknown}
+    return [
+        tell_one(detail, kind, root, file)
+        for detail in details
+        if not root.nearest(detail["loc"]).faulty and not (detail["type"] == "missing" and detail["loc"] in misspelt)
+    ]
 
 
-def tell_one(detail: ErrorDetails, kind: Kind, root: Node, file: str) -> Mistake | None:
-    """One mistake, or None where one was told of that value already."""
+def tell_one(detail: ErrorDetails, kind: Kind, root: Node, file: str) -> Mistake:
+    """One mistake."""
     path: Path = detail["loc"]
     node, schema = root.nearest(path), schema_at(kind, path)
-    if node.faulty:
-        return None
     mark = node.mark
     match detail["type"]:
         case "missing":
@@ -63,28 +70,38 @@ def at(file: str, mark: Mark, path: Path, wrong: str, right: str) -> Mistake:
 def unknown_key(key: str, mapping: Node, kind: Kind, path: Path) -> tuple[str, str]:
     """A key that nothing reads."""
     schema = schema_at(kind, path)
-    known = list(schema.get("properties", {}))
-    command = schema.get("title") == "a command"
-    wrong = f"{quoted(key)} is not a command" if command else f"unknown key {quoted(key)}"
+    is_command = schema.get("title") == "a command"
+    wrong = f"{quoted(key)} is not a command" if is_command else f"unknown key {quoted(key)}"
     for other in mapping.keys:
         if key in schema_at(kind, (*path, other)).get("properties", {}):
             return wrong, f"indent it further than '{other}' to put it under it"
-    name, colon, value = key.partition(":")
-    if colon and name in known:
-        return wrong, f"write a space after the colon: '{name}: {value}'"
-    if near := nearest(key, known):
-        return wrong, f"did you mean '{near}'?"
-    return wrong, f"known {'commands' if command else 'keys'} here: {', '.join(known)}"
+    if known := meant(key, kind, path):
+        name, colon, value = key.partition(":")
+        spaced_out = f"write a space after the colon: '{known}: {short(value)}'"
+        return wrong, spaced_out if colon and name == known else f"did you mean '{known}'?"
+    return wrong, f"known {'commands' if is_command else 'keys'} here: {', '.join(schema['properties'])}"
+
+
+def meant(key: str, kind: Kind, path: Path) -> str:
+    """The known key of a mapping that an unknown one was meant to be, "" where none is near."""
+    known = list(schema_at(kind, path).get("properties", {}))
+    name = key.partition(":")[0]
+    return name if name in known else nearest(key, known)
 
 
 def unknown_word(node: Node, schema: Schema) -> tuple[str, str]:
     """A word that is none of the few allowed."""
-    if not isinstance(node.value, str):
-        return wrong_kind(node, schema)
     words = schema["enum"]
+    if not isinstance(node.value, str):
+        return f"{what_stands(node)} where a word belongs", f"write {one_of(words)}"
     near = nearest(node.value, words)
-    right = f"did you mean '{near}'?" if near else f"write {' or '.join(words)}"
+    right = f"did you mean '{near}'?" if near else f"write {one_of(words)}"
     return f"{shown(node)} is not known here", right
+
+
+def one_of(words: list[str]) -> str:
+    """The words to choose from: silent, high or low."""
+    return " or ".join(filter(None, (", ".join(words[:-1]), words[-1])))
 
 
 def wrong_length(node: Node, schema: Schema) -> tuple[str, str]:
@@ -102,8 +119,9 @@ def wrong_length(node: Node, schema: Schema) -> tuple[str, str]:
 
 def wrong_kind(node: Node, schema: Schema) -> tuple[str, str]:
     """Text for a number, a number for text, a list for a mapping, …"""
-    wanted = schema.get("type")
-    value = node.value
+    if "enum" in schema:
+        return unknown_word(node, schema)
+    wanted, value = schema["type"], node.value
     right = f"write e.g. {example(schema)}"
     if wanted == "integer" and isinstance(value, float):
         if not math.isfinite(value) or abs(value) >= 2**63:
@@ -153,10 +171,13 @@ def out_of_range(node: Node, schema: Schema) -> tuple[str, str]:
         return f"{shown(node)} is {'too large' if huge else 'not a finite number'}", f"write e.g. {example(schema)}"
     if low is None or high is None:
         low, high = schema["exclusiveMinimum"], schema["exclusiveMaximum"]
-        return f"{shown(node)} is not between {low} and {high}", f"write e.g. {example(schema)}"
+        return f"{shown(node)} is not strictly between {low} and {high}", f"write e.g. {example(schema)}"
     small = isinstance(value, int | float) and value < low
-    wrong = "is negative" if small and low == 0 else "is too small" if small else "is too large"
-    return f"{shown(node)} {wrong}", f"write a number from {spaced(low)} to {spaced(high)}"
+    if high == 1:
+        right = f"write {noun(schema)} from 0 to 1"
+    else:
+        right = f"write {noun(schema)} of {f'{spaced(low)} or more' if small else f'at most {spaced(high)}'}"
+    return f"{shown(node)} is {'negative' if small and low == 0 else 'too small' if small else 'too large'}", right
 
 
 def spaced(number: float) -> str:
