@@ -8,11 +8,12 @@ import numpy as np
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.chi_square import band, quantile
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.geometry.angles import wrap
+from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.geometry.ellipse import cone_factor, radius_factor
 from ekfsim.records import Nees, Step
 
 RANK = 1e-10  # an eigenvalue of the correlation matrix above this counts towards the rank
+CLEAR = 1e-8  # a determinant of the correlation matrix above this needs no eigenvalues to tell the rank
 OUTSIDE = 1e-6  # m, rad; a longer part of the error outside the range of P makes the belief impossible
 LOST = 0.999  # NEES beyond this χ² quantile: lost
 BAND = 0.99  # the two-sided band that ΣNIS is held against
@@ -22,7 +23,7 @@ def error(belief: Gaussian, truth: Array, headings: tuple[int, ...] = (2,)) -> A
     """e = estimate − truth : (…, n), headings wrapped"""
     e = belief.mean - truth
     for i in headings:
-        e[..., i] = wrap(e[..., i])
+        e[..., i] = wrap_one(float(e[i])) if e.ndim == 1 else wrap(e[..., i])
     return e
 
 
@@ -42,7 +43,7 @@ def inside_ellipse(belief: Gaussian, truth: Array, probability: float) -> Boolea
 def inside_cone(belief: Gaussian, truth: Array, probability: float) -> Booleans:
     """Whether the true heading lies inside the cone : (…)"""
     e, variance = error(belief, truth)[..., 2], belief.covariance[..., 2, 2]
-    reach = cone_factor(probability) * np.sqrt(np.maximum(variance, 0.0))
+    reach = cone_factor(probability) * np.sqrt(variance)
     return np.abs(e) <= np.where(variance > 0, reach, OUTSIDE)
 
 
@@ -55,6 +56,8 @@ def squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
         C = D^{-1/2} P D^{-1/2} = V Λ Vᵀ      rank = #{λ > 1e-10}      B = D^{1/2} V spans the range of P
         eᵀ P⁺ e = yᵀ Λ⁻¹ y      where y = Vᵀ D^{-1/2} e, for an e inside that range
     """
+    if e.ndim == 1 and (value := _full_rank_square(e.tolist(), P.tolist())) is not None:
+        return np.float64(value), np.int64(len(e)), np.False_
     σ = np.sqrt(np.maximum(np.diagonal(P, axis1=-2, axis2=-1), 0.0))
     per_σ = np.divide(1.0, σ, out=np.zeros_like(σ), where=σ > 0)
     λ, V = np.linalg.eigh(P * per_σ[..., :, None] * per_σ[..., None, :])
@@ -64,6 +67,32 @@ def squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
     y = np.vecmat(within * per_σ, V)
     value = np.sum(np.divide(y * y, λ, out=np.zeros_like(y), where=kept), axis=-1)
     return value, rank, np.linalg.norm(e - within, axis=-1) > OUTSIDE
+
+
+def _full_rank_square(e: list[float], P: list[list[float]]) -> float | None:
+    """The same for one P that is clearly of full rank, by P = L D Lᵀ in plain floats; None where it is not clear.
+
+    det C = Π Dᵢ/Pᵢᵢ, and no eigenvalue of C (they sum to n ≤ 3) is smaller than det C / 2.25. Held equal to the above
+    by a test.
+    """
+    det, total = 1.0, 0.0
+    L: list[list[float]] = []
+    D: list[float] = []
+    y: list[float] = []
+    for i, row in enumerate(P):
+        l_i: list[float] = []
+        for j in range(i):
+            l_i.append((row[j] - sum(l_i[k] * L[j][k] * D[k] for k in range(j))) / D[j])
+        D_i = row[i] - sum(l * l * d for l, d in zip(l_i, D, strict=True))
+        det *= D_i / row[i] if row[i] > 0 else 0.0
+        if not det > CLEAR:
+            return None
+        y_i = e[i] - sum(l * yy for l, yy in zip(l_i, y, strict=True))
+        total += y_i * y_i / D_i
+        L.append(l_i)
+        D.append(D_i)
+        y.append(y_i)
+    return total
 
 
 def _projected(e: Array, B: Array, kept: Booleans) -> Array:

@@ -47,4 +47,6 @@ def first_belief(scene: Scene, axes: tuple[int, ...] = ()) -> Gaussian:
 def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
     """Simulate a scene and localize in it: every Step of its run, or of N runs side by side. runs : (N,)"""
     filter = FILTERS[scene.filter](gate=scene.gate)
-    return localize(simulate(scene, runs), filter, first_belief(scene, np.shape(scene.run if runs is None else runs)), scene.guard)
+    return localize(
+        simulate(scene, runs), filter, first_belief(scene, np.shape(scene.run if runs is None else runs)), scene.guard
+    )

@@ -3,6 +3,7 @@
 The truth moves here and nowhere else; what the filter is given (odometry, ranges, its own map) leaves in the Entry.
 """
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -40,17 +41,27 @@ class Draws:
         return self._draw(i, uniforms=True)[1]
 
     def _draw(self, i: int, uniforms: bool) -> tuple[Array, Array]:
+        if self._runs.ndim == 0:
+            return self._draw_one(i, *divmod(int(self._runs), BLOCK), uniforms)
         normals_of, uniforms_of = np.empty((*self._runs.shape, 4)), np.empty((*self._runs.shape, 2))
         blocks = self._runs // BLOCK
         for b in np.unique(blocks):
             here = blocks == b
             rows = self._runs[here] % BLOCK
-            generator = np.random.Generator(np.random.PCG64(np.random.SeedSequence([self._seed, i, int(b)])))
-            # the uniforms stand behind all normals; without them the rows behind the last one asked for need no drawing
-            normals_of[here] = generator.standard_normal((BLOCK if uniforms else int(rows.max()) + 1, 4))[rows]
+            generator = self._generator(i, int(b))
+            normals_of[here] = generator.standard_normal((BLOCK, 4))[rows]
             if uniforms:
                 uniforms_of[here] = generator.random((BLOCK, 2))[rows]
         return normals_of, uniforms_of
+
+    def _draw_one(self, i: int, b: int, row: int, uniforms: bool) -> tuple[Array, Array]:
+        """The same for one run: of the normals no more than is needed, for the uniforms stand behind all of them."""
+        generator = self._generator(i, b)
+        normals = generator.standard_normal((BLOCK if uniforms else row + 1, 4))[row]
+        return normals, generator.random((BLOCK, 2))[row] if uniforms else np.empty(2)
+
+    def _generator(self, i: int, b: int) -> np.random.Generator:
+        return np.random.Generator(np.random.PCG64(np.random.SeedSequence([self._seed, i, b])))
 
 
 def simulate(scene: Scene, runs: Integers | None = None) -> Iterator[Entry]:
@@ -97,6 +108,8 @@ def _drive(world: World, pose: Array, move: Move, normal: Array) -> tuple[Array,
 
 def _until_wall(world: World, pose: Array, way: Array) -> tuple[Array, Integers]:
     """The way, cut 1 mm short of the first wall (0 if that is nearer), and that wall, −1 where none is in the way."""
+    if pose.ndim == 1:
+        return _until_wall_one(world, *pose.tolist(), float(way))
     heading = np.where(way < 0, pose[..., 2] + np.pi, pose[..., 2])
     hit = world.map.walls.cast(pose[..., :2], heading)
     free = np.maximum(hit.range - CLEARANCE, 0.0)
@@ -104,9 +117,21 @@ def _until_wall(world: World, pose: Array, way: Array) -> tuple[Array, Integers]
     return np.where(bumped, np.copysign(free, way), way), np.where(bumped, hit.wall, -1)
 
 
+def _until_wall_one(world: World, x: float, y: float, θ: float, way: float) -> tuple[Array, Integers]:
+    """The same for one robot, without the cost of arrays."""
+    r, wall = world.map.walls.first(x, y, θ + math.pi if way < 0 else θ)
+    free = max(r - CLEARANCE, 0.0) if wall >= 0 else math.inf
+    return (
+        (np.float64(math.copysign(free, way)), np.int64(wall)) if abs(way) > free else (np.float64(way), np.int64(-1))
+    )
+
+
 def _measure(world: World, pose: Array, bearing: float, draws: Draws, i: int) -> Array:
     """The laser's reading along a bearing : (…, 1) m, nan where there is no echo."""
-    r = world.map.walls.cast(pose[..., :2], pose[..., 2] + bearing).range
+    if pose.ndim == 1:
+        r = np.float64(world.map.walls.first(*pose[:2].tolist(), float(pose[2]) + bearing)[0])
+    else:
+        r = world.map.walls.cast(pose[..., :2], pose[..., 2] + bearing).range
     if world.faults.short_returns > 0:
         uniform = draws.uniforms(i)
         r = np.where(uniform[..., 0] < world.faults.short_returns, uniform[..., 1] * r, r)

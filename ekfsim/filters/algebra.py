@@ -1,5 +1,7 @@
 """The few lines of matrix algebra that the filters share."""
 
+import math
+
 import numpy as np
 
 from ekfsim.filters.belief import Refused
@@ -50,3 +52,14 @@ def refusal(z: Array, h: Array, nis: Array, skip: Booleans | bool, gate: float |
     shape = np.broadcast_shapes(nis.shape, *(holds.shape for holds, _ in reasons))
     conditions = [np.broadcast_to(holds, shape) for holds, _ in reasons]
     return np.select(conditions, [np.int64(reason) for _, reason in reasons], np.int64(Refused.NOT))
+
+
+def refusal_one(z: Array, h: Array, nis: float, skip: bool, gate: float | None) -> Refused:
+    """The same for one reading of one number."""
+    if math.isnan(z[0]):
+        return Refused.NO_ECHO
+    if math.isnan(h[0]):
+        return Refused.NO_WALL
+    if skip:
+        return Refused.GUARD
+    return Refused.GATE if gate is not None and nis > quantile(gate, 1) else Refused.NOT

@@ -1,5 +1,7 @@
 """Angles on the circle."""
 
+import math
+
 import numpy as np
 
 from ekfsim.geometry import Array
@@ -15,3 +17,14 @@ def wrap(angle: Array) -> Array:
     """
     turns = np.ceil((angle - np.pi) / (2 * np.pi))
     return np.where((angle > -np.pi) & (angle <= np.pi), angle, angle - 2 * np.pi * turns)
+
+
+def wrap_one(angle: float) -> float:
+    """The same for a single number, without the cost of an array.
+
+    >>> wrap_one(-math.pi) == math.pi
+    True
+    """
+    if -math.pi < angle <= math.pi:
+        return angle
+    return angle - 2 * math.pi * math.ceil((angle - math.pi) / (2 * math.pi))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ekfsim.geometry import Array
 
-ROUNDING = 4 * float(np.finfo(float).eps)  # an eigenvalue below this share of the largest is rounding
+ROUNDING = 4 * float(np.finfo(float).eps)  # a determinant below this share of λ₁² is rounding: a line
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,23 +45,31 @@ def cone_factor(probability: float) -> float:
 def ellipse(P: Array, probability: float) -> Ellipse:
     """The confidence ellipse of a position. P : (…, 2, 2) m² or larger, of which the first block is taken.
 
+    λ₁ = m + r      λ₂ = det P / λ₁      φ = ½ atan2(P_xy, δ)      m, δ = ½(P_xx ± P_yy)      r = √(δ² + P_xy²)
+
     >>> e = ellipse(np.diag([0.04, 0.01]), 0.954)
     >>> round(float(e.major), 4), round(float(e.minor), 4), float(e.orientation)
     (0.4963, 0.2482, 0.0)
     """
-    λ, V = _axes(P)
+    a, b, c = P[..., 0, 0], P[..., 0, 1], P[..., 1, 1]
+    m, δ = (a + c) / 2, (a - c) / 2
+    λ1 = m + np.hypot(δ, b)
+    det = a * c - b * b
+    thin = det <= ROUNDING * λ1 * λ1  # also where P is 0
+    λ2 = np.where(thin, 0.0, det) / np.where(thin, 1.0, λ1)
+    φ = np.arctan2(b, δ) / 2 % np.pi
     k = radius_factor(probability)
-    orientation = np.arctan2(V[..., 1, 1], V[..., 0, 1]) % np.pi
-    # −0.0 % π is 0, but an angle just below 0 rounds up to π itself
-    return Ellipse(k * np.sqrt(λ[..., 1]), k * np.sqrt(λ[..., 0]), np.where(orientation < np.pi, orientation, 0.0))
+    # an angle just below 0 rounds up to π itself
+    return Ellipse(k * np.sqrt(λ1), k * np.sqrt(λ2), np.where(φ < np.pi, φ, 0.0))
 
 
 def outline(center: Array, P: Array, probability: float, n: int = 73) -> Array:
     """Points on the confidence ellipse, the last equal to the first. center : (2,) m, P : (2, 2) m² → (n, 2) m"""
-    λ, V = _axes(P)
+    e = ellipse(P, probability)
     t = np.linspace(0, 2 * np.pi, n)
-    circle = np.stack([np.cos(t), np.sin(t)], axis=-1)
-    return center[:2] + radius_factor(probability) * circle * np.sqrt(λ) @ V.mT
+    circle = np.stack([e.major * np.cos(t), e.minor * np.sin(t)], axis=-1)
+    c, s = np.cos(e.orientation), np.sin(e.orientation)
+    return center[:2] + circle @ np.array([[c, s], [-s, c]])
 
 
 def cone_halfwidth(variance: float, probability: float) -> float:
@@ -79,9 +87,3 @@ def conditioned(mean: Array, P: Array, offset: float) -> tuple[Array, Array]:
     variance = P[2, 2]
     regression = P[:2, 2] / variance if variance > 0 else np.zeros(2)
     return mean[:2] + regression * offset, P[:2, :2] - np.outer(regression, P[2, :2])
-
-
-def _axes(P: Array) -> tuple[Array, Array]:
-    """Eigenvalues (…, 2), ascending, without the negatives that rounding makes, and eigenvectors (…, 2, 2)."""
-    λ, V = np.linalg.eigh(P[..., :2, :2])
-    return np.where(λ > ROUNDING * np.abs(λ[..., -1:]), λ, 0.0), V

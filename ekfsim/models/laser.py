@@ -1,5 +1,6 @@
 """The classroom's sensor: one laser beam to the first wall (the assignment's sections 2 and 3.2)."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,6 +52,8 @@ class Laser:
 
         C_v comes from the prediction: taken from the reading, short echoes would be believed too much.
         """
+        if x.ndim == 1:
+            return self._linearize_one(*x.tolist())
         direction = x[..., 2] + self.bearing
         hit = self.walls.cast(x[..., :2], direction)
         d = np.stack([np.cos(direction), np.sin(direction)], axis=-1)
@@ -62,6 +65,18 @@ class Laser:
         per = np.divide(-1.0, n_d, out=np.zeros_like(n_d), where=met)
         H = np.concatenate([n * per[..., None], (np.where(met, r, 0) * np.vecdot(n, d_perp) * per)[..., None]], axis=-1)
         return r[..., None], H[..., None, :], ((self.range_ratio * r) ** 2)[..., None, None]
+
+    def _linearize_one(self, x: float, y: float, θ: float) -> tuple[Array, Array, Array]:
+        """The same for one robot in plain floats: several times as fast, held equal to the above by a test."""
+        direction = θ + self.bearing
+        r, wall = self.walls.first(x, y, direction)
+        dx, dy = math.cos(direction), math.sin(direction)
+        nx, ny = self.walls.normals[wall].tolist() if wall >= 0 else (0.0, 0.0)
+        n_d = nx * dx + ny * dy
+        if abs(n_d) <= ALONG:
+            return np.array([math.nan]), np.zeros((1, 3)), np.array([[math.nan]])
+        H = np.array([[-nx / n_d, -ny / n_d, -r * (ny * dx - nx * dy) / n_d]])
+        return np.array([r]), H, np.array([[(self.range_ratio * r) ** 2]])
 
     def residual(self, z: Array, h: Array) -> Array:
         """ν = z − h : (…, 1) m; a range needs no wrapping"""
@@ -75,15 +90,37 @@ class Laser:
         λ, V = np.linalg.eigh(P)
         reach = REACH * np.sqrt(np.where(λ > FLAT * λ[..., -1:], λ, 0.0))
         arms = (V * reach[..., None, :]).mT  # (…, 3, 3): a row for each eigenvector
+        if x.ndim == 1:
+            return self._sight_one(x, arms)
         poses = x[..., None, :] + np.concatenate([np.zeros_like(arms[..., :1, :]), arms, -arms], axis=-2)
         direction = poses[..., 2] + self.bearing
         hit = self.walls.cast(poses[..., :2], direction)
-        line = np.where(hit.wall >= 0, self.walls.line[hit.wall], -1) if len(self.walls.line) else hit.wall
-        wall = hit.wall[..., 0]
-        sine = np.vecdot(self._normal(wall), np.stack([np.cos(direction[..., 0]), np.sin(direction[..., 0])], axis=-1))
-        incidence = np.where(wall >= 0, np.arcsin(np.minimum(np.abs(sine), 1.0)), np.nan)
+        line, wall = self._line(hit.wall), hit.wall[..., 0]
+        d = np.stack([np.cos(direction[..., 0]), np.sin(direction[..., 0])], axis=-1)
+        sine = np.minimum(np.abs(np.vecdot(self._normal(wall), d)), 1.0)
+        incidence = np.where(wall >= 0, np.arcsin(sine), np.nan)
         ambiguous = np.any(line[..., 1:] != line[..., :1], axis=-1)
         return Sighting(wall, incidence, ambiguous, poses[..., 1:, :], hit.range[..., 1:], hit.wall[..., 1:])
+
+    def _sight_one(self, x: Array, arms: Array) -> Sighting:
+        """The same for one robot in plain floats: several times as fast, held equal to the above by a test."""
+        probes = np.concatenate([x + arms, x - arms])
+        first, bearing = self.walls.first, self.bearing
+        px, py, θ = x.tolist()
+        _, wall = first(px, py, θ + bearing)
+        hits = [first(px, py, θ + bearing) for px, py, θ in probes.tolist()]
+        walls = np.array([w for _, w in hits])
+        incidence = math.nan
+        if wall >= 0:
+            nx, ny = self.walls.normals[wall].tolist()
+            incidence = math.asin(min(abs(nx * math.cos(θ + bearing) + ny * math.sin(θ + bearing)), 1.0))
+        ambiguous = np.any(walls != wall) and np.any(self._line(walls) != self._line(np.int64(wall)))
+        ranges = np.array([r for r, _ in hits])
+        return Sighting(np.int64(wall), np.float64(incidence), np.bool_(ambiguous), probes, ranges, walls)
+
+    def _line(self, wall: Integers) -> Integers:
+        """The straight line that each wall lies on, −1 where there is no wall."""
+        return np.where(wall >= 0, self.walls.line[wall], -1) if len(self.walls.line) else wall
 
     def _normal(self, wall: Integers) -> Array:
         """Unit normals : (…, 2), zero where there is no wall."""

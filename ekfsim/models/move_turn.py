@@ -1,11 +1,12 @@
 """The classroom's motion: straight ahead by d, then a turn in place by a (the assignment's section 3.1)."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap
+from ekfsim.geometry.angles import wrap, wrap_one
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +18,8 @@ class MoveTurn:
 
     def f(self, x: Array, u: Array) -> Array:
         """Φ(x, u) = (x + d cos θ,  y + d sin θ,  θ + a)          eq. 3"""
+        if x.ndim == u.ndim == 1:
+            return self._f_one(*x.tolist(), *u.tolist())
         θ, d = x[..., 2], u[..., 0]
         return np.stack([x[..., 0] + d * np.cos(θ), x[..., 1] + d * np.sin(θ), wrap(θ + u[..., 1])], axis=-1)
 
@@ -48,3 +51,25 @@ class MoveTurn:
     def Q(self, u: Array) -> float:
         """The assignment has no process noise w(k): all noise enters with u."""
         return 0.0
+
+    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, float]:
+        """f, F, G, M and Q at once."""
+        if x.ndim == u.ndim == 1:
+            return self._linearize_one(*x.tolist(), *u.tolist())
+        return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), self.Q(u)
+
+    def _f_one(self, x: float, y: float, θ: float, d: float, a: float) -> Array:
+        return np.array([x + d * math.cos(θ), y + d * math.sin(θ), wrap_one(θ + a)])
+
+    def _linearize_one(
+        self, x: float, y: float, θ: float, d: float, a: float
+    ) -> tuple[Array, Array, Array, Array, float]:
+        """The same for one robot in plain floats: five times as fast, held equal to the above by a test."""
+        c, s = math.cos(θ), math.sin(θ)
+        return (
+            self._f_one(x, y, θ, d, a),
+            np.array([[1.0, 0.0, -d * s], [0.0, 1.0, d * c], [0.0, 0.0, 1.0]]),
+            np.array([[c, 0.0], [s, 0.0], [0.0, 1.0]]),
+            np.array([[(self.distance_ratio * d) ** 2, 0.0], [0.0, (self.angle_ratio * a) ** 2]]),
+            0.0,
+        )

@@ -23,6 +23,9 @@ class Motion(Protocol):
     def Q(self, u: Array) -> Array | float:
         """Covariance of the process noise : (…, n, n), or 0 where there is none."""
 
+    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
+        """f, F, G, M and Q at once."""
+
 
 class Sensor(Protocol):
     """z = h(x) + noise of covariance R, linearised by H = ∂h/∂x."""

@@ -81,7 +81,10 @@ def _beam(step: Step, angle: float, scene: Scene) -> list[str]:
         lines += _doubts(step, step.sighting)
     assert isinstance(step.entry.given, Reading)
     z = float(step.entry.given.z[0])
-    return [*lines, "The range is none: no echo, the beam met no wall" if math.isnan(z) else f"The range is {number(z)}"]
+    return [
+        *lines,
+        "The range is none: no echo, the beam met no wall" if math.isnan(z) else f"The range is {number(z)}",
+    ]
 
 
 def _doubts(step: Step, sighting: Sighting) -> list[str]:

@@ -1,0 +1,97 @@
+"""A teaching simulator for the extended Kalman filter in mobile-robot localization.
+
+A notebook needs no more than this module:
+
+>>> import ekfsim
+>>> scene = ekfsim.load_scene("square")                     # a path, or the name of one that comes along
+>>> steps = list(ekfsim.play(scene))                         # simulate and localize; a Step for each command
+>>> view = next(ekfsim.views(steps))                         # view 0: the world before the first command
+>>> print(ekfsim.narrate(view, scene).splitlines()[-2][:44])
+The true position lies inside the ellipse, t
+
+and `ekfsim.draw(view, scene, axes)` puts the picture on matplotlib axes. One level deeper, the two halves of `play`:
+`ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter, belief)` the Steps (what
+a filter made of them).
+
+Notation, letter for letter as in the code (Bar-Shalom, Särkkä, Barfoot; Thrun's book swaps Q and R):
+
+    x  state: x, y, θ in m, m, rad      P  its covariance             e  error: estimate − truth
+    u  motion input: d, a in m, rad     f  motion: x⁺ = f(x, u)       F  ∂f/∂x        G  ∂f/∂u
+    M  covariance of the input's noise  Q  covariance of the process noise
+    z  reading                          h  sensor: z = h(x)           H  ∂h/∂x        R  covariance of its noise
+    ν  innovation: z − h(x⁻)            S  its covariance             K  gain
+    NIS  νᵀ S⁻¹ ν                       NEES  eᵀ P⁺ e                 ⁻  before the reading, the prior
+
+The assignment's names for the same: Φ = f, J_x = F, J_u = G, P_u = M, H[x] = h, J_H = H, C_v = R, r = ν.
+
+Shapes: arrays carry leading axes (…): none for one run, (N,) for N runs side by side. x is (…, 3), P is (…, 3, 3).
+x points east, y north, θ turns counter-clockwise from +x and lies in (−π, π]. Metres and radians inside, degrees where
+a person reads or writes. Mistakes in files raise `ekfsim.InputError`, missing files `ekfsim.UsageError`.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ekfsim.consistency import Evidence as Evidence
+    from ekfsim.consistency import Verdict as Verdict
+    from ekfsim.consistency import nees as nees
+    from ekfsim.errors import EkfsimError as EkfsimError
+    from ekfsim.errors import InputError as InputError
+    from ekfsim.errors import UsageError as UsageError
+    from ekfsim.files.load import load_scene as load_scene
+    from ekfsim.files.load import load_world as load_world
+    from ekfsim.filters import FILTERS as FILTERS
+    from ekfsim.filters.belief import Gaussian as Gaussian
+    from ekfsim.filters.ekf import EKF as EKF
+    from ekfsim.geometry.ellipse import ellipse as ellipse
+    from ekfsim.localization import first_belief as first_belief
+    from ekfsim.localization import localize as localize
+    from ekfsim.localization import play as play
+    from ekfsim.models.laser import Laser as Laser
+    from ekfsim.models.move_turn import MoveTurn as MoveTurn
+    from ekfsim.records import Entry as Entry
+    from ekfsim.records import Step as Step
+    from ekfsim.scene import Scene as Scene
+    from ekfsim.simulation import simulate as simulate
+    from ekfsim.summary import Summary as Summary
+    from ekfsim.views.closing import conclude as conclude
+    from ekfsim.views.frames import draw as draw
+    from ekfsim.views.narrative import narrate as narrate
+    from ekfsim.views.playback import views as views
+    from ekfsim.world import World as World
+
+# Where each name lives. They are imported when first used: `ekfsim --help` must not wait for numpy.
+_HOMES = {
+    "consistency": ("Evidence", "Verdict", "nees"),
+    "errors": ("EkfsimError", "InputError", "UsageError"),
+    "files.load": ("load_scene", "load_world"),
+    "filters": ("FILTERS",),
+    "filters.belief": ("Gaussian",),
+    "filters.ekf": ("EKF",),
+    "geometry.ellipse": ("ellipse",),
+    "localization": ("first_belief", "localize", "play"),
+    "models.laser": ("Laser",),
+    "models.move_turn": ("MoveTurn",),
+    "records": ("Entry", "Step"),
+    "scene": ("Scene",),
+    "simulation": ("simulate",),
+    "summary": ("Summary",),
+    "views.closing": ("conclude",),
+    "views.frames": ("draw",),
+    "views.narrative": ("narrate",),
+    "views.playback": ("views",),
+    "world": ("World",),
+}
+_HOME_OF = {name: f"ekfsim.{home}" for home, names in _HOMES.items() for name in names}
+__all__ = sorted(_HOME_OF)  # noqa: PLE0605
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME_OF:
+        raise AttributeError(f"module 'ekfsim' has no attribute {name!r}")
+    return getattr(import_module(_HOME_OF[name]), name)
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__]
