@@ -101,7 +101,7 @@ def ekfsim() -> None:
 @ekfsim.command()
 @scene_options
 @click.option("--show", type=click.Choice(["auto", "window", "text", "files"]), default="auto", show_default=True,
-              help="Where to draw: a window, characters in the terminal, or one picture file rewritten in place.")  # fmt: skip
+              help="Draw in a window, as text in the terminal, or into one file rewritten in place.")  # fmt: skip
 @click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("out"), show_default=True,
               help="Folder for the pictures of --show files and of the key s.")  # fmt: skip
 @click.option("--conditional", is_flag=True, help="Draw the ellipse for the heading at either edge of its cone, too.")
@@ -233,7 +233,7 @@ def _scene(
     if filter_name is not None and filter_name not in FILTERS:
         raise UsageError(f"--filter {filter_name}: there is no such filter; known: {', '.join(FILTERS)}")
     scene = load_scene(resolve(commands, "commands"), None if world is None else resolve(world, "worlds"))
-    chosen = {"seed": seed, "run": run_number, "filter": filter_name, "gate": gate, "guard": guard}
+    chosen: dict[str, Any] = {"seed": seed, "run": run_number, "filter": filter_name, "gate": gate, "guard": guard}
     return replace(scene, **{name: value for name, value in chosen.items() if value is not None})
 
 

@@ -57,7 +57,7 @@ def squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
         eᵀ P⁺ e = yᵀ Λ⁻¹ y      where y = Vᵀ D^{-1/2} e, for an e inside that range
     """
     if e.ndim == 1 and (value := _full_rank_square(e.tolist(), P.tolist())) is not None:
-        return np.float64(value), np.int64(len(e)), np.False_
+        return np.array(value), np.array(len(e)), np.array(False)
     σ = np.sqrt(np.maximum(np.diagonal(P, axis1=-2, axis2=-1), 0.0))
     per_σ = np.divide(1.0, σ, out=np.zeros_like(σ), where=σ > 0)
     λ, V = np.linalg.eigh(P * per_σ[..., :, None] * per_σ[..., None, :])
@@ -83,11 +83,11 @@ def _full_rank_square(e: list[float], P: list[list[float]]) -> float | None:
         l_i: list[float] = []
         for j in range(i):
             l_i.append((row[j] - sum(l_i[k] * L[j][k] * D[k] for k in range(j))) / D[j])
-        D_i = row[i] - sum(l * l * d for l, d in zip(l_i, D, strict=True))
+        D_i = row[i] - sum(l_ij * l_ij * D_j for l_ij, D_j in zip(l_i, D, strict=True))
         det *= D_i / row[i] if row[i] > 0 else 0.0
         if not det > CLEAR:
             return None
-        y_i = e[i] - sum(l * yy for l, yy in zip(l_i, y, strict=True))
+        y_i = e[i] - sum(l_ij * y_j for l_ij, y_j in zip(l_i, y, strict=True))
         total += y_i * y_i / D_i
         L.append(l_i)
         D.append(D_i)
@@ -99,7 +99,8 @@ def _projected(e: Array, B: Array, kept: Booleans) -> Array:
     """The part of e in the span of the kept columns of B, which come last. e : (…, n), B : (…, n, n)"""
     Q, _ = np.linalg.qr(np.where(kept[..., None, :], B, 0.0)[..., ::-1])  # the kept columns first
     Q = np.where(kept[..., None, ::-1], Q, 0.0)
-    return np.matvec(Q, np.vecmat(e, Q))
+    part: Array = np.matvec(Q, np.vecmat(e, Q))
+    return part
 
 
 def lost(measured: Nees) -> bool:

@@ -21,7 +21,7 @@ class EkfsimError(Exception):
     status = 1
 
 
-class RunFailed(EkfsimError):
+class RunError(EkfsimError):
     """The run itself failed: a full disk, an expectation not kept. Exit status 1."""
 
 

@@ -109,7 +109,7 @@ def _drive(world: World, pose: Array, move: Move, normal: Array) -> tuple[Array,
 def _until_wall(world: World, pose: Array, way: Array) -> tuple[Array, Integers]:
     """The way, cut 1 mm short of the first wall (0 if that is nearer), and that wall, −1 where none is in the way."""
     if pose.ndim == 1:
-        return _until_wall_one(world, *pose.tolist(), float(way))
+        return _until_wall_one(world, pose, float(way))
     heading = np.where(way < 0, pose[..., 2] + np.pi, pose[..., 2])
     hit = world.map.walls.cast(pose[..., :2], heading)
     free = np.maximum(hit.range - CLEARANCE, 0.0)
@@ -117,21 +117,18 @@ def _until_wall(world: World, pose: Array, way: Array) -> tuple[Array, Integers]
     return np.where(bumped, np.copysign(free, way), way), np.where(bumped, hit.wall, -1)
 
 
-def _until_wall_one(world: World, x: float, y: float, θ: float, way: float) -> tuple[Array, Integers]:
+def _until_wall_one(world: World, pose: Array, way: float) -> tuple[Array, Integers]:
     """The same for one robot, without the cost of arrays."""
+    x, y, θ = pose.tolist()
     r, wall = world.map.walls.first(x, y, θ + math.pi if way < 0 else θ)
     free = max(r - CLEARANCE, 0.0) if wall >= 0 else math.inf
-    return (
-        (np.float64(math.copysign(free, way)), np.int64(wall)) if abs(way) > free else (np.float64(way), np.int64(-1))
-    )
+    bumped = abs(way) > free
+    return np.array(math.copysign(free, way) if bumped else way), np.array(wall if bumped else -1)
 
 
 def _measure(world: World, pose: Array, bearing: float, draws: Draws, i: int) -> Array:
     """The laser's reading along a bearing : (…, 1) m, nan where there is no echo."""
-    if pose.ndim == 1:
-        r = np.float64(world.map.walls.first(*pose[:2].tolist(), float(pose[2]) + bearing)[0])
-    else:
-        r = world.map.walls.cast(pose[..., :2], pose[..., 2] + bearing).range
+    r = world.map.walls.cast(pose[..., :2], pose[..., 2] + bearing).range
     if world.faults.short_returns > 0:
         uniform = draws.uniforms(i)
         r = np.where(uniform[..., 0] < world.faults.short_returns, uniform[..., 1] * r, r)

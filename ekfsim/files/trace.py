@@ -58,7 +58,9 @@ def _start(step: Step, scene: Scene, confidence: float) -> dict[str, Any]:
 
 
 def _move(step: Step, move: Move, scene: Scene, confidence: float) -> dict[str, Any]:
-    assert isinstance(step.entry.given, Control) and step.prediction is not None and step.entry.bump is not None
+    assert isinstance(step.entry.given, Control)
+    assert step.prediction is not None
+    assert step.entry.bump is not None
     distance, angle = step.entry.given.u.tolist()
     bump = int(step.entry.bump)
     return {
@@ -77,7 +79,8 @@ def _move(step: Step, move: Move, scene: Scene, confidence: float) -> dict[str, 
 
 
 def _sense(step: Step, angle: float, confidence: float) -> dict[str, Any]:
-    assert isinstance(step.entry.given, Reading) and step.correction is not None
+    assert isinstance(step.entry.given, Reading)
+    assert step.correction is not None
     return {
         "type": "sense",
         "index": step.entry.index,

@@ -4,9 +4,9 @@ import csv
 import math
 from typing import TextIO
 
+from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import ellipse
-from ekfsim.filters.belief import Refused
 from ekfsim.provenance import provenance, told_in_a_line
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene

@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import mkdtemp, mkstemp
 from typing import TextIO
 
-from ekfsim.errors import RunFailed, UsageError
+from ekfsim.errors import RunError, UsageError
 
 
 def refuse_existing(path: Path, force: bool) -> None:
@@ -29,7 +29,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
 
     Parents are made. A path that is no regular file (/dev/stdout) is handed out itself, to be written straight.
 
-    Raises UsageError if a result exists and `force` is False, RunFailed if the disk refuses.
+    Raises UsageError if a result exists and `force` is False, RunError if the disk refuses.
     """
     refuse_existing(path, force)
     if _special(path):
@@ -65,7 +65,7 @@ def whole_folder(path: Path, pattern: str, force: bool = False) -> Iterator[Path
     With `force` an older result is replaced, but only if every file in it matches `pattern`: what else lies in a
     folder is not ours to delete.
 
-    Raises UsageError if the folder holds something and may not be replaced, RunFailed if the disk refuses.
+    Raises UsageError if the folder holds something and may not be replaced, RunError if the disk refuses.
     """
     if path.exists() and not path.is_dir():
         raise UsageError(f"{path}: this is a file; name a folder")
@@ -101,7 +101,7 @@ def told(path: Path) -> Iterator[None]:
     except OSError as refusal:
         if refusal.errno in (errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.ENAMETOOLONG):
             raise UsageError(f"{path}: cannot be written: {refusal.strerror}") from refusal
-        raise RunFailed(f"{path}: writing failed: {refusal.strerror}") from refusal
+        raise RunError(f"{path}: writing failed: {refusal.strerror}") from refusal
 
 
 def _special(path: Path) -> bool:

@@ -25,10 +25,12 @@ def innovation_covariance(P: Array, H: Array, R: Array) -> Array:
 
 def gain(P: Array, H: Array, S: Array) -> Array:
     """K = P Hᵀ S⁻¹ : (…, n, k), zero where nothing is uncertain (S = 0) or nothing was predicted (S is nan)."""
-    PHt = P @ H.mT
+    PHt: Array = P @ H.mT
     if S.shape[-1] == 1:
-        return np.divide(PHt, S, out=np.zeros_like(PHt), where=S > 0)
-    return PHt @ np.linalg.pinv(np.nan_to_num(S), hermitian=True)
+        K: Array = np.divide(PHt, S, out=np.zeros_like(PHt), where=S > 0)
+    else:
+        K = PHt @ np.linalg.pinv(np.nan_to_num(S), hermitian=True)
+    return K
 
 
 def normalized_square(innovation: Array, S: Array) -> Array:

@@ -22,7 +22,7 @@ from ekfsim.models.protocols import Motion, Sensor
 
 @dataclass(frozen=True)
 class EKF:
-    """Extended Kalman filter: Thrun, Burgard & Fox, Probabilistic Robotics, 2005, Table 3.3; the assignment's section 3."""
+    """Extended Kalman filter: Thrun, Burgard & Fox, Probabilistic Robotics, 2005, Table 3.3; assignment, section 3."""
 
     gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
@@ -37,7 +37,7 @@ class EKF:
         self, prior: Gaussian, sensor: Sensor, z: Array, skip: Booleans | bool = False
     ) -> tuple[Gaussian, Correction]:
         """ν = z − h(x⁻)      S = H P⁻ Hᵀ + R      K = P⁻ Hᵀ S⁻¹          eqs 9, 11; z : (…, k)
-        x = x⁻ + K ν      P = (I − KH) P⁻ (I − KH)ᵀ + K R Kᵀ          eq. 10; with this K the same as eq. 12, (I − KH) P⁻
+        x = x⁻ + K ν      P = (I − KH) P⁻ (I − KH)ᵀ + K R Kᵀ          eq. 10; for this K eq. 12, (I − KH) P⁻
 
         K = 0 where the reading is refused: the belief stays as it is.
         """
@@ -73,7 +73,7 @@ class EKF:
         if refused is Refused.NOT and s > 0:
             I_KH = np.eye(len(x)) - np.outer(k, H[0])
             posterior = Gaussian(self._wrapped(x + k * ν), symmetric(I_KH @ P @ I_KH.T + np.outer(r * k, k)))
-        return posterior, Correction(h, ν, R, np.array([[s]]), H, k[:, None], np.float64(nis), np.int64(refused))
+        return posterior, Correction(h, ν, R, np.array([[s]]), H, k[:, None], np.array(nis), np.array(int(refused)))
 
     def _wrapped(self, x: Array) -> Array:
         for i in self.headings:

@@ -69,7 +69,8 @@ def outline(center: Array, P: Array, probability: float, n: int = 73) -> Array:
     t = np.linspace(0, 2 * np.pi, n)
     circle = np.stack([e.major * np.cos(t), e.minor * np.sin(t)], axis=-1)
     c, s = np.cos(e.orientation), np.sin(e.orientation)
-    return center[:2] + circle @ np.array([[c, s], [-s, c]])
+    points: Array = center[:2] + circle @ np.array([[c, s], [-s, c]])
+    return points
 
 
 def cone_halfwidth(variance: float, probability: float) -> float:

@@ -28,7 +28,8 @@ class Sighting:
     @property
     def grazing(self) -> Booleans:
         """(…) the beam meets its wall at less than 15°."""
-        return self.incidence < GRAZING
+        grazing: Booleans = self.incidence < GRAZING
+        return grazing
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,9 +115,9 @@ class Laser:
         if wall >= 0:
             nx, ny = self.walls.normals[wall].tolist()
             incidence = math.asin(min(abs(nx * math.cos(θ + bearing) + ny * math.sin(θ + bearing)), 1.0))
-        ambiguous = np.any(walls != wall) and np.any(self._line(walls) != self._line(np.int64(wall)))
+        ambiguous = np.any(walls != wall) and np.any(self._line(walls) != self._line(np.array(wall)))
         ranges = np.array([r for r, _ in hits])
-        return Sighting(np.int64(wall), np.float64(incidence), np.bool_(ambiguous), probes, ranges, walls)
+        return Sighting(np.array(wall), np.array(incidence), np.array(ambiguous), probes, ranges, walls)
 
     def _line(self, wall: Integers) -> Integers:
         """The straight line that each wall lies on, −1 where there is no wall."""

@@ -2,7 +2,7 @@
 
 from typing import Any, Protocol
 
-from ekfsim.geometry import Array, Booleans
+from ekfsim.geometry import Array
 
 
 class Motion(Protocol):

@@ -1,7 +1,5 @@
 """What is said when a run is over: what was done, how far off it ended, and one plain verdict with its evidence."""
 
-import math
-
 from ekfsim.consistency import BAND, LOST, Evidence, Verdict
 from ekfsim.filters.chi_square import quantile
 from ekfsim.records import Nees

@@ -4,15 +4,15 @@ import math
 
 import numpy as np
 
-from ekfsim.consistency import BAND, Evidence, Verdict, inside_cone, inside_ellipse
+from ekfsim.consistency import BAND, inside_cone, inside_ellipse
 from ekfsim.filters.belief import Correction, Gaussian, Refused
-from ekfsim.filters.chi_square import band, quantile
+from ekfsim.filters.chi_square import band
 from ekfsim.geometry.ellipse import cone_factor, ellipse
 from ekfsim.models.laser import GRAZING, Laser, Sighting
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Control, Kidnap, Move, Nees, Reading, Say, Sense, Step
 from ekfsim.scene import Scene
-from ekfsim.views.numbers import degrees, matrix, number, pose, turn
+from ekfsim.views.numbers import matrix, number, pose, turn
 from ekfsim.views.playback import View
 
 
@@ -136,7 +136,7 @@ def _innovation(c: Correction) -> list[str]:
     told = f"The innovation is {number(c.innovation[0])}, its standard deviation {number(math.sqrt(c.S[0, 0]))}"
     if np.isnan(c.nis):
         return [f"{told}; nothing is uncertain, so NIS is undefined and the gain is 0"]
-    return [f"{told}; NIS is {number(c.nis)}", *_beside_band("NIS", float(c.nis), len(c.innovation))]
+    return [f"{told}; NIS is {number(float(c.nis))}", *_beside_band("NIS", float(c.nis), len(c.innovation))]
 
 
 def _refusal(c: Correction) -> list[str]:
@@ -159,8 +159,8 @@ def _uncertainty(belief: Gaussian, probability: float) -> list[str]:
     halfwidth = factor * math.sqrt(belief.covariance[2, 2])
     return [
         "Uncertainty ellipse is:",
-        f"  minor radius is {number(drawn.minor)}",
-        f"  major radius is {number(drawn.major)}",
+        f"  minor radius is {number(float(drawn.minor))}",
+        f"  major radius is {number(float(drawn.major))}",
         f"  orientation is {turn(float(drawn.orientation))} degrees",
         f"  {factor:.4g}*sigma_theta is {turn(halfwidth)} degrees",
     ]
@@ -179,7 +179,7 @@ def _judged(step: Step, probability: float) -> list[str]:
 def _nees(measured: Nees) -> str:
     if measured.impossible:
         return "the belief is impossible: the error has a part where the covariance claims certainty"
-    return f"NEES is {number(measured.value)} ({_count(int(measured.dof), 'degree')} of freedom)"
+    return f"NEES is {number(float(measured.value))} ({_count(int(measured.dof), 'degree')} of freedom)"
 
 
 def _nees_beside_band(measured: Nees) -> list[str]:
@@ -204,8 +204,7 @@ def _wall(step: Step) -> str:
 
 def _others(step: Step, sighting: Sighting) -> str:
     """The other walls that the beam would meet from the poses around the estimate, each named once."""
-    assert isinstance(step.entry.given, Reading) and isinstance(step.entry.given.sensor, Laser)
-    line = step.entry.given.sensor.walls.line
+    line = _laser(step).walls.line
     own = line[sighting.wall] if sighting.wall >= 0 else -1
     others = [int(w) for w in sighting.probe_walls if (line[w] if w >= 0 else -1) != own]
     return " or ".join(dict.fromkeys(_wall_name(step, wall) for wall in others))
@@ -214,9 +213,14 @@ def _others(step: Step, sighting: Sighting) -> str:
 def _wall_name(step: Step, wall: int) -> str:
     if wall < 0:
         return "no wall"
-    assert isinstance(step.entry.given, Reading) and isinstance(step.entry.given.sensor, Laser)
-    name, edge = step.entry.given.sensor.walls.name(wall)
+    name, edge = _laser(step).walls.name(wall)
     return f"edge {edge} of {name}"
+
+
+def _laser(step: Step) -> Laser:
+    assert isinstance(step.entry.given, Reading)
+    assert isinstance(step.entry.given.sensor, Laser)
+    return step.entry.given.sensor
 
 
 def _incidence(step: Step) -> float:

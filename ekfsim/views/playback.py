@@ -35,7 +35,7 @@ class View:
 
 
 def views(steps: Iterable[Step]) -> Iterator[View]:
-    """Every view of a run, in order. The last corner of the path moves with each revised estimate until the next move."""
+    """Every view of a run, in order. Until the next move the path's last corner moves with each revised estimate."""
     settled: list[Array] = []
     number = count()
     for step in steps:
