@@ -190,7 +190,7 @@ def test_polling_returns_none_in_time(terminal: Terminal) -> None:
     with open(terminal.line, closefd=False) as stream, keys(stream) as next_key:
         began = time.monotonic()
         assert next_key(timeout=0.02) is None
-        assert 0.015 < time.monotonic() - began < 5
+        assert time.monotonic() - began > 0.015
         terminal.press("p")
         assert next_key(timeout=5) is BACK
 
