@@ -102,6 +102,16 @@ def test_scale_and_place_of_the_world_do_not_matter(size, shift):
     np.testing.assert_allclose(ranges, by_shapely(walls, origin, heading, 5 * size), atol=1e-9 * max(1, size * shift))
 
 
+@pytest.mark.parametrize("distance", [1e3, 1e9, 1e13, 1e16])
+def test_from_afar_too_all_ways_agree(distance):
+    """From 1e13 m a coordinate's last place is finer than a wall; from 1e16 m it is coarser than many a cell."""
+    random = np.random.default_rng(2)
+    bearing = random.uniform(-np.pi, np.pi, 200)
+    origin = random.uniform(0, 100, (200, 2)) + distance * np.stack([np.cos(bearing), np.sin(bearing)], -1)
+    ranges = assert_all_ways_agree(Walls.of(stars(800, 3)), origin, bearing + np.pi, distance)
+    assert np.isfinite(ranges).any()
+
+
 @given(st.integers(1, 40), st.integers(0, 10**6), st.sampled_from([stars, tangle]))
 @settings(max_examples=40, deadline=None)
 def test_any_world_is_cast_alike_by_all_ways(count, seed, world):
