@@ -84,6 +84,18 @@ def test_the_ellipse_has_its_radii() -> None:
     assert max(i for i, _ in stars) - min(i for i, _ in stars) == pytest.approx(2 * 21 / 8, abs=1)
 
 
+@pytest.mark.parametrize("degrees", [0, 45, 90, 160, -30])
+def test_the_robot_is_a_triangle_that_points_ahead(degrees: float) -> None:
+    room, heading = scene(obstacles=()), math.radians(degrees)
+    seen = believing(view(room, 0), [5.0, 4.0, heading], np.zeros((3, 3)))
+    lines = draw(seen, room, 0.954, SIZE, LIMITS, colour=False).split("\n")[1:-1]
+    ahead, left = np.array([math.cos(heading), math.sin(heading)]), np.array([-math.sin(heading), math.cos(heading)])
+    for corner in (5 * ahead, -3 * ahead + 3.5 * left, -3 * ahead - 3.5 * left, 0 * ahead):  # in dots from the middle
+        column, row = round(79.5 + corner[0]), round(43.5 - corner[1])
+        bit = [[0, 3], [1, 4], [2, 5], [6, 7]][row % 4][column % 2]
+        assert ord(lines[row // 4][column // 2]) - 0x2800 >> bit & 1
+
+
 @pytest.mark.parametrize("ascii", [False, True])
 @pytest.mark.parametrize("scale", [0.0, 1e-300, 1e-12, 1.0, 1e6, 1e12, 1e140, math.inf, math.nan])
 def test_no_covariance_breaks_the_picture(scale: float, ascii: bool) -> None:
