@@ -24,12 +24,22 @@ class Sound:
     def __init__(self, file: str, root: Node, wrong: set[Path]) -> None:
         self.file = file
         self.root = root
-        self.wrong = {path[:length] for path in wrong for length in range(len(path) + 1)}
+        self.wrong: set[Path] = set()  # what is wrong itself
+        self.around: set[Path] = set()  # what holds something wrong
+        for path in wrong:
+            self.give_up(path)
+
+    def give_up(self, path: Path) -> None:
+        """Know the value at a path as wrong, and whatever holds it or lies in it."""
+        self.wrong.add(path)
+        self.around.update(path[:length] for length in range(len(path)))
 
     def value(self, *path: str | int) -> Any:
-        """The plain value at a path, None where there is none or a mistake lies in it."""
+        """The plain value at a path, None where there is none, or where a mistake lies in it or around it."""
         node = self.root.at(path)
-        return None if node is None or path in self.wrong else node.plain()
+        if node is None or path in self.around or any(path[: length + 1] in self.wrong for length in range(len(path))):
+            return None
+        return node.plain()
 
     def count(self, *path: str | int) -> int:
         """The length of a list, right or wrong; 0 where there is none."""
@@ -51,7 +61,7 @@ def check_world(file: Sound) -> Iterator[Mistake]:
     x, y = file.value("start", "x"), file.value("start", "y")
     if x is not None and y is not None:
         for wrong in in_the_way(file.value("boundary"), sound_obstacles(file), x, y):
-            yield file.mistake(("start",), f"the robot starts {wrong}", "start it where it can move")
+            yield file.mistake(("start",), f"the robot starts at {wrong}", "start it where it can move")
 
 
 def sound_obstacles(file: Sound) -> Iterator[tuple[str, Points]]:
@@ -70,7 +80,7 @@ def check_polygons(file: Sound) -> Iterator[Mistake]:
             index, wrong, right = fault
             place = path if index is None else (*path, index)
             yield file.mistake(place, wrong, right)
-            file.wrong.add(path)
+            file.give_up(path)
 
 
 def polygon_paths(file: Sound) -> Iterator[Path]:
@@ -120,7 +130,7 @@ def check_missing(file: Sound) -> Iterator[Mistake]:
         return
     count = file.count("obstacles")
     names = [file.value("obstacles", index, "name") for index in range(count)]
-    if None in names or (count == 0 and ("obstacles",) in file.wrong):
+    if None in names or ("obstacles",) in file.wrong:
         return
     for index in range(file.count("belief", "missing")):
         path = ("belief", "missing", index)
@@ -133,7 +143,7 @@ def check_missing(file: Sound) -> Iterator[Mistake]:
 
 def in_the_way(boundary: Points | None, obstacles: Iterable[tuple[str, Points]], x: float, y: float) -> Iterator[str]:
     """Why a robot cannot stand at a point, as the ends of sentences."""
-    where = f"at {polygons.pair([x, y])},"
+    where = f"{polygons.pair([x, y])},"
     if boundary is not None and not polygons.stands_inside(boundary, x, y):
         yield f"{where} outside the boundary or on its wall"
     for name, points in obstacles:
@@ -182,15 +192,17 @@ def expanded(file: Sound, path: Path) -> int:
 def angle_warnings(file: Sound) -> Iterator[str]:
     """Angles that are hardly meant as degrees."""
     for path, node in file.root.walk():
-        if path and path[-1] in ("theta", "angle") and isinstance(node.value, int | float) and path not in file.wrong:
-            if abs(node.value) > 360:
-                wrong, right = f"{node.written} is more than a full turn", "angles are in degrees: 90 is a quarter turn"
-            elif is_radians(node.value, node.written):
-                degrees = f"{math.degrees(node.value):.0f}"
-                wrong, right = f"{node.written} looks like radians", f"angles are in degrees: write {degrees}"
-            else:
-                continue
-            yield str(at(file.file, node.mark, path, wrong, right))
+        angle = file.value(*path) if path[-1:] in (("theta",), ("angle",)) else None
+        if not isinstance(angle, int | float):
+            continue
+        if abs(angle) > 360:
+            wrong, right = f"{node.written} is more than a full turn", "angles are in degrees: 90 is a quarter turn"
+        elif is_radians(angle, node.written):
+            degrees = f"{math.degrees(angle):.0f}"
+            wrong, right = f"{node.written} looks like radians", f"angles are in degrees: write {degrees}"
+        else:
+            continue
+        yield str(at(file.file, node.mark, path, wrong, right))
 
 
 def kidnap_warnings(file: Sound, floor_plan: Map) -> Iterator[str]:
@@ -199,7 +211,7 @@ def kidnap_warnings(file: Sound, floor_plan: Map) -> Iterator[str]:
     for path, node in file.root.walk():
         if path[-1:] == ("kidnap",) and (target := file.value(*path)) is not None:
             for wrong in in_the_way(floor_plan.boundary, rings, target["x"], target["y"]):
-                yield str(at(file.file, node.mark, path, f"the robot is carried {wrong}", "it cannot move there"))
+                yield str(at(file.file, node.mark, path, f"the robot is carried to {wrong}", "it cannot move there"))
 
 
 def is_radians(angle: float, written: str) -> bool:

@@ -3,12 +3,14 @@
 from typing import Any, Literal
 
 from pydantic import ConfigDict, Field, field_validator
+from pydantic.config import JsonDict
 from pydantic_core import PydanticCustomError
 
 from ekfsim.files.fields import Degrees, Metres, Name, Pose, Probability, Share, Strict, Text
 
 MAX_COMMANDS = 1_000_000
-MOVE = {"distance": 1.75, "angle": 90}
+MOVE: JsonDict = {"distance": 1.75, "angle": 90}
+ONE_COMMAND: JsonDict = {"minProperties": 1, "maxProperties": 1, "examples": [{"move": MOVE}]}
 
 
 def filter_names() -> list[str]:
@@ -53,9 +55,7 @@ class RepeatKeys(Strict):
 class CommandKeys(Strict):
     """One command: exactly one of move, sense, repeat, kidnap, say."""
 
-    model_config = ConfigDict(
-        title="a command", json_schema_extra={"minProperties": 1, "maxProperties": 1, "examples": [{"move": MOVE}]}
-    )
+    model_config = ConfigDict(title="a command", json_schema_extra=ONE_COMMAND)
 
     move: MoveKeys | None = Field(None, description="Drive straight ahead, then turn in place.", examples=[MOVE])
     sense: SenseKeys | None = Field(None, description="Measure the range to the first wall.", examples=[{"angle": 90}])

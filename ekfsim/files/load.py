@@ -77,9 +77,8 @@ def read_scene(path: str | Path, world: str | Path | None = None) -> Loaded[Scen
         return Loaded(mistakes=file.mistakes)
     source = Path(world) if world is not None else path.parent / (file.sound.value("world") or "")
     found = read_world(source) if world is not None else own_world(file, source)
-    warnings = [*file.warnings, *found.warnings]
-    if found.value is not None:
-        warnings += kidnap_warnings(file.sound, found.value.map)
+    kidnaps = kidnap_warnings(file.sound, found.value.map) if found.value is not None else ()
+    warnings = [*file.warnings, *kidnaps, *found.warnings]
     loaded = Loaded[Scene](mistakes=[*file.mistakes, *found.mistakes], warnings=warnings)
     if isinstance(file.keys, CommandsKeys) and found.value is not None and not loaded.mistakes:
         loaded.value = scene_of(file.keys, found.value, source_name(source), source_name(path))

@@ -110,10 +110,12 @@ def scalar(text: str) -> Scalar:
         return NOTHING
     if text in ("true", "True", "TRUE", "false", "False", "FALSE"):
         return text[0] in "tT"
+    if text[0] not in "+-.0123456789":
+        return text
     if INTEGER.fullmatch(text) and len(text) <= 300:
         return int(text, base={"0o": 8, "0x": 16}.get(text[:2], 10))
     if FLOAT.fullmatch(text):
-        return float(text.replace(".inf", "inf").replace(".nan", "nan") if text[-1] in "fnFN" else text)
+        return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
     return text
 
 
@@ -164,16 +166,15 @@ class Tree:
 
     def take(self, event: yaml.Event) -> None:
         """Grow by one event."""
-        if isinstance(event, yaml.AliasEvent):
-            self.attach(self.alias(event))
-        elif isinstance(event, yaml.ScalarEvent):
+        if isinstance(event, yaml.ScalarEvent):
             quoted = not event.implicit[0]
-            value = event.value if quoted else scalar(event.value)
-            node = Node(mark_of(event), value, event.value, quoted)
+            node = Node(mark_of(event), event.value if quoted else scalar(event.value), event.value, quoted)
             self.check_tag(event, node)
             self.check_characters(node)
             self.name(event.anchor, node)
             self.attach(node)
+        elif isinstance(event, yaml.AliasEvent):
+            self.attach(self.alias(event))
         elif isinstance(event, yaml.CollectionStartEvent):
             node = Node(mark_of(event), {} if isinstance(event, yaml.MappingStartEvent) else [])
             self.check_tag(event, node)
@@ -191,8 +192,8 @@ class Tree:
             return
         above = self.open[-1]
         above.node.values += node.values
-        above.node.levels = max(above.node.levels, 1 + node.levels)
-        self.check_levels(node)
+        if node.levels >= above.node.levels:
+            above.node.levels = 1 + node.levels
         if above.node.values > MAX_VALUES:
             self.give_up(node.mark, "the file holds more than 1 000 000 values, aliases written out", "write fewer")
         if isinstance(above.node.value, list):
@@ -236,6 +237,7 @@ class Tree:
         elif name not in self.anchors:
             self.refuse(mark_of(event), f"'*{name}' refers to nothing", f"mark a value above it with '&{name}'")
         else:
+            self.check_levels(self.anchors[name])
             return self.anchors[name]
         return Node(mark_of(event), NOTHING, faulty=True)
 
@@ -254,7 +256,7 @@ class Tree:
 
     def check_levels(self, node: Node) -> None:
         """Raises InputError where values are nested too deep for anything that follows."""
-        if len(self.open) + node.levels - 1 > MAX_DEPTH:
+        if len(self.open) + node.levels > MAX_DEPTH + 1:
             self.give_up(node.mark, f"values are nested more than {MAX_DEPTH} levels deep", "write fewer levels")
 
     def refuse(self, mark: Mark, wrong: str, right: str) -> None:

@@ -53,11 +53,11 @@ def bytes_of(path: Path, shown: str) -> bytes:
 def nearest_file(path: Path, shown: str) -> str:
     """`; did you mean '…'?` where a file beside the missing one has nearly its name, else nothing."""
     try:
-        neighbours = os.listdir(path.parent)
-    except OSError:
+        neighbours = {Path(name).stem: name for name in sorted(os.listdir(path.parent)) if name.endswith(".yaml")}
+    except (OSError, ValueError):
         return ""
-    near = difflib.get_close_matches(path.name, sorted(neighbours), 1)
-    return f"; did you mean '{os.path.join(os.path.dirname(shown), near[0])}'?" if near else ""
+    near = difflib.get_close_matches(path.stem, neighbours, 1)
+    return f"; did you mean '{os.path.join(os.path.dirname(shown), neighbours[near[0]])}'?" if near else ""
 
 
 def position(before: str) -> tuple[int, int]:

@@ -188,7 +188,7 @@ def spaced(number: float) -> str:
 def noun(schema: Schema) -> str:
     """What belongs at a place."""
     title = str(schema.get("title", ""))
-    return title if title.startswith("a ") else NOUNS[schema["type"]]
+    return title if title.startswith(("a ", "an ")) else NOUNS[schema["type"]]
 
 
 def example(schema: Schema) -> str:

@@ -1,12 +1,14 @@
 """The keys of a world file."""
 
 from pydantic import ConfigDict, Field
+from pydantic.config import JsonDict
 
 from ekfsim.files.fields import Degrees, Metres, Name, Polygon, Pose, Probability, Ratio, Scale, Spread, Strict, Text
 
 POSE = {"x": 1.0, "y": 1.0, "theta": 90}
 SIGMA = {"x": 0.1, "y": 0.1, "theta": 5}
-OBSTACLES = [{"name": "desk", "points": [[4, 3], [5, 3], [5, 4], [4, 4]]}]
+DESK: JsonDict = {"name": "desk", "points": [[4, 3], [5, 3], [5, 4], [4, 4]]}
+LANDMARK: JsonDict = {"id": 3, "x": 5.0, "y": -5.0}
 ROOM = [[0, 0], [10, 0], [10, 8], [0, 8]]
 
 
@@ -66,12 +68,16 @@ class ToldNoiseKeys(Strict):
 class ObstacleKeys(Strict):
     """A polygon that stops robots and beams."""
 
+    model_config = ConfigDict(title="an obstacle", json_schema_extra={"examples": [DESK]})
+
     name: Name = Field(description="What messages and pictures call it; no two obstacles share a name.")
     points: Polygon = Field(description="Its corners in order, [x, y] in m; the outline closes by itself.")
 
 
 class LandmarkKeys(Strict):
     """A point that a sensor can tell apart from all others."""
+
+    model_config = ConfigDict(title="a landmark", json_schema_extra={"examples": [LANDMARK]})
 
     id: int = Field(description="A number of its own.", ge=0, le=2**31 - 1, examples=[3])
     x: Metres = Field(description="m")
@@ -95,7 +101,7 @@ class BeliefKeys(Strict):
         None, description="Names of the obstacles that the filter's map lacks.", examples=[["desk"]]
     )
     obstacles: list[ObstacleKeys] | None = Field(
-        None, description="The filter's whole list of obstacles, in place of the true one.", examples=[OBSTACLES]
+        None, description="The filter's whole list of obstacles, in place of the true one.", examples=[[DESK]]
     )
     boundary: Polygon | None = Field(None, description="The filter's own idea of the boundary.", examples=[ROOM])
 
@@ -133,10 +139,10 @@ class WorldKeys(Strict):
     obstacles: list[ObstacleKeys] = Field(
         [],
         description="Polygons that stop robots and beams; they may overlap, and cross the boundary.",
-        examples=[OBSTACLES],
+        examples=[[DESK]],
     )
     landmarks: list[LandmarkKeys] = Field(
-        [], description="Points for the sensors that see landmarks.", examples=[[{"id": 3, "x": 5.0, "y": -5.0}]]
+        [], description="Points for the sensors that see landmarks.", examples=[[LANDMARK]]
     )
     start: StartKeys = Field(description="Where the robot truly starts.", examples=[POSE])
     noise: NoiseKeys = Field(
