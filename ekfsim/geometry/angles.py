@@ -15,8 +15,8 @@ def wrap(angle: Array) -> Array:
     >>> float(wrap(np.radians(270.0)) * 180 / np.pi)
     -90.0
     """
-    turns = np.ceil((angle - np.pi) / (2 * np.pi))
-    return np.where((angle > -np.pi) & (angle <= np.pi), angle, angle - 2 * np.pi * turns)
+    rest = np.fmod(angle, 2 * np.pi)  # exact, as are the sums below: no rounding leads out of the range
+    return np.where(rest > np.pi, rest - 2 * np.pi, np.where(rest <= -np.pi, rest + 2 * np.pi, rest))
 
 
 def wrap_one(angle: float) -> float:
@@ -27,4 +27,7 @@ def wrap_one(angle: float) -> float:
     """
     if -math.pi < angle <= math.pi:
         return angle
-    return angle - 2 * math.pi * math.ceil((angle - math.pi) / (2 * math.pi))
+    rest = math.fmod(angle, 2 * math.pi)
+    if rest > math.pi:
+        return rest - 2 * math.pi
+    return rest + 2 * math.pi if rest <= -math.pi else rest
