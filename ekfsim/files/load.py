@@ -59,7 +59,11 @@ def read_world(path: str | Path, shown: str | None = None) -> Loaded[World]:
 
     Raises UsageError where there is no such file.
     """
-    file = read(Path(path), shown or str(path), "world")
+    return world_in(read(Path(path), shown or str(path), "world"))
+
+
+def world_in(file: "File") -> Loaded[World]:
+    """The world that was found in a file."""
     loaded = Loaded[World](mistakes=file.mistakes, warnings=file.warnings)
     if isinstance(file.keys, WorldKeys) and not file.mistakes:
         loaded.value = world_of(file.keys)
@@ -71,8 +75,11 @@ def read_scene(path: str | Path, world: str | Path | None = None) -> Loaded[Scen
 
     Raises UsageError where there is no such file.
     """
-    path = Path(path)
-    file = read(path, str(path), "commands")
+    return scene_in(read(Path(path), str(path), "commands"), Path(path), world)
+
+
+def scene_in(file: "File", path: Path, world: str | Path | None = None) -> Loaded[Scene]:
+    """The scene that was found in a file, in the world that it names or in the one given."""
     if file.sound is None:  # nothing can be read in it, not even its world
         return Loaded(mistakes=file.mistakes)
     source = Path(world) if world is not None else path.parent / (file.sound.value("world") or "")
@@ -108,7 +115,7 @@ def own_world(file: "File", source: Path) -> Loaded[World]:
 def kind_of(path: str | Path) -> Kind:
     """Whether a file is a world or a commands file. Raises UsageError or InputError where it cannot be read."""
     root, _ = parse(text_of(Path(path), str(path)), str(path))
-    return "commands" if is_commands(root) else "world"
+    return kind_of_tree(root)
 
 
 def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
@@ -116,31 +123,30 @@ def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
 
     Raises UsageError where there is no such file.
     """
-    try:
-        kind = kind_of(path)
-    except InputError as error:
-        return Loaded[World](mistakes=error.mistakes)
-    return read_world(path) if kind == "world" else read_scene(path)
+    file = read(Path(path), str(path), None)
+    return scene_in(file, Path(path)) if file.kind == "commands" else world_in(file)
 
 
 @dataclass
 class File:
     """What was found in a file of either kind."""
 
+    kind: Kind
     mistakes: list[Mistake]
     sound: Sound | None = None  # None where nothing in the file can be told apart
     keys: BaseModel | None = None  # None where a key is wrong
     warnings: list[str] = field(default_factory=list)
 
 
-def read(path: Path, shown: str, kind: Kind) -> File:
-    """Read a file as one of a kind. Raises UsageError where there is no such file."""
+def read(path: Path, shown: str, kind: Kind | None) -> File:
+    """Read a file as one of a kind, or as whatever it is. Raises UsageError where there is no such file."""
     try:
         root, mistakes = parse(text_of(path, shown), shown)
     except InputError as error:
-        return File(error.mistakes)
+        return File(kind or "world", error.mistakes)
+    kind = kind or kind_of_tree(root)
     if refusal := other_kind(root, kind):
-        return File([*mistakes, at(shown, *refusal)])
+        return File(kind, [*mistakes, at(shown, *refusal)])
     keys, wrong = None, set[tuple[str | int, ...]]()
     try:
         keys = MODELS[kind].model_validate(root.plain())
@@ -149,7 +155,7 @@ def read(path: Path, shown: str, kind: Kind) -> File:
         wrong = {detail["loc"] for detail in error.errors(include_url=False)}
     sound = Sound(shown, root, wrong)
     mistakes += check_world(sound) if kind == "world" else check_commands(sound)
-    return File(sorted(mistakes, key=in_order_of_place), sound, keys, list(angle_warnings(sound)))
+    return File(kind, sorted(mistakes, key=in_order_of_place), sound, keys, list(angle_warnings(sound)))
 
 
 def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
@@ -160,16 +166,16 @@ def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
     for key, what in LATER.items():
         if key in root.keys:
             return root.keys[key], (), f"'{key}' ({what}) is not read by this version", "write 'commands' instead"
-    if kind == "world" and is_commands(root):
+    if kind == "world" and kind_of_tree(root) == "commands":
         return root.mark, (), "this is a commands file", "name a world file here"
-    if kind == "commands" and not is_commands(root) and root.keys.keys() & ONLY_IN_WORLDS:
+    if kind == "commands" and kind_of_tree(root) == "world" and root.keys.keys() & ONLY_IN_WORLDS:
         return root.mark, (), "this is a world file: it has no 'commands'", "name a commands file here"
     return None
 
 
-def is_commands(root: Node) -> bool:
-    """Whether a file is a commands file, by its keys."""
-    return not root.keys.keys().isdisjoint(("commands", *LATER))
+def kind_of_tree(root: Node) -> Kind:
+    """The kind of a file, by its keys."""
+    return "world" if root.keys.keys().isdisjoint(("commands", *LATER)) else "commands"
 
 
 def in_order_of_place(mistake: Mistake) -> tuple[int, int]:

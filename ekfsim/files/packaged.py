@@ -55,14 +55,19 @@ def source_name(path: str | Path) -> str:
 
 
 def description_of(path: Path) -> str:
-    """The first line of a file's description, "" where it has none or cannot be read."""
-    from ekfsim.files.marked import parse
+    """The first line of a file's description, "" where it has none or cannot be read. Reads no further than that."""
+    import yaml
+
+    from ekfsim.files.marked import LOADER, Tree
     from ekfsim.files.source import text_of
 
+    tree, text = Tree(str(path)), None
     try:
-        root, _ = parse(text_of(path, str(path)), str(path))
-    except EkfsimError:
+        for event in yaml.parse(text_of(path, str(path)), Loader=LOADER):
+            tree.take(event)
+            if tree.open and (description := tree.open[0].node.get("description")):
+                text = description.value
+                break
+    except (EkfsimError, yaml.YAMLError):
         return ""
-    description = root.at(("description",))
-    text = description.value if description else ""
     return text.strip().partition("\n")[0] if isinstance(text, str) else ""

@@ -1,5 +1,7 @@
 """What stands in a file is what the objects hold: metres as they are, degrees as radians, beliefs resolved."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -195,6 +197,14 @@ def test_the_two_kinds_of_file(tmp_path):
     for text, kind in {"name: a\n": "world", "commands: []\n": "commands", "drive: x\n": "commands"}.items():
         path.write_text(text)
         assert kind_of(path) == kind
+
+
+def test_a_file_that_can_be_read_only_once_is_checked(tmp_path):
+    reading, writing = os.pipe()
+    with os.fdopen(writing, "w") as file:
+        file.write("name: room\n" + START + NOISE)
+    assert check(f"/dev/fd/{reading}").get().name == "room"
+    os.close(reading)
 
 
 def test_warnings(tmp_path):
