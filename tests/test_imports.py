@@ -1,0 +1,136 @@
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import ekfsim.cli
+
+PACKAGE = Path(ekfsim.cli.__file__).parent
+MODULES = {
+    ".".join(("ekfsim", *path.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(".__init__"): path
+    for path in PACKAGE.rglob("*.py")
+    if "_packaged" not in path.parts
+}
+ROOMS = (  # each imports only from those above it, and from its own
+    {"errors"},
+    {"geometry"},
+    {"models"},
+    {"filters"},
+    {"world"},
+    {"records"},
+    {"scene"},
+    {"consistency"},
+    {"summary", "provenance"},
+    {"files"},
+    {"simulation"},
+    {"localization"},
+    {"study"},
+    {"views"},
+    {"systems"},
+    {"cli", "ekfsim"},
+)
+CORE = {"geometry", "models", "filters", "world", "records", "scene", "consistency", "summary", "provenance",
+        "simulation", "localization"}  # fmt: skip
+HEAVY = ("numpy", "matplotlib", "pydantic", "shapely", "yaml", "scipy")
+
+
+def room_of(module):
+    parts = module.split(".")
+    return parts[1] if len(parts) > 1 else "ekfsim"
+
+
+def level(room):
+    return next(i for i, rooms in enumerate(ROOMS) if room in rooms)
+
+
+def imported(tree):
+    """Modules that a piece of source imports, with the names of `from … import …` joined where they are modules."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "no relative imports"
+            for alias in node.names:
+                joined = f"{node.module}.{alias.name}"
+                yield joined if joined in MODULES else node.module
+
+
+def at_module_level(path):
+    """Imports that run when a module is imported: not those in functions, nor those for type checkers."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for node in tree.body:
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            yield from imported(node)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_every_module_has_its_room(module):
+    assert any(room_of(module) in rooms for rooms in ROOMS)
+
+
+@pytest.mark.parametrize("module", [module for module in MODULES if module != "ekfsim"])
+def test_a_module_imports_only_from_rooms_above_its_own(module):
+    tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
+    below = {
+        other
+        for other in imported(tree)
+        if other.startswith("ekfsim.") and level(room_of(other)) > level(room_of(module))
+    }
+    assert below == set()
+
+
+def test_modules_import_no_rings():
+    graph = {
+        name: {m for m in imported(ast.parse(path.read_text(encoding="utf-8"))) if m in MODULES}
+        for name, path in MODULES.items()
+    }
+    done, path = set(), []
+
+    def visit(module):
+        assert module not in path, " → ".join([*path[path.index(module) :], module])
+        if module not in done:
+            path.append(module)
+            for other in graph[module] - {"ekfsim"}:
+                visit(other)
+            path.pop()
+            done.add(module)
+
+    for module in graph:
+        visit(module)
+
+
+@pytest.mark.parametrize("module", [module for module in MODULES if room_of(module) in CORE])
+def test_the_core_needs_numpy_alone(module):
+    assert {name.partition(".")[0] for name in at_module_level(MODULES[module])} & set(HEAVY) <= {"numpy"}
+
+
+@pytest.mark.parametrize("room", ["models", "filters", "geometry"])
+def test_the_mathematics_reads_and_writes_nothing(room):
+    for module, path in MODULES.items():
+        if room_of(module) == room:
+            calls = {
+                n.func.id
+                for n in ast.walk(ast.parse(path.read_text()))
+                if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
+            }
+            assert not calls & {"open", "print", "input"}, module
+
+
+@pytest.mark.parametrize("module", [module for module in MODULES if room_of(module) in CORE - {"simulation"}])
+def test_only_the_simulation_draws_random_numbers(module):
+    assert not any(name.startswith("numpy.random") for name in imported(ast.parse(MODULES[module].read_text())))
+    assert ".random" not in MODULES[module].read_text()
+
+
+@pytest.mark.parametrize(
+    "program",
+    ["import ekfsim", "import sys; sys.argv = ['ekfsim', '--help']; import ekfsim.cli; ekfsim.cli.main()"],
+    ids=["import ekfsim", "ekfsim --help"],
+)
+def test_a_start_is_light(program):
+    """The last line of the error stream lists what was imported."""
+    told = f"import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr)); {program}"
+    done = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True)
+    assert not set(done.stderr.split()) & set(HEAVY)
