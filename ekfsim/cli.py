@@ -108,9 +108,10 @@ def ekfsim() -> None:
 @FORCE
 def play(show: str, out: Path, conditional: bool, force: bool, confidence: float, **chosen: Any) -> None:
     """Step through COMMANDS with single keys: n next, p back, q quit, ? for all of them."""
+    from ekfsim.views.frames import Look
     from ekfsim.views.interactive import play_interactively
 
-    play_interactively(_scene(**chosen), show, out, confidence, conditional, force)
+    play_interactively(_scene(**chosen), show, out, Look(confidence, conditional), force)
 
 
 @ekfsim.command()
@@ -208,7 +209,7 @@ def list_packaged() -> None:
 @FORCE
 def new(file: Path, kind: str | None, force: bool) -> None:
     """Write a commented world or commands FILE to start from."""
-    from ekfsim.files.packaged import template
+    from ekfsim.files.template import template
     from ekfsim.files.writing import whole_text
 
     told = kind or next((kind for kind in ("commands", "world") if kind in file.stem.lower()), None)
@@ -226,13 +227,16 @@ def _scene(
     """The scene of a commands file, overruled by the options that were given."""
     from dataclasses import replace
 
-    from ekfsim.files.load import load_scene
+    from ekfsim.files.load import read_scene
     from ekfsim.files.packaged import resolve
     from ekfsim.filters import FILTERS
 
     if filter_name is not None and filter_name not in FILTERS:
         raise UsageError(f"--filter {filter_name}: there is no such filter; known: {', '.join(FILTERS)}")
-    scene = load_scene(resolve(commands, "commands"), None if world is None else resolve(world, "worlds"))
+    found = read_scene(resolve(commands, "commands"), None if world is None else resolve(world, "worlds"))
+    for warning in found.warnings:
+        _say(warning)
+    scene = found.get()
     chosen: dict[str, Any] = {"seed": seed, "run": run_number, "filter": filter_name, "gate": gate, "guard": guard}
     return replace(scene, **{name: value for name, value in chosen.items() if value is not None})
 

@@ -43,8 +43,8 @@ def inside_ellipse(belief: Gaussian, truth: Array, probability: float) -> Boolea
 def inside_cone(belief: Gaussian, truth: Array, probability: float) -> Booleans:
     """Whether the true heading lies inside the cone : (…)"""
     e, variance = error(belief, truth)[..., 2], belief.covariance[..., 2, 2]
-    reach = cone_factor(probability) * np.sqrt(variance)
-    return np.abs(e) <= np.where(variance > 0, reach, OUTSIDE)
+    squared_reach = cone_factor(probability) ** 2 * variance
+    return (e * e <= squared_reach) | ((variance <= 0) & (abs(e) <= OUTSIDE))
 
 
 def squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
@@ -75,24 +75,25 @@ def _full_rank_square(e: list[float], P: list[list[float]]) -> float | None:
     det C = Π Dᵢ/Pᵢᵢ, and no eigenvalue of C (they sum to n ≤ 3) is smaller than det C / 2.25. Held equal to the above
     by a test.
     """
-    det, total = 1.0, 0.0
-    L: list[list[float]] = []
-    D: list[float] = []
-    y: list[float] = []
-    for i, row in enumerate(P):
-        l_i: list[float] = []
-        for j in range(i):
-            l_i.append((row[j] - sum(l_i[k] * L[j][k] * D[k] for k in range(j))) / D[j])
-        D_i = row[i] - sum(l_ij * l_ij * D_j for l_ij, D_j in zip(l_i, D, strict=True))
-        det *= D_i / row[i] if row[i] > 0 else 0.0
-        if not det > CLEAR:
-            return None
-        y_i = e[i] - sum(l_ij * y_j for l_ij, y_j in zip(l_i, y, strict=True))
-        total += y_i * y_i / D_i
-        L.append(l_i)
-        D.append(D_i)
-        y.append(y_i)
-    return total
+    (a, b), (c, d) = P[0][:2], P[1][:2]
+    if not a > 0 < d:
+        return None
+    k = c / a
+    D = d - k * b
+    y = e[1] - k * e[0]
+    if not CLEAR * d < D:
+        return None
+    square = e[0] * e[0] / a + y * y / D
+    if len(e) == 2:
+        return square
+    p, q, r = P[2]
+    m = p / a
+    n = (q - m * b) / D
+    D3 = r - m * p - n * n * D
+    if len(e) > 3 or not (r > 0 and CLEAR * d * r < D * D3):
+        return None
+    y3 = e[2] - m * e[0] - n * y
+    return square + y3 * y3 / D3
 
 
 def _projected(e: Array, B: Array, kept: Booleans) -> Array:

@@ -25,3 +25,8 @@ def told_in_a_line(scene: Scene) -> str:
     """The same for a person."""
     facts = (f"{name} {value}" for name, value in provenance(scene).items() if value is not None)
     return ", ".join(facts)
+
+
+def metadata(scene: Scene) -> dict[str, str]:
+    """The same for the picture formats, whose notes are pairs of texts."""
+    return {"Software": f"ekfsim {VERSION}", "Description": told_in_a_line(scene)}

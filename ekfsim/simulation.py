@@ -4,7 +4,7 @@ The truth moves here and nowhere else; what the filter is given (odometry, range
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -32,33 +32,33 @@ class Draws:
         self._seed = seed
         self._runs = runs
 
-    def normals(self, i: int) -> Array:
-        """Standard normals of draw i : (…, 4)"""
+    def normals(self, i: int) -> Sequence[Array]:
+        """The four standard normals of draw i : (…) each"""
         return self._draw(i, uniforms=False)[0]
 
-    def uniforms(self, i: int) -> Array:
-        """Uniforms in [0, 1) of draw i : (…, 2)"""
-        return self._draw(i, uniforms=True)[1]
+    def normals_and_uniforms(self, i: int) -> tuple[Sequence[Array], Sequence[Array]]:
+        """The four standard normals and the two uniforms in [0, 1) of draw i : (…) each"""
+        return self._draw(i, uniforms=True)
 
-    def _draw(self, i: int, uniforms: bool) -> tuple[Array, Array]:
+    def _draw(self, i: int, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
         if self._runs.ndim == 0:
             return self._draw_one(i, *divmod(int(self._runs), BLOCK), uniforms)
-        normals_of, uniforms_of = np.empty((*self._runs.shape, 4)), np.empty((*self._runs.shape, 2))
+        normals_of, uniforms_of = np.empty((4, *self._runs.shape)), np.empty((2, *self._runs.shape))
         blocks = self._runs // BLOCK
         for b in np.unique(blocks):
             here = blocks == b
             rows = self._runs[here] % BLOCK
             generator = self._generator(i, int(b))
-            normals_of[here] = generator.standard_normal((BLOCK, 4))[rows]
+            normals_of[:, here] = generator.standard_normal((BLOCK, 4))[rows].T
             if uniforms:
-                uniforms_of[here] = generator.random((BLOCK, 2))[rows]
-        return normals_of, uniforms_of
+                uniforms_of[:, here] = generator.random((BLOCK, 2))[rows].T
+        return tuple(normals_of), tuple(uniforms_of)
 
-    def _draw_one(self, i: int, b: int, row: int, uniforms: bool) -> tuple[Array, Array]:
+    def _draw_one(self, i: int, b: int, row: int, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
         """The same for one run: of the normals no more than is needed, for the uniforms stand behind all of them."""
         generator = self._generator(i, b)
-        normals = generator.standard_normal((BLOCK if uniforms else row + 1, 4))[row]
-        return normals, generator.random((BLOCK, 2))[row] if uniforms else np.empty(2)
+        normals = generator.standard_normal((BLOCK if uniforms else row + 1, 4))[row].tolist()
+        return normals, generator.random((BLOCK, 2))[row].tolist() if uniforms else ()
 
     def _generator(self, i: int, b: int) -> np.random.Generator:
         return np.random.Generator(np.random.PCG64(np.random.SeedSequence([self._seed, i, b])))
@@ -72,7 +72,7 @@ def simulate(scene: Scene, runs: Integers | None = None) -> Iterator[Entry]:
     world, numbers = scene.world, np.asarray(scene.run if runs is None else runs, dtype=np.int64)
     draws, drawn = Draws(scene.seed, numbers), 0
     motion = MoveTurn(world.told.noise.odometry_distance, world.told.noise.odometry_angle)
-    truth = world.start + world.start_sigma * draws.normals(0)[..., :3]
+    truth = world.start + world.start_sigma * np.stack(draws.normals(0)[:3], axis=-1)
     truth[..., 2] = wrap(truth[..., 2])
     yield Entry(0, None, truth)
     for index, command in enumerate(expand(scene.commands), start=1):
@@ -93,17 +93,17 @@ def simulate(scene: Scene, runs: Integers | None = None) -> Iterator[Entry]:
                 yield Entry(index, None, truth, command)
 
 
-def _drive(world: World, pose: Array, move: Move, normal: Array) -> tuple[Array, Array, Integers]:
+def _drive(world: World, pose: Array, move: Move, normals: Sequence[Array]) -> tuple[Array, Array, Integers]:
     """Drive, then turn: the true pose after it (…, 3), the odometry (…, 2), and the wall that was bumped into (…)."""
     noise, faults = world.noise, world.faults
-    wheels = move.distance + noise.execution_distance * abs(move.distance) * normal[..., 0]
+    execution_distance, execution_angle, odometry_distance, odometry_angle = normals
+    wheels = move.distance + noise.execution_distance * abs(move.distance) * execution_distance
     way, bump = _until_wall(world, pose, (1 - move.slip) * wheels)
-    turn = move.angle + noise.execution_angle * abs(move.angle) * normal[..., 1]
+    turn = move.angle + noise.execution_angle * abs(move.angle) * execution_angle
     turned = way / (1 - move.slip) if move.slip < 1 else wheels  # what the wheels did of it
-    d = faults.odometry_distance_scale * turned + noise.odometry_distance * np.abs(turned) * normal[..., 2]
-    a = faults.odometry_angle_scale * turn + noise.odometry_angle * np.abs(turn) * normal[..., 3]
-    after = MoveTurn(0, 0).f(pose, np.stack([way, turn], axis=-1))
-    return after, np.stack([d, a], axis=-1), bump
+    d = faults.odometry_distance_scale * turned + noise.odometry_distance * abs(turned) * odometry_distance
+    a = faults.odometry_angle_scale * turn + noise.odometry_angle * abs(turn) * odometry_angle
+    return MoveTurn(0, 0).f(pose, _paired(way, turn)), _paired(d, a), bump
 
 
 def _until_wall(world: World, pose: Array, way: Array) -> tuple[Array, Integers]:
@@ -128,9 +128,20 @@ def _until_wall_one(world: World, pose: Array, way: float) -> tuple[Array, Integ
 
 def _measure(world: World, pose: Array, bearing: float, draws: Draws, i: int) -> Array:
     """The laser's reading along a bearing : (…, 1) m, nan where there is no echo."""
-    r = world.map.walls.cast(pose[..., :2], pose[..., 2] + bearing).range
+    if pose.ndim == 1:
+        x, y, θ = pose.tolist()
+        r = np.array(world.map.walls.first(x, y, θ + bearing)[0])
+    else:
+        r = world.map.walls.cast(pose[..., :2], pose[..., 2] + bearing).range
     if world.faults.short_returns > 0:
-        uniform = draws.uniforms(i)
-        r = np.where(uniform[..., 0] < world.faults.short_returns, uniform[..., 1] * r, r)
-    noise = world.noise.range * r * draws.normals(i)[..., 0]
-    return np.maximum(world.faults.range_scale * r + world.faults.range_bias + noise, 0.0)[..., None]
+        normals, (decides, u) = draws.normals_and_uniforms(i)
+        r = np.where(decides < world.faults.short_returns, u * r, r)
+    else:
+        normals = draws.normals(i)
+    z = world.faults.range_scale * r + world.faults.range_bias + world.noise.range * r * normals[0]
+    return np.maximum(z, 0.0)[..., None]
+
+
+def _paired(d: Array, a: Array) -> Array:
+    """(d, a) as a motion input : (…, 2)"""
+    return np.array([d, a]) if np.ndim(d) == 0 else np.stack(np.broadcast_arrays(d, a), axis=-1)

@@ -4,11 +4,10 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
-from ekfsim.consistency import Evidence, error
-from ekfsim.filters.belief import Gaussian, Refused
+from ekfsim.consistency import Evidence
+from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
+from ekfsim.geometry.angles import wrap_one
 from ekfsim.records import Control, Step
 
 
@@ -110,6 +109,6 @@ class Summary:
 
 
 def _measure(mean: Array, truth: Array, position: Errors, heading: Errors) -> None:
-    ex, ey, eθ = error(Gaussian(mean, np.empty(0)), truth).tolist()
+    ex, ey, eθ = (mean - truth).tolist()
     position.add(math.hypot(ex, ey))
-    heading.add(eθ)
+    heading.add(wrap_one(eθ))

@@ -13,7 +13,7 @@ from ekfsim.files.checks import Sound, angle_warnings, check_commands, check_wor
 from ekfsim.files.commands_file import CommandsKeys
 from ekfsim.files.marked import Mark, Node, parse
 from ekfsim.files.marked import Path as Route
-from ekfsim.files.packaged import source_name
+from ekfsim.files.packaged import resolve, source_name
 from ekfsim.files.schema import MODELS, Kind
 from ekfsim.files.source import bytes_of, text_of
 from ekfsim.files.telling import at, tell
@@ -42,16 +42,19 @@ class Loaded(Generic[T]):
 
 
 def load_world(path: str | Path) -> World:
-    """The world that a file describes. Raises UsageError where there is no file, InputError with all its mistakes."""
-    return read_world(path).get()
+    """The world that a file describes, or one that comes along by its bare name.
+
+    Raises UsageError where there is no such file, InputError with all its mistakes.
+    """
+    return read_world(resolve(path, "worlds")).get()
 
 
 def load_scene(path: str | Path, world: str | Path | None = None) -> Scene:
-    """The scene that a commands file describes, in its own world or in the one given.
+    """The scene that a commands file describes, in its own world or in the one given; also packaged ones by name.
 
     Raises UsageError where a file is missing, InputError with all mistakes of both files.
     """
-    return read_scene(path, world).get()
+    return read_scene(resolve(path, "commands"), None if world is None else resolve(world, "worlds")).get()
 
 
 def read_world(path: str | Path, shown: str | None = None) -> Loaded[World]:

@@ -8,7 +8,7 @@ from ekfsim.filters.belief import Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array, Booleans, Integers
 
-CERTAIN = 1e-20  # S below this share of |H|² tr P is rounding: nothing is uncertain along H
+CERTAIN = 1e-20  # H P Hᵀ below this share of |H|² tr P is rounding: nothing is uncertain along H
 
 
 def symmetric(P: Array) -> Array:
@@ -17,10 +17,10 @@ def symmetric(P: Array) -> Array:
 
 
 def innovation_covariance(P: Array, H: Array, R: Array) -> Array:
-    """S = H P Hᵀ + R : (…, k, k), exactly 0 where all of it is rounding."""
-    S = H @ P @ H.mT + R
+    """S = H P Hᵀ + R : (…, k, k), exactly R where the rest is rounding."""
+    HPHt = H @ P @ H.mT
     rounding = CERTAIN * np.sum(H * H, axis=(-2, -1)) * np.trace(P, axis1=-2, axis2=-1)
-    return np.where(np.abs(S) <= rounding[..., None, None], 0.0, S)
+    return np.where(np.abs(HPHt) <= rounding[..., None, None], 0.0, HPHt) + R
 
 
 def gain(P: Array, H: Array, S: Array) -> Array:

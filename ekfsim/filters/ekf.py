@@ -62,17 +62,18 @@ class EKF:
     ) -> tuple[Gaussian, Correction]:
         """The same for one robot and one number: no masks, a third of the time, held equal to the above by a test."""
         x, P = prior
-        PHt = P @ H[0]
-        s, r = float(H[0] @ PHt + R[0, 0]), float(R[0, 0])
-        if abs(s) <= CERTAIN * float(H[0] @ H[0]) * float(P.trace()):
-            s = 0.0
+        H_row, r = H[0], float(R[0, 0])
+        PHt = P @ H_row
+        s = float(H_row @ PHt)
+        s = (s if s > CERTAIN * float(H_row @ H_row) * float(P.trace()) else 0.0) + r
         nis = float(ν[0]) ** 2 / s if s > 0 else math.nan
         refused = refusal_one(z, h, nis, skip, self.gate)
-        k = PHt / s if refused is Refused.NOT and s > 0 else np.zeros_like(x)
-        posterior = prior
+        posterior, k = prior, np.zeros_like(x)
         if refused is Refused.NOT and s > 0:
-            I_KH = np.eye(len(x)) - np.outer(k, H[0])
-            posterior = Gaussian(self._wrapped(x + k * ν), symmetric(I_KH @ P @ I_KH.T + np.outer(r * k, k)))
+            k = PHt / s
+            I_KH_P = P - k[:, None] * PHt
+            joseph = I_KH_P - (I_KH_P @ H_row)[:, None] * k + (r * k)[:, None] * k
+            posterior = Gaussian(self._wrapped(x + k * ν), symmetric(joseph))
         return posterior, Correction(h, ν, R, np.array([[s]]), H, k[:, None], np.array(nis), np.array(int(refused)))
 
     def _wrapped(self, x: Array) -> Array:

@@ -4,9 +4,9 @@ A wall is met from either side: a beam that starts inside an obstacle, or outsid
 its way, whosesoever it is. What a beam through a corner, along a wall or from a wall meets is told in grid.py.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 from math import cos, isfinite, nan, sin
 from typing import Self
 
@@ -75,8 +75,15 @@ class Walls:
             ranges, walls = np.array([r for r, _ in hits]), np.array([wall for _, wall in hits], np.int64)
         return Hit(ranges.reshape(heading.shape), walls.reshape(heading.shape))
 
-    def first(self, x: float, y: float, heading: float) -> tuple[float, int]:
-        """Range and wall of one beam from (x, y) m towards `heading` rad; nan and -1 where it meets none."""
+    @cached_property
+    def first(self) -> Callable[[float, float, float], tuple[float, int]]:
+        """first(x, y, heading): range and wall of one beam from (x, y) m; nan and -1 where it meets none.
+
+        Remembers the last few: a beam is looked along before its reading is used, and followed again when it is.
+        """
+        return lru_cache(maxsize=8)(self._first)
+
+    def _first(self, x: float, y: float, heading: float) -> tuple[float, int]:
         grid = self.grid
         if grid is None or not isfinite(x + y + heading):
             return nan, -1

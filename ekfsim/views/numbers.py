@@ -3,28 +3,25 @@
 import math
 from collections.abc import Iterable
 
-from ekfsim.geometry import Array
-
 NOISE = 1e-15  # what is smaller is a rounding error of metres, radians or their squares
+
+
+def fill(template: str, *values: float) -> str:
+    """A template with a number in the place of each %.6g.
+
+    >>> fill("x=%.6g, y=%.6g, z=%.6g", 1 / 3, 6.1e-17, -0.0)
+    'x=0.333333, y=0, z=0'
+    """
+    return template % tuple([0.0 if -NOISE < value < NOISE else value for value in values])
 
 
 def number(value: float) -> str:
     """Six significant digits.
 
-    >>> number(1 / 3), number(6.1e-17), number(-0.0)
-    ('0.333333', '0', '0')
+    >>> number(1 / 3), number(6.1e-17)
+    ('0.333333', '0')
     """
-    return f"{value:.6g}" if abs(value) >= NOISE else "0"
-
-
-def degrees(angle: float) -> str:
-    """A heading in (−180, 180].
-
-    >>> degrees(math.pi / 2), degrees(-math.pi + 1e-9)
-    ('90', '180')
-    """
-    text = number(math.degrees(angle))
-    return "180" if text == "-180" else text
+    return fill("%.6g", value)
 
 
 def turn(angle: float) -> str:
@@ -36,22 +33,21 @@ def turn(angle: float) -> str:
     return number(math.degrees(angle))
 
 
-def pose(state: Iterable[float]) -> str:
-    """(x, y, θ) in m, m, degrees.
+def heading(angle: float) -> float:
+    """A heading in degrees, in (−180, 180] also when six digits of it are read.
+
+    >>> number(heading(math.pi / 2)), number(heading(-math.pi + 1e-9))
+    ('90', '180')
+    """
+    degrees = math.degrees(angle)
+    return degrees + 360 if degrees < -179.9995 else degrees
+
+
+def pose(state: Iterable[float]) -> tuple[float, float, float]:
+    """x and y in m, θ in degrees.
 
     >>> pose([1.0, 2.5, math.pi])
-    '(1, 2.5, 180)'
+    (1.0, 2.5, 180.0)
     """
-    x, y, theta = state
-    return f"({number(x)}, {number(y)}, {degrees(theta)})"
-
-
-def matrix(P: Array) -> list[str]:
-    """A line for each row.
-
-    >>> import numpy as np
-    >>> matrix(np.eye(2))
-    ['[[1 0]', '[0 1]]']
-    """
-    rows = ["[" + " ".join(map(number, row)) + "]" for row in P.tolist()]
-    return ["[" + rows[0], *rows[1:-1], rows[-1] + "]"]
+    x, y, θ = state
+    return x, y, heading(θ)

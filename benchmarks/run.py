@@ -1,0 +1,126 @@
+"""`ekfsim run`, narrative included, against filterpy's predict and update with a range from shapely, per command.
+
+A room with 30 obstacles; as many moves as beams. filterpy is given everything that costs it nothing (ready Jacobians,
+ready noise); it writes no narrative, draws no random number and judges nothing.
+
+python benchmarks/run.py [--quick]
+"""
+
+import argparse
+import math
+from collections.abc import Callable
+
+import numpy as np
+import shapely
+from timing import optional, ratios
+
+from ekfsim.geometry import Array
+from ekfsim.localization import play
+from ekfsim.records import Move, Repeat, Sense
+from ekfsim.scene import Scene
+from ekfsim.summary import Summary
+from ekfsim.views.closing import conclude
+from ekfsim.views.narrative import narrate
+from ekfsim.views.playback import views
+from ekfsim.world import Map, Noise, Obstacle, Told, World
+
+COMMANDS = 1000
+NOISE = Noise(0.01, 0.01, 0.002, 0.002, 0.01)
+REACH = 50.0  # m, longer than the room
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="fewer rounds")
+    rounds = 3 if parser.parse_args().quick else 7
+    scene = furnished()
+    peers = {}
+    if optional("filterpy") is not None:
+        rings = [shapely.LinearRing(points) for _, points in scene.world.map.rings()]
+        peers = {
+            "filterpy + shapely, one union": peer(scene, by_union(rings)),
+            "filterpy + shapely STRtree": peer(scene, by_tree(rings)),
+        }
+    print(f"{COMMANDS} commands among {len(scene.world.map.walls.segments)} walls, per run")
+    for ratio in ratios(lambda: narrative(scene), peers, rounds, seconds=0.5):
+        print(ratio)
+
+
+def furnished() -> Scene:
+    """A room of 20 m by 16 m with 30 square pillars, and a robot that drives round a square beside them."""
+    pillars = [(0.7 * i + 8, y) for i in range(15) for y in (1.0, 15.0)]
+    obstacles = tuple(
+        Obstacle(f"pillar {n}", np.array([[x, y], [x + 0.3, y], [x + 0.3, y + 0.3], [x, y + 0.3]]))
+        for n, (x, y) in enumerate(pillars)
+    )
+    room = Map(np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 16.0], [0.0, 16.0]]), obstacles)
+    start = np.array([4.0, 8.0, 0.0])
+    world = World("pillars", room, start, np.zeros(3), NOISE, Told(start, np.zeros(3), NOISE, room))
+    lap = (Move(1.0, math.pi / 2), Sense(0.0), Move(1.0, math.pi / 2), Sense(math.pi / 2))
+    return Scene(world, (Repeat(COMMANDS // len(lap), lap),))
+
+
+def narrative(scene: Scene) -> int:
+    """What `ekfsim run` does: every step, every line of the narrative, the verdict. How many characters that is."""
+    characters, summary = 0, Summary()
+    for view in views(play(scene)):
+        characters += len(narrate(view, scene))
+        if not view.beam:
+            summary.add(view.step)
+    return characters + len(conclude(summary))
+
+
+def peer(scene: Scene, cast: Callable[[float, float, float], float]) -> Callable[[], object]:
+    """As many predicts and updates with filterpy as there are commands, each with a range of shapely's."""
+    from filterpy.kalman import ExtendedKalmanFilter
+
+    controls = np.array([[1.0], [math.pi / 2]])
+
+    class Robot(ExtendedKalmanFilter):  # type: ignore[misc]
+        def predict_x(self, u: Array = controls) -> None:
+            x, y, θ = self.x[:, 0]
+            self.x = np.array([[x + u[0, 0] * math.cos(θ)], [y + u[0, 0] * math.sin(θ)], [θ + u[1, 0]]])
+
+    def predicted(x: Array) -> Array:
+        return np.array([[cast(*x[:, 0])]])
+
+    def jacobian(x: Array) -> Array:
+        return np.array([[math.cos(x[2, 0]), math.sin(x[2, 0]), 0.1]])
+
+    def run() -> object:
+        robot = Robot(dim_x=3, dim_z=1)
+        robot.Q, robot.P, robot.R = np.eye(3) * 1e-4, np.eye(3) * 1e-3, np.eye(1) * 1e-3
+        for _ in range(COMMANDS):
+            robot.x = np.array([[4.0], [8.0], [0.3]])
+            robot.predict(u=controls)
+            robot.update(np.array([[8.0]]), jacobian, predicted)
+        return robot
+
+    return run
+
+
+def by_union(rings: list[shapely.LinearRing]) -> Callable[[float, float, float], float]:
+    """The first thing one writes: the distance to the beam's intersection with the union of all walls."""
+    walls = shapely.unary_union(rings)
+
+    def cast(x: float, y: float, heading: float) -> float:
+        beam = shapely.LineString([(x, y), (x + REACH * math.cos(heading), y + REACH * math.sin(heading))])
+        return float(shapely.Point(x, y).distance(beam.intersection(walls)))
+
+    return cast
+
+
+def by_tree(rings: list[shapely.LinearRing]) -> Callable[[float, float, float], float]:
+    """The same with a tree over the polygons' rings."""
+    tree = shapely.STRtree(rings)
+
+    def cast(x: float, y: float, heading: float) -> float:
+        beam = shapely.LineString([(x, y), (x + REACH * math.cos(heading), y + REACH * math.sin(heading))])
+        near = tree.geometries.take(tree.query(beam, predicate="intersects"))
+        return float(np.min(shapely.distance(shapely.Point(x, y), shapely.intersection(beam, near))))
+
+    return cast
+
+
+if __name__ == "__main__":
+    main()
