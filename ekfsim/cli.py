@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import click
 
@@ -212,9 +212,10 @@ def new(file: Path, kind: str | None, force: bool) -> None:
     from ekfsim.files.template import template
     from ekfsim.files.writing import whole_text
 
-    told = kind or next((kind for kind in ("commands", "world") if kind in file.stem.lower()), None)
-    if told is None:
+    name = file.stem.lower()
+    if kind is None and ("world" in name) == ("command" in name):
         raise UsageError(f"{file}: a world or commands? say --kind world or --kind commands")
+    told: Literal["world", "commands"] = "world" if kind == "world" or (kind is None and "world" in name) else "commands"
     with whole_text(file, force) as out:
         out.write(template(told))
     click.echo(f"{file}: a {told} file to start from; ekfsim check {file} validates it")

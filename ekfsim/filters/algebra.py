@@ -27,9 +27,8 @@ def gain(P: Array, H: Array, S: Array) -> Array:
     """K = P Hᵀ S⁻¹ : (…, n, k), zero where nothing is uncertain (S = 0) or nothing was predicted (S is nan)."""
     PHt: Array = P @ H.mT
     if S.shape[-1] == 1:
-        K: Array = np.divide(PHt, S, out=np.zeros_like(PHt), where=S > 0)
-    else:
-        K = PHt @ np.linalg.pinv(np.nan_to_num(S), hermitian=True)
+        return np.divide(PHt, S, out=np.zeros_like(PHt), where=S > 0)
+    K: Array = PHt @ np.linalg.pinv(np.nan_to_num(S), hermitian=True)
     return K
 
 
@@ -37,7 +36,8 @@ def normalized_square(innovation: Array, S: Array) -> Array:
     """NIS = νᵀ S⁻¹ ν : (…), nan where S = 0 or nothing was measured or predicted."""
     if S.shape[-1] == 1:
         s, ν = S[..., 0, 0], innovation[..., 0]
-        return np.divide(ν * ν, s, out=np.full(np.broadcast_shapes(ν.shape, s.shape), np.nan), where=s > 0)
+        nis: Array = np.divide(ν * ν, s, out=np.full(np.broadcast_shapes(ν.shape, s.shape), np.nan), where=s > 0)
+        return nis
     solved = np.matvec(np.linalg.pinv(np.nan_to_num(S), hermitian=True), innovation)
     return np.where(np.any(S != 0, axis=(-2, -1)), np.vecdot(innovation, solved), np.nan)
 

@@ -4,9 +4,9 @@ A wall is met from either side: a beam that starts inside an obstacle, or outsid
 its way, whosesoever it is. What a beam through a corner, along a wall or from a wall meets is told in grid.py.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import cached_property, lru_cache, partial
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from math import cos, isfinite, nan, sin
 from typing import Self
 
@@ -16,6 +16,7 @@ from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.grid import CHUNK, REACH, TIE, Grid, meet, see
 
 COLLINEAR = 1e-9  # rad, and of the polygon's size: edges that differ by less lie on one line
+RECENT = 8  # beams that are remembered
 FEW = 128  # beams that are sooner followed one by one than all at once
 
 
@@ -37,6 +38,7 @@ class Walls:
     edge: Integers  # (W,) which edge of it: edge j joins points j and j + 1, the last closes the ring
     line: Integers  # (W,) edges of one polygon on one straight line share a number
     names: tuple[str, ...]  # of the polygons
+    _recent: dict[tuple[float, float, float], tuple[float, int]] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, rings: Mapping[str, Array]) -> Self:
@@ -75,15 +77,20 @@ class Walls:
             ranges, walls = np.array([r for r, _ in hits]), np.array([wall for _, wall in hits], np.int64)
         return Hit(ranges.reshape(heading.shape), walls.reshape(heading.shape))
 
-    @cached_property
-    def first(self) -> Callable[[float, float, float], tuple[float, int]]:
-        """first(x, y, heading): range and wall of one beam from (x, y) m; nan and -1 where it meets none.
+    def first(self, x: float, y: float, heading: float) -> tuple[float, int]:
+        """Range and wall of one beam from (x, y) m towards `heading` rad; nan and -1 where it meets none.
 
-        Remembers the last few: a beam is looked along before its reading is used, and followed again when it is.
+        The last few are remembered: a beam is looked along before its reading is used, and followed again when it is.
         """
-        return lru_cache(maxsize=8)(self._first)
+        beam = x, y, heading
+        hit = self._recent.get(beam)
+        if hit is None:
+            if len(self._recent) >= RECENT:
+                self._recent.clear()
+            hit = self._recent[beam] = self._follow(x, y, heading)
+        return hit
 
-    def _first(self, x: float, y: float, heading: float) -> tuple[float, int]:
+    def _follow(self, x: float, y: float, heading: float) -> tuple[float, int]:
         grid = self.grid
         if grid is None or not isfinite(x + y + heading):
             return nan, -1

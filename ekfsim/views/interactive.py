@@ -39,9 +39,9 @@ def play_interactively(scene: Scene, show: str, out: Path, look: "Look", force: 
     window: Window | None = None
     screen: Screen
     if window_wanted:
-        from ekfsim.views.window import Window
+        from ekfsim.views import window as windows
 
-        screen = window = Window(scene, extent, look)
+        screen = window = windows.Window(scene, extent, look)
     elif show == "files":
         screen = pictures
     else:
