@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
+from ekfsim.errors import UsageError
 from ekfsim.files.trace import Trace
 from ekfsim.files.trajectories import Table, Tum
-from ekfsim.files.writing import refuse_existing, whole_text
+from ekfsim.files.writing import refuse_existing, special, whole_text
 from ekfsim.provenance import provenance
 from ekfsim.records import Step
 from ekfsim.scene import Scene
@@ -37,11 +38,13 @@ class Outputs:
     def open(self, scene: Scene, confidence: float, summary: Summary) -> Iterator[list[Sink]]:
         """The sinks for the steps of this scene. The files appear when the block ends well, all of them or none.
 
-        Raises UsageError before anything is written if one of them exists and `force` is False.
+        Raises UsageError before anything is written if one of them exists and `force` is False, or is named twice.
         """
         paths = [path for path in (self.trace, self.csv, self.summary, *self._tum()) if path]
         for path in paths:
             refuse_existing(path, self.force)
+            if paths.count(path) > 1 and not special(path):
+                raise UsageError(f"{path}: named twice; give each result a file of its own")
         with ExitStack() as stack:
             file_of = {path: stack.enter_context(whole_text(path, self.force)) for path in paths}
             sinks: list[Sink] = []

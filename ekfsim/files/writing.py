@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 import shutil
 import stat
 from collections.abc import Iterator
@@ -15,12 +16,13 @@ from ekfsim.errors import RunError, UsageError
 
 def refuse_existing(path: Path, force: bool) -> None:
     """Raise UsageError where a result stands already and `force` does not allow to replace it."""
-    if _special(path):
+    if special(path):
         return
-    if path.is_dir() and not path.is_symlink():
-        raise UsageError(f"{path}: this is a folder; name a file")
-    if path.exists() and not force:
-        raise UsageError(f"{path}: exists already; choose another name, or replace it with --force")
+    with told(path):
+        if path.is_dir() and not path.is_symlink():
+            raise UsageError(f"{path}: this is a folder; name a file")
+        if path.exists() and not force:
+            raise UsageError(f"{path}: exists already; choose another name, or replace it with --force")
 
 
 @contextmanager
@@ -32,7 +34,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     Raises UsageError if a result exists and `force` is False, RunError if the disk refuses.
     """
     refuse_existing(path, force)
-    if _special(path):
+    if special(path):
         with told(path):
             yield path
         return
@@ -53,7 +55,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
 @contextmanager
 def whole_text(path: Path, force: bool = False) -> Iterator[TextIO]:
     """The same, opened for text."""
-    with whole_file(path, force) as beside, beside.open("w", encoding="utf-8", newline="\n") as file:
+    with whole_file(path, force) as beside, _opened(beside) as file:
         yield file
         file.flush()  # a full disk must show before the rename
 
@@ -104,12 +106,28 @@ def told(path: Path) -> Iterator[None]:
         raise RunError(f"{path}: writing failed: {refusal.strerror}") from refusal
 
 
-def _special(path: Path) -> bool:
+def special(path: Path) -> bool:
+    """Whether a path is no place for a result to be put in, but a way to where it is written straight."""
+    if _descriptor(path) is not None:  # even where standard output is a regular file: nothing may take its place
+        return True
     try:
         mode = path.stat().st_mode
     except OSError:
         return False
     return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
+
+
+def _opened(path: Path) -> TextIO:
+    """A file to write text to; one that is open already, as /dev/stdout, goes on where it is."""
+    descriptor = _descriptor(path)
+    return open(path if descriptor is None else os.dup(descriptor), "w", encoding="utf-8", newline="\n")
+
+
+def _descriptor(path: Path) -> int | None:
+    """The number of the open file that /dev/stdout, /dev/fd/3 and their like stand for; None for any other path."""
+    name = os.path.abspath(path)
+    numbered = re.fullmatch(r"/(?:dev|proc/self)/fd/(\d+)", name)
+    return int(numbered[1]) if numbered else {"/dev/stdout": 1, "/dev/stderr": 2}.get(name)
 
 
 def _umask() -> int:
