@@ -1,0 +1,106 @@
+"""A run as pictures: numbered PNG files in a folder, a GIF or an MP4. Memory does not grow with their number."""
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+from ekfsim.errors import UsageError
+from ekfsim.files.writing import refuse_existing, whole_file, whole_folder
+from ekfsim.provenance import provenance, told_in_a_line
+from ekfsim.records import expanded_length
+from ekfsim.scene import Scene
+from ekfsim.views import gif, video
+from ekfsim.views.frames import STANDARD, Frame, Look
+from ekfsim.views.limits import Limits
+from ekfsim.views.playback import View
+from ekfsim.views.png import Pixels
+
+BEAM, OTHER, LAST = 0.8, 1.2, 3.2  # s that a view stays
+PATTERN = "frame-*.png"
+DIGITS, UNKNOWN_DIGITS = 4, 6  # in the pictures' names: at least, and where the length of a run is not known
+
+Progress = Callable[[int], object]  # told the number of pictures made so far
+
+
+def render(
+    views: Iterable[View],
+    scene: Scene,
+    limits: Limits,
+    target: Path,
+    *,
+    look: Look = STANDARD,
+    every: int = 1,
+    force: bool = False,
+    progress: Progress = lambda made: None,
+) -> None:
+    """Make a picture of every `every`-th view, and of the last.
+
+    A target that ends in .gif or .mp4 is an animation, one without a suffix a folder of numbered PNG files.
+    Raises UsageError if the target is of another kind, exists (without `force`), or cannot be made here.
+    """
+    if every < 1:
+        raise UsageError(f"every {every}th view: choose 1 or more")
+    suffix = "" if target.is_dir() else target.suffix.lower()
+    if suffix not in ("", ".gif", ".mp4"):
+        raise UsageError(f"{target}: '{suffix}' is no kind of picture; name a .gif, an .mp4, or a folder for PNG files")
+    write_video = video.writer() if suffix == ".mp4" else None
+    if suffix:
+        refuse_existing(target, force)
+    frame, shown = Frame(scene, limits, look), _reported(thinned(views, every), progress)
+    if suffix == "":
+        with whole_folder(target, PATTERN, force) as folder:
+            _number(folder, frame, shown, scene)
+        return
+    with whole_file(target, force) as path:
+        if write_video is not None:
+            write_video(path, _timed(frame, shown), told_in_a_line(scene))
+        else:
+            with path.open("wb") as file:
+                gif.write(file, _timed(frame, shown), told_in_a_line(scene))
+
+
+def number_of_pictures(views: int, every: int) -> int:
+    """How many pictures `render` makes of so many views: every `every`-th, from the first, and the last.
+
+    >>> [number_of_pictures(views, 3) for views in (1, 2, 4, 5)]
+    [1, 2, 2, 3]
+    """
+    return 1 + -(-(views - 1) // every)
+
+
+def thinned(views: Iterable[View], every: int) -> Iterator[View]:
+    """Every `every`-th view, from the first, and the last."""
+    for view, is_last in _lasting(views):
+        if view.number % every == 0 or is_last:
+            yield view
+
+
+def _number(folder: Path, frame: Frame, views: Iterable[View], scene: Scene) -> None:
+    """frame-0000.png, … by the views' numbers, with digits enough for them to sort."""
+    most = 2 * expanded_length(scene.commands) + 1
+    digits = max(DIGITS, len(str(most))) if scene.commands else UNKNOWN_DIGITS
+    made_by = {name: str(value) for name, value in provenance(scene).items() if value is not None}
+    for view in views:
+        picture = frame.png(view, {**made_by, "view": str(view.number)})
+        (folder / f"frame-{view.number:0{digits}d}.png").write_bytes(picture)
+
+
+def _timed(frame: Frame, views: Iterable[View]) -> Iterator[tuple[Pixels, float]]:
+    """The pixels of each view and how many s it stays."""
+    for view, is_last in _lasting(views):
+        yield frame.rgb(view), LAST if is_last else BEAM if view.beam else OTHER
+
+
+def _reported(views: Iterable[View], progress: Progress) -> Iterator[View]:
+    for made, view in enumerate(views, start=1):
+        yield view
+        progress(made)
+
+
+def _lasting(views: Iterable[View]) -> Iterator[tuple[View, bool]]:
+    """Each view, and whether it is the last."""
+    coming = iter(views)
+    view = next(coming, None)
+    while view is not None:
+        following = next(coming, None)
+        yield view, following is None
+        view = following

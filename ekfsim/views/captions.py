@@ -1,0 +1,137 @@
+"""The words in a picture: the command, what is to be seen of it, and what made the picture."""
+
+import math
+
+from ekfsim.filters.belief import Refused
+from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse, radius_factor
+from ekfsim.records import Entry, Kidnap, Move, Reading, Say, Sense, Step
+from ekfsim.scene import Scene
+from ekfsim.views.beams import Beam, called, length
+from ekfsim.views.lettering import shortened
+from ekfsim.views.playback import View
+
+REFUSALS = {
+    Refused.NO_ECHO: "no echo: nothing to learn",
+    Refused.NO_WALL: "refused: the filter's map has no wall there",
+    Refused.GUARD: "refused by the guard: the beam is ambiguous",
+    Refused.GATE: "refused by the gate: too far from what was predicted",
+}
+ARROWS = "→↗↑↖←↙↓↘"
+
+
+def title(entry: Entry, total: int) -> str:
+    """The command and its number: "3 of 12: move 1.75 m, turn 90°"."""
+    number = f"{entry.index} of {total}" if total else str(entry.index)
+    return f"{number}: {_asked(entry)}"
+
+
+def _asked(entry: Entry) -> str:
+    match entry.command:
+        case Move(distance, angle, slip):
+            return f"move {signed(distance)} m, turn {degrees(angle)}" + (f", slip {slip:g}" if slip else "")
+        case Sense(angle):
+            return f"sense at {degrees(angle)}"
+        case Kidnap(x, y, theta):
+            return f"kidnap to ({signed(x)}, {signed(y)}), heading {degrees(theta)}"
+        case Say():
+            return "say"
+    if entry.index == 0:
+        return "the start"
+    return "reading" if isinstance(entry.given, Reading) else "motion"
+
+
+def notes(view: View, scene: Scene, beam: Beam | None) -> list[str]:
+    """What is to be seen in this view, a paragraph each."""
+    step = view.step
+    match step.entry.command:
+        case Say(text):
+            return [text]
+        case Kidnap():
+            return ["the robot was carried away; the filter was not told"]
+    if view.beam:
+        return [] if beam is None else [*_ranges(beam), *_warnings(beam)]
+    told = []
+    if step.entry.bump is not None and (wall := int(step.entry.bump)) >= 0:
+        told.append(f"bumped into {called(scene.world.map.walls.name(wall)[0])}")
+    if step.correction is not None:
+        refused = Refused(int(step.correction.refused))
+        told.append(REFUSALS[refused] + "; the estimate stays" if refused else "the estimate is revised")
+    return told
+
+
+def _ranges(beam: Beam) -> list[str]:
+    predicted = "no wall expected" if math.isnan(beam.predicted) else f"expected {length(beam.predicted)}"
+    if math.isnan(beam.measured):
+        return [f"no echo; {predicted}"]
+    return [f"measured {length(beam.measured)}, {predicted}: the beam ends {beam.ending}"]
+
+
+def _warnings(beam: Beam) -> list[str]:
+    told = []
+    if beam.ambiguous:
+        told.append("ambiguous: from a pose 3σ away it would meet another wall, or none")
+    if beam.grazing is not None:
+        told.append(f"grazing: {math.degrees(beam.grazing):.2g}° between beam and wall")
+    if beam.refused in (Refused.GUARD, Refused.GATE, Refused.NO_WALL):
+        told.append(REFUSALS[beam.refused])
+    return ["; ".join(told)] if told else []
+
+
+def spread(view: View, probability: float) -> str:
+    """How large ellipse and cone are, in numbers."""
+    P = view.belief.covariance
+    shape = ellipse(P, probability)
+    half = math.degrees(cone_halfwidth(float(P[2, 2]), probability))
+    return f"radii {length(float(shape.major))}, {length(float(shape.minor))}; heading ± {half:.3g}°"
+
+
+def too_large(view: View, probability: float) -> str:
+    """What stands for an ellipse that the picture cannot hold."""
+    shape = ellipse(view.belief.covariance, probability)
+    radii = f"{length(float(shape.major))} and {length(float(shape.minor))}"
+    return f"the {percent(probability)} ellipse is larger than the picture: radii {radii}"
+
+
+def away(step: Step, view: View) -> str:
+    """Where the truth is, seen from the estimate: "truth 1.3 m away ↗"."""
+    assert step.entry.truth is not None
+    east, north = step.entry.truth[:2] - view.belief.mean[:2]
+    arrow = ARROWS[round(math.atan2(north, east) / (math.pi / 4)) % 8]
+    return f"truth {length(math.hypot(east, north))} away {arrow}"
+
+
+def source(scene: Scene) -> str:
+    """What made the picture: "classroom — seed 7, run 0, ekf"."""
+    gate = f", gate {percent(scene.gate)}" if scene.gate is not None else ""
+    guard = ", guard skips" if scene.guard == "skip" else ""
+    return f"{shortened(scene.world.name, 30)} — seed {scene.seed}, run {scene.run}, {scene.filter}{gate}{guard}"
+
+
+def ellipse_label(probability: float) -> str:
+    """As the legend has it: "95.4 % ellipse (2.48 σ)"."""
+    return f"{percent(probability)} ellipse ({radius_factor(probability):.3g} σ)"
+
+
+def cone_label(probability: float) -> str:
+    """As the legend has it: "heading ± 2 σ (95.4 %)"."""
+    return f"heading ± {cone_factor(probability):.3g} σ ({percent(probability)})"
+
+
+def conditioned_label(probability: float, sign: int) -> str:
+    """As the legend has it: "ellipse if heading is at +2 σ"."""
+    return f"ellipse if heading is at {'+' if sign > 0 else '−'}{cone_factor(probability):.3g} σ"
+
+
+def percent(probability: float) -> str:
+    """A probability as people write it: "95.4 %"."""
+    return f"{100 * probability:.6g} %"
+
+
+def degrees(angle: float) -> str:
+    """An angle in rad as people write it: "90°"."""
+    return f"{signed(round(math.degrees(angle), 6))}°"
+
+
+def signed(value: float) -> str:
+    """A number with a minus sign rather than a hyphen."""
+    return f"{value:g}".replace("-", "−")

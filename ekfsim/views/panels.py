@@ -1,0 +1,128 @@
+"""The two Axes of a picture: the world as a whole, and the surroundings of the estimate."""
+
+import math
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from ekfsim.geometry.ellipse import ellipse
+from ekfsim.records import Command, Repeat, Sense
+from ekfsim.scene import Scene
+from ekfsim.views.artists import BeamArtists, BeliefArtists, WorldArtists
+from ekfsim.views.beams import Beam, length
+from ekfsim.views.captions import away
+from ekfsim.views.limits import Limits
+from ekfsim.views.outlined import OutlinedText
+from ekfsim.views.playback import View
+
+BODY = 0.022  # of the picture's longer side: the robot's radius
+CLOSE_BODY = 0.07  # of the close-up's width: what the cone and the true heading are measured by there
+ROOM = 2.6  # major radii across the close-up
+REACH = 3.0  # major radii from the estimate up to which the close-up widens to hold the truth
+CERTAIN = 0.1  # of the picture's longer side: the close-up's width where nothing is uncertain
+NARROWEST = 1e-4  # m
+
+
+class Main:
+    """World, belief, truth and beam on one Axes."""
+
+    def __init__(self, axes: Axes, scene: Scene, limits: Limits, probability: float, conditional: bool) -> None:
+        self._scene = scene
+        self.axes = axes
+        self.world = WorldArtists(axes, scene.world)
+        static = set(axes.get_children())
+        self.belief = BeliefArtists(axes, probability, conditional)
+        self.beam = BeamArtists(axes)
+        self.moving = [child for child in axes.get_children() if child not in static]
+        axes.set_aspect("equal", adjustable="box")
+        axes.set(xlabel="x (m)", ylabel="y (m)")
+        self.limit(limits)
+
+    def limit(self, limits: Limits) -> None:
+        """Show this much of the plane, and more to the shape of the Axes."""
+        box = self.axes.get_position(original=True)
+        figure = self.axes.get_figure(root=True)
+        assert figure is not None
+        width, height = figure.get_size_inches()
+        self.limits = limits.shaped(float(box.width * width / (box.height * height)))
+        self.axes.set(xlim=(self.limits.left, self.limits.right), ylim=(self.limits.bottom, self.limits.top))
+
+    def show(self, view: View, beam: Beam | None) -> None:
+        """Move the artists to a view."""
+        self.belief.show(view, BODY * self.limits.size)
+        self.beam.show(beam, 2 * self.limits.size)
+
+    def handles(self) -> Iterator[Artist | tuple[Artist, ...]]:
+        """What the legend shows, in its order."""
+        yield from self.belief.handles()
+        yield from self.world.handles()
+        if senses(self._scene.commands) or not self._scene.commands:
+            yield from self.beam.handles()
+
+
+class CloseUp:
+    """The surroundings of the estimate, as wide as its ellipse asks for, with a scale bar."""
+
+    def __init__(self, axes: Axes, scene: Scene, probability: float, conditional: bool) -> None:
+        self._probability = probability
+        self.axes = axes
+        self.world = WorldArtists(axes, scene.world)
+        self.belief = BeliefArtists(axes, probability, conditional, body=False)
+        self.beam = BeamArtists(axes)
+        axes.set_aspect("equal", adjustable="box")
+        axes.set(xticks=[], yticks=[])
+        axes.set_title("close-up of the estimate", fontsize=9, pad=4)
+        self.bar = axes.add_line(
+            Line2D(
+                [], [], color="black", lw=2.5, solid_capstyle="butt", transform=axes.transAxes, zorder=6, gid="scale"
+            )
+        )
+        figure = axes.get_figure(root=True)
+        assert figure is not None
+        systems = axes.transAxes, figure.dpi_scale_trans
+        self.scale = OutlinedText(0.05, 0.07, 8, *systems, "scale-text", halo=True)
+        self.away = OutlinedText(0.05, 0.91, 8, *systems, "truth-away", halo=True)
+        axes.add_artist(self.scale)
+        axes.add_artist(self.away)
+        self.moving = [*(child for child in axes.get_children() if child.get_gid()), *axes.spines.values()]
+
+    def show(self, view: View, beam: Beam | None, world: Limits) -> None:
+        """Move there, and show it."""
+        x, truth = view.belief.mean, view.step.entry.truth
+        width = close_width(view, self._probability, CERTAIN * world.size)
+        self.axes.set(xlim=(x[0] - width / 2, x[0] + width / 2), ylim=(x[1] - width / 2, x[1] + width / 2))
+        self.belief.show(view, CLOSE_BODY * width)
+        self.beam.show(beam, 2 * width)
+        bar = one_two_five(width / 6)
+        self.bar.set_data([0.05, 0.05 + bar / width], [0.045, 0.045])
+        self.scale.set_text(length(bar))
+        hidden = truth is not None and float(np.abs(truth[:2] - x[:2]).max()) > width / 2
+        self.away.set_text(away(view.step, view) if hidden else "")
+
+
+def close_width(view: View, probability: float, certain: float) -> float:
+    """How wide the close-up is, in m: 1, 2 or 5 times a power of ten, so that it seldom changes."""
+    radius, truth = float(ellipse(view.belief.covariance, probability).major), view.step.entry.truth
+    if radius == 0:
+        return one_two_five(max(certain, NARROWEST))
+    error = 0.0 if truth is None else math.hypot(*(truth[:2] - view.belief.mean[:2]))
+    held = error if error <= REACH * radius else 0.0
+    return one_two_five(max(ROOM * max(radius, held), NARROWEST))
+
+
+def one_two_five(least: float) -> float:
+    """The smallest 1, 2 or 5 times a power of ten that is not less.
+
+    >>> one_two_five(0.03), one_two_five(0.5), one_two_five(7)
+    (0.05, 0.5, 10.0)
+    """
+    power = math.floor(math.log10(least))
+    return next(v for digit in (1, 2, 5, 10, 20) if (v := float(f"{digit}e{power}")) >= least)
+
+
+def senses(commands: Iterable[Command]) -> bool:
+    """Whether any of the commands, repeated ones included, is a sense."""
+    return any(senses(c.commands) if isinstance(c, Repeat) else isinstance(c, Sense) for c in commands)
