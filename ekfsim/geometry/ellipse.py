@@ -55,9 +55,9 @@ def ellipse(P: Array, probability: float) -> Ellipse:
         return _ellipse_one(float(P[0, 0]), float(P[0, 1]), float(P[1, 1]), radius_factor(probability))
     a, b, c = P[..., 0, 0], P[..., 0, 1], P[..., 1, 1]
     m, δ = (a + c) / 2, (a - c) / 2
-    λ1 = m + np.hypot(δ, b)
+    λ1 = np.maximum(m + np.hypot(δ, b), 0.0)  # below 0 it is rounding, as det is
     det = a * c - b * b
-    thin = det <= ROUNDING * λ1 * λ1  # also where P is 0
+    thin = (det <= ROUNDING * λ1 * λ1) | (λ1 == 0)
     λ2 = np.where(thin, 0.0, det) / np.where(thin, 1.0, λ1)
     φ = np.arctan2(b, δ) / 2 % np.pi
     k = radius_factor(probability)
@@ -68,8 +68,8 @@ def ellipse(P: Array, probability: float) -> Ellipse:
 def _ellipse_one(a: float, b: float, c: float, k: float) -> Ellipse:
     """The same for one covariance in plain floats: ten times as fast, held equal to the above by a test."""
     m, δ = (a + c) / 2, (a - c) / 2
-    λ1, det = m + math.hypot(δ, b), a * c - b * b
-    λ2 = det / λ1 if det > ROUNDING * λ1 * λ1 else 0.0
+    λ1, det = max(m + math.hypot(δ, b), 0.0), a * c - b * b
+    λ2 = det / λ1 if λ1 and det > ROUNDING * λ1 * λ1 else 0.0
     φ = math.atan2(b, δ) / 2 % math.pi
     return Ellipse(np.array(k * math.sqrt(λ1)), np.array(k * math.sqrt(λ2)), np.array(φ if φ < math.pi else 0.0))
 

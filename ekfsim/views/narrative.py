@@ -7,7 +7,7 @@ import numpy as np
 from ekfsim.consistency import BAND, inside_cone, inside_ellipse
 from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.filters.chi_square import band
-from ekfsim.geometry.ellipse import cone_factor, ellipse
+from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse
 from ekfsim.models.laser import GRAZING, Laser, Sighting
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Control, Kidnap, Move, Nees, Reading, Say, Sense, Step
@@ -155,7 +155,8 @@ def _expected(step: Step, c: Correction) -> str:
     if math.isnan(h) or step.sighting is None:
         return "No range was predicted: no wall of the filter's map lies that way\n"
     incidence = math.degrees(float(step.sighting.incidence))
-    return fill(EXPECTED.format(_wall_name(step, int(step.sighting.wall))), h, incidence, *c.H[0].tolist())
+    name = _wall_name(step, int(step.sighting.wall)).replace("%", "%%")
+    return fill(EXPECTED.format(name), h, incidence, *c.H[0].tolist())
 
 
 def _innovation(c: Correction) -> str:
@@ -169,7 +170,7 @@ def _innovation(c: Correction) -> str:
 
 def _uncertainty(belief: Gaussian, probability: float) -> str:
     drawn, factor = ellipse(belief.covariance, probability), cone_factor(probability)
-    halfwidth = factor * math.sqrt(belief.covariance[2, 2])
+    halfwidth = cone_halfwidth(float(belief.covariance[2, 2]), probability)
     return fill(
         ELLIPSE.format(factor),
         float(drawn.minor),

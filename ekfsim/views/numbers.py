@@ -40,7 +40,7 @@ def heading(angle: float) -> float:
     ('90', '180')
     """
     degrees = math.degrees(angle)
-    return degrees + 360 if degrees < -179.9995 else degrees
+    return degrees + 360 if degrees <= -179.9995 else degrees
 
 
 def pose(state: Iterable[float]) -> tuple[float, float, float]:
