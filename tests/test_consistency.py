@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numerics import covariance
 from scipy.stats import chi2
@@ -100,6 +100,7 @@ def test_the_rank_is_counted_where_all_variances_are_one():
         assert squared_error(np.array([[0.1, 0.1]]), P[None])[1] == rank
 
 
+@settings(max_examples=8)
 @given(seeds)
 def test_nees_of_errors_drawn_from_the_covariance_is_chi_square(seed):
     random = np.random.default_rng(seed)

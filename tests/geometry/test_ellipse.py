@@ -79,6 +79,13 @@ def test_no_width_is_no_radius():
     assert cone_halfwidth(-1e-30, 0.954) == 0  # rounding
 
 
+@pytest.mark.parametrize("P", [-1e-15 * np.eye(2), np.array([[-1.83e-15, 1.79e-15], [1.79e-15, -1.75e-15]])])
+def test_a_negative_rounding_error_is_no_radius(P):
+    for drawn in (ellipse(P, 0.954), ellipse(P[None], 0.954)):
+        assert 0 <= drawn.minor <= drawn.major < 1e-7
+        assert 0 <= drawn.orientation < math.pi
+
+
 def test_the_heading_changes_nothing():
     P = covariance(np.random.default_rng(13), 3)
     assert ellipse(P, 0.9) == ellipse(P[:2, :2], 0.9)

@@ -1,0 +1,92 @@
+import csv
+import io
+import math
+
+import numpy as np
+import pytest
+from scenes import rich, scene
+
+from ekfsim.filters.belief import Refused
+from ekfsim.files.trajectories import COLUMNS, Table, Tum
+from ekfsim.geometry.ellipse import ellipse
+from ekfsim.localization import play
+from ekfsim.provenance import provenance
+from ekfsim.records import Move
+
+
+def tum_of(scene):
+    truth, estimate = io.StringIO(), io.StringIO()
+    tum = Tum(truth, estimate, scene)
+    for step in play(scene):
+        tum.write(step)
+    return truth.getvalue(), estimate.getvalue()
+
+
+def test_a_line_a_step_with_its_pose_as_a_unit_quaternion():
+    truth, estimate = tum_of(rich())
+    steps = list(play(rich()))
+    for text, poses in ((truth, [s.entry.truth for s in steps]), (estimate, [s.posterior.mean for s in steps])):
+        rows = np.loadtxt(io.StringIO(text))  # comments are skipped, as evo skips them
+        assert rows.shape == (len(steps), 8)
+        assert rows[:, 0].tolist() == list(range(len(steps)))
+        for row, (x, y, theta) in zip(rows, poses, strict=True):
+            assert row[1:3].tolist() == [x, y]
+            assert row[3:6].tolist() == [0, 0, 0]
+            assert math.hypot(*row[6:]) == pytest.approx(1, abs=1e-15)
+            assert math.remainder(2 * math.atan2(row[6], row[7]) - theta, 2 * math.pi) == pytest.approx(0, abs=1e-12)
+
+
+def test_they_say_what_made_them():
+    for text, name in zip(tum_of(rich()), ("truth", "estimate"), strict=True):
+        first = text.splitlines()[0]
+        assert first.startswith(f"# {name}: ekfsim ")
+        assert "seed 3, run 0" in first
+
+
+def rows_of(scene, confidence=0.954):
+    file = io.StringIO()
+    table = Table(file, scene, confidence)
+    for step in play(scene):
+        table.write(step)
+    return list(csv.DictReader(io.StringIO(file.getvalue())))
+
+
+def test_every_row_has_every_column():
+    rows = rows_of(rich())
+    assert len(rows) == len(list(play(rich())))
+    for row in rows:
+        assert list(row) == [*COLUMNS, *provenance(rich()), "confidence"]
+        assert "nan" not in row.values()
+        assert row["seed"] == "3"
+
+
+@pytest.mark.parametrize("guard", ["warn", "skip"])
+def test_a_row_holds_the_numbers_of_its_step(guard):
+    made = rich(guard=guard)
+    for row, step in zip(rows_of(made, 0.9), play(made), strict=True):
+        x, P = step.posterior
+        drawn = ellipse(P, 0.9)
+        expected = {
+            **dict(zip(("x", "y", "theta"), x, strict=True)),
+            **dict(zip(("true_x", "true_y", "true_theta"), step.entry.truth, strict=True)),
+            **{"P_xx": P[0, 0], "P_xy": P[0, 1], "P_xtheta": P[0, 2], "P_yy": P[1, 1], "P_ytheta": P[1, 2]},
+            **{"P_thetatheta": P[2, 2], "nees_dof": step.nees.dof, "impossible": step.nees.impossible},
+            **{f"ellipse_{name}": getattr(drawn, name) for name in ("major", "minor", "orientation")},
+        }
+        if not step.nees.impossible:
+            expected["nees"] = step.nees.value
+        if step.correction is not None:
+            c = step.correction
+            expected |= {"range": step.entry.given.z[0], "predicted_range": c.predicted[0], "nis": c.nis}
+            expected |= {"innovation": c.innovation[0], "innovation_variance": c.S[0, 0]}
+            assert row["refused"] == (Refused(int(c.refused)).word or "")
+        for name, value in expected.items():
+            assert row[name] == "" if math.isnan(value) else float(row[name]) == value, name
+        kind = "start" if step.entry.command is None else type(step.entry.command).__name__.lower()
+        assert (int(row["index"]), row["type"]) == (step.entry.index, kind)
+
+
+def test_a_move_has_no_reading():
+    row = rows_of(scene(Move(1.0, 0.5)))[1]
+    reading = ("range", "predicted_range", "innovation", "innovation_variance", "nis", "refused")
+    assert {row[name] for name in reading} == {""}

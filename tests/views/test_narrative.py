@@ -1,0 +1,283 @@
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scenes import DESK, ROOM, rich, scene, told, unbounded
+
+from ekfsim.filters.belief import Correction, Gaussian, Prediction, Refused
+from ekfsim.geometry.walls import Walls
+from ekfsim.localization import play
+from ekfsim.models.laser import Laser, Sighting
+from ekfsim.models.move_turn import MoveTurn
+from ekfsim.provenance import VERSION
+from ekfsim.records import Control, Entry, Kidnap, Move, Nees, Reading, Say, Sense, Step
+from ekfsim.views.narrative import narrate
+from ekfsim.views.playback import View, views
+
+TURN = math.pi / 2
+PLACE = scene(obstacles=(DESK,))
+BEFORE = Gaussian(np.array([1.0, -1.25, math.radians(86.5)]), np.zeros((3, 3)))
+P = np.array([[0.04, 0.0, -0.001], [0.0, 0.01, 0.0005], [-0.001, 0.0005, 0.0025]])
+AFTER = Gaussian(np.array([1.25, 0.5, math.radians(-178.25)]), P)
+TRUTH = np.array([1.15, 0.5, math.pi])
+WALLS = PLACE.world.map.walls
+
+
+def nees(value=0.279, dof=3, impossible=False):
+    return Nees(np.array(value), np.array(dof), np.array(impossible))
+
+
+def said(step, beam=False, place=PLACE, **settings):
+    return narrate(View(1, step, beam, [], 0), place, **settings)
+
+
+def moved(command=Move(1.75, TURN), bump=-1, measured=nees(), truth=TRUTH):  # noqa: B008
+    control = Control(MoveTurn(0.02, 0.03), np.array([1.75991, math.radians(95.8725)]))
+    entry = Entry(1, control, truth, command, np.array(bump))
+    return Step(entry, BEFORE, AFTER, prediction=Prediction(np.eye(3), np.eye(3, 2)), nees=measured)
+
+
+def sensed(
+    z=2.00572, h=2.00698, wall=2, incidence=80.0, ambiguous=False, probes=(2,) * 6, nis=0.000359, refused=Refused.NOT
+):
+    """A reading whose numbers are those of no filter."""
+    number = np.array([[0.0665**2]])
+    correction = Correction(
+        np.array([h]), np.array([z - h]), number, number, np.array([[0, 1.00059, 0.0689879]]),
+        np.array([[0.5], [-0.25], [0.125]]), np.array(nis), np.array(int(refused)),
+    )  # fmt: skip
+    sighting = Sighting(
+        np.array(wall), np.radians(incidence), np.array(ambiguous), np.zeros((6, 3)), np.ones(6), np.array(probes)
+    )
+    entry = Entry(2, Reading(Laser(WALLS, TURN, 0.01), np.array([z])), TRUTH, Sense(TURN))
+    return Step(entry, BEFORE, AFTER, correction=correction, sighting=sighting, nees=nees())
+
+
+MOVED = """\
+==>The robot moved: distance=1.75, angle=90
+The odometry measured: distance=1.75991, angle=95.8725
+Current state estimate is (x, y, th) = (1, -1.25, 86.5)
+New state estimate is (x, y, theta) = (1.25, 0.5, -178.25)
+New state covariance matrix is:
+[[0.04 0 -0.001]
+[0 0.01 0.0005]
+[-0.001 0.0005 0.0025]]
+
+True state is (x, y, th) = (1.15, 0.5, 180)
+Uncertainty ellipse is:
+  minor radius is 0.248158
+  major radius is 0.496316
+  orientation is 0 degrees
+  2*sigma_theta is 5.72958 degrees
+The true position lies inside the ellipse, the true heading inside the cone; NEES is 0.279 (3 degrees of freedom)
+
+"""
+BEAM = """\
+==>Commanding the robot to sense at an angle of 90
+The range is 2.00572
+
+"""
+REVISED = """\
+The predicted range was 2.00698
+It was expected to meet edge 2 of boundary at 80 degrees
+The derivatives are:
+  dh/dx = 0, dh/dy = 1.00059, dh/dth = 0.0689879
+The innovation is -0.00126, its standard deviation 0.0665; NIS is 0.000359
+The Kalman gain is (x, y, th) = (0.5, -0.25, 0.125)
+Revised state estimate: (x, y, theta) = (1.25, 0.5, -178.25)
+Revised covariance matrix is:
+[[0.04 0 -0.001]
+[0 0.01 0.0005]
+[-0.001 0.0005 0.0025]]
+Uncertainty ellipse is:
+  minor radius is 0.248158
+  major radius is 0.496316
+  orientation is 0 degrees
+  2*sigma_theta is 5.72958 degrees
+The true position lies inside the ellipse, the true heading inside the cone; NEES is 0.279 (3 degrees of freedom)
+
+"""
+
+
+def test_a_move():
+    assert said(moved()) == MOVED
+
+
+def test_a_sense_is_told_in_two_views():
+    assert said(sensed(), beam=True) == BEAM
+    assert said(sensed()) == REVISED
+
+
+def test_a_kidnapping_and_a_word():
+    carried = Step(Entry(3, None, TRUTH, Kidnap(3.0, 2.0, -math.pi)), AFTER, AFTER, nees=nees(50.0))
+    told = said(carried)
+    assert told.startswith("==>The robot was carried away to (x, y, th) = (3, 2, 180); the filter was not told\n")
+    assert "NEES is 50 (3 degrees of freedom)\nNEES lies above its two-sided 99 % band, 0.0717218 to 12.8382\n" in told
+    assert said(Step(Entry(4, None, TRUTH, Say("Now watch.\n")), AFTER, AFTER, nees=nees())) == "==>Now watch.\n\n"
+
+
+def test_the_start_says_what_made_it():
+    step = next(iter(play(PLACE)))
+    told = narrate(View(0, step, False, [], 0), PLACE)
+    assert told.startswith(f"ekfsim {VERSION}, ")
+    assert "seed 0, run 0" in told.splitlines()[0]
+    assert "First state estimate is (x, y, theta) = (1, 1, 30)\n" in told
+    assert "[[0 0 0]\n[0 0 0]\n[0 0 0]]\n\nTrue state is (x, y, th) = (1, 1, 30)\n" in told
+    assert "NEES is 0 (0 degrees of freedom)\n" in told
+    assert "==>" not in told
+
+
+def lines(text):
+    return text.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("step", "beam", "line"),
+    [
+        (moved(bump=4), False, "It bumped into edge 0 of desk and stopped short of it; the filter was not told"),
+        (moved(Move(1.0, 0.0, slip=0.25)), False, "==>The robot moved: distance=1, angle=0, slip=0.25"),
+        (moved(Move(-1.0, -4 * math.pi)), False, "==>The robot moved: distance=-1, angle=-720"),
+        (sensed(z=math.nan, refused=Refused.NO_ECHO), True, "There is no echo: the beam met no wall"),
+        (sensed(z=math.nan, nis=math.nan, refused=Refused.NO_ECHO), False, "No echo: the reading is not used"),
+        (sensed(h=math.nan, nis=math.nan, wall=-1, refused=Refused.NO_WALL), False, "No wall: the reading is not used"),
+        (sensed(h=math.nan, nis=math.nan, wall=-1, refused=Refused.NO_WALL), False,
+         "No range was predicted: no wall of the filter's map lies that way"),
+        (sensed(refused=Refused.GUARD), False, "Guard: this ambiguous reading is left out"),
+        (sensed(nis=50.0, refused=Refused.GATE), False,
+         "Gate: this reading is refused, its NIS is too large to be believed"),
+        (sensed(nis=50.0), False, "NIS lies above its two-sided 99 % band, 3.92704e-05 to 7.87944"),
+        (sensed(nis=1e-5), False, "NIS lies below its two-sided 99 % band, 3.92704e-05 to 7.87944"),
+        (sensed(nis=math.nan), False,
+         "The innovation is -0.00126; nothing is uncertain, so NIS is undefined and the gain is 0"),
+        (sensed(ambiguous=True, probes=(2, 2, 1, -1, 1, 2)), True,
+         "This beam is ambiguous: expected to meet edge 2 of boundary, but from a pose within 3 sigma it would meet "
+         "edge 1 of boundary or no wall"),
+        (sensed(ambiguous=True, wall=-1, probes=(-1, 4, -1, -1, 7, 4)), True,
+         "This beam is ambiguous: expected to meet no wall, but from a pose within 3 sigma it would meet "
+         "edge 0 of desk or edge 3 of desk"),
+        (sensed(incidence=7.5), True,
+         "This beam grazes its wall at 7.5 degrees (below 15): a small turn would move its end far"),
+        (moved(measured=nees(math.nan, 2, True)), False,
+         "The true position lies inside the ellipse, the true heading inside the cone; the belief is impossible: "
+         "the error has a part where the covariance claims certainty"),
+        (moved(measured=nees(1.0, 1)), False,
+         "The true position lies inside the ellipse, the true heading inside the cone; "
+         "NEES is 1 (1 degree of freedom)"),
+        (moved(truth=np.array([1.25 - 0.5, 0.5, 0.0])), False,
+         "The true position lies outside the ellipse, the true heading outside the cone; "
+         "NEES is 0.279 (3 degrees of freedom)"),
+    ],
+)  # fmt: skip
+def test_every_line_of_its_own(step, beam, line):
+    assert line in lines(said(step, beam))
+    assert line not in MOVED + BEAM + REVISED
+
+
+def test_what_was_not_used_has_no_gain():
+    for refused in set(Refused) - {Refused.NOT}:
+        assert "Kalman gain" not in said(sensed(refused=refused))
+
+
+def test_without_a_guard_there_is_no_warning():
+    doubtful = sensed(ambiguous=True, incidence=3.0, probes=(1,) * 6)
+    assert said(doubtful, beam=True, place=replace(PLACE, guard="off")) == BEAM
+
+
+def test_the_truth_is_told_only_where_it_is_known():
+    told = said(moved(truth=None, measured=None))
+    assert "true" not in told.lower()
+    assert "NEES" not in told
+
+
+def test_another_confidence_has_another_ellipse_and_cone():
+    told = said(moved(), probability=0.5)
+    assert "  minor radius is 0.117741\n  major radius is 0.235482\n" in told
+    assert "  0.6745*sigma_theta is 1.93227 degrees\n" in told
+
+
+@pytest.mark.parametrize("name", ["100 % oak", "50%d", "{desk}", "a ==> b", "%(x)s"])
+def test_any_name_of_an_obstacle_can_be_told(name):
+    place = scene(Move(9.0, 0.0), Sense(0.0), Sense(0.7), start=(2, 3.5, 0), obstacles=(replace(DESK, name=name),))
+    story = "".join(narrate(view, place) for view in views(play(place)))
+    assert f" of {name} and stopped short" in story
+    assert f"It was expected to meet edge 3 of {name} at 90 degrees" in story
+
+
+FLOAT = r"-?[\d.]+(?:e[-+]\d+)?"
+
+
+def numbers(pattern, text):
+    found = re.search(pattern, text)
+    assert found, (pattern, text)
+    return [float(n) for n in re.findall(FLOAT, found[0].split("=", 1)[-1])]
+
+
+def near(told, values):
+    return told == pytest.approx(np.asarray(values, float).ravel(), rel=5.1e-6, abs=1.1e-15)
+
+
+def pose(x):
+    return [x[0], x[1], math.degrees(x[2])]
+
+
+def turned_alike(told, x):
+    return (
+        near(told[:2], x[:2]) and math.cos(math.radians(told[2]) - x[2]) == pytest.approx(1) and -180 < told[2] <= 180
+    )
+
+
+@pytest.mark.parametrize("made", [rich(), rich(seed=5, gate=None, guard="skip"), unbounded()])
+def test_every_number_told_is_that_of_the_step(made):
+    for view in views(play(made)):
+        text, step = narrate(view, made), view.step
+        for printed in re.findall(rf"(?<![\w.]){FLOAT}(?![\w.])", text):
+            assert not re.fullmatch(r"-0(\.0*)?", printed)
+        assert "nan" not in text.split()
+        assert text.endswith("\n\n")
+        if step.entry.command is not None:
+            assert text.startswith("==>") == (view.beam or not isinstance(step.entry.command, Sense))
+        if isinstance(step.entry.command, Move):
+            assert turned_alike(numbers(r"New state estimate is .*", text), step.posterior.mean)
+            assert turned_alike(numbers(r"Current state estimate is .*", text), step.prior.mean)
+            assert turned_alike(numbers(r"True state is .*", text), step.entry.truth)
+            d, a = step.entry.given.u
+            assert near(numbers(r"odometry measured: distance=.*,", text), [d])
+            assert near(numbers(r"measured: distance=.*, angle(=.*)", text)[-1:], [math.degrees(a)])
+            assert near(numbers(r"covariance matrix is:(?s:.*?)\]\]", text), step.posterior.covariance)
+        if step.correction is not None and not view.beam:
+            assert turned_alike(numbers(r"Revised state estimate: .*", text), step.posterior.mean)
+            assert near(numbers(r"covariance matrix is:(?s:.*?)\]\]", text), step.posterior.covariance)
+            if step.correction.refused == Refused.NOT:
+                assert near(numbers(r"gain is .*", text), step.correction.K)
+                h, ν = step.correction.predicted[0], step.correction.innovation[0]
+                assert near(numbers(r"predicted range was .*", text), [h])
+                assert near(numbers(r"innovation is .*?,", text), [ν])
+                assert near(numbers(r"standard deviation .*?;", text), [math.sqrt(step.correction.S[0, 0])])
+
+
+def test_no_rounding_error_and_no_minus_zero_is_printed():
+    tiny = Gaussian(np.array([-0.0, 1e-17, -0.0]), np.array([[1e-17, -1e-18, -0.0], [-1e-18, 0, 0], [-0.0, 0, 0]]))
+    entry = Entry(1, Control(MoveTurn(0, 0), np.array([-0.0, -1e-17])), np.zeros(3), Move(-0.0, -0.0), np.array(-1))
+    told = said(Step(entry, tiny, tiny, nees=nees(0.0, 0)))
+    assert re.findall(r"(?<![\w*])-?0(?![\w.*])", told).count("-0") == 0
+    assert "e-1" not in told
+    assert "[[0 0 0]\n[0 0 0]\n[0 0 0]]" in told
+
+
+@pytest.mark.parametrize("degrees", [-180, -179.9999, -179.9996, -179.99951, -179.9995, -179.99949, 180, 179.99999])
+def test_headings_are_printed_above_minus_180(degrees):
+    x = Gaussian(np.array([0, 0, math.radians(degrees)]), P)
+    told = said(Step(moved().entry, x, x, nees=nees()))
+    (shown,) = set(re.findall(r"estimate is \(.*\) = \(0, 0, (.*)\)", told))
+    assert shown != "-180"
+    assert float(shown) == pytest.approx(degrees, abs=1e-3) or shown == "180"
+
+
+def test_a_perfect_laser_is_told_too():
+    """Nothing is uncertain along the second beam."""
+    made = scene(*[Sense(0.3)] * 3, Sense(1.0), Sense(1.0), Sense(0.3), sigma=(0.1, 0.1, 0.1))
+    for seed in range(20):
+        perfect = replace(told(made, noise=replace(made.world.noise, range=0.0)), seed=seed)
+        assert "==>" in "".join(narrate(view, perfect) for view in views(play(perfect)))
