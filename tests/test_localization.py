@@ -3,7 +3,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scenes import rich, scene, told
+from scenes import SILENT, rich, scene, told
 
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian, Refused
@@ -109,8 +109,6 @@ def test_the_gate_of_the_scene_is_the_gate_of_the_filter():
 
 
 def test_a_robot_without_noise_is_never_wrong():
-    from scenes import SILENT
-
     for step in play(scene(Move(1.0, 0.5), Sense(0.3), Move(-0.5, 9.0), Sense(1.0), noise=SILENT)):
         assert step.posterior.mean == pytest.approx(step.entry.truth, abs=1e-12)
         assert (step.posterior.covariance == 0).all()

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scenes import rich, scene
 
-from ekfsim.filters.belief import Refused
 from ekfsim.files.trajectories import COLUMNS, Table, Tum
+from ekfsim.filters.belief import Refused
 from ekfsim.geometry.ellipse import ellipse
 from ekfsim.localization import play
 from ekfsim.provenance import provenance

@@ -10,7 +10,7 @@ from scenes import scene
 
 from ekfsim.errors import RunError, UsageError
 from ekfsim.files.outputs import Outputs
-from ekfsim.files.writing import whole_file, whole_folder, whole_text
+from ekfsim.files.writing import whole_folder, whole_text
 from ekfsim.localization import play
 from ekfsim.records import Move
 from ekfsim.summary import Summary
@@ -24,9 +24,12 @@ def left_in(folder):
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
 
 
-def write(path, text="result", **how):
+def write(path, text="result", failure=None, **how):
+    """Write a result, and fail in the middle of it where a failure is given."""
     with whole_text(path, **how) as file:
         file.write(text)
+        if failure:
+            raise failure
 
 
 def test_a_result_appears_when_it_is_whole(tmp_path):
@@ -41,18 +44,16 @@ def test_a_result_appears_when_it_is_whole(tmp_path):
 
 @pytest.mark.parametrize("failure", [ValueError, KeyboardInterrupt, SystemExit])
 def test_or_not_at_all(tmp_path, failure):
-    with pytest.raises(failure), whole_text(tmp_path / "result.txt") as file:
-        file.write("half")
-        raise failure
+    with pytest.raises(failure):
+        write(tmp_path / "result.txt", "half", failure)
     assert left_in(tmp_path) == []
 
 
 def test_a_failed_run_leaves_the_older_result_alone(tmp_path):
     path = tmp_path / "result.txt"
     path.write_text("older")
-    with pytest.raises(ValueError, match="half"), whole_text(path, force=True) as file:
-        file.write("half")
-        raise ValueError("half")
+    with pytest.raises(ValueError, match="half"):
+        write(path, "half", ValueError("half"), force=True)
     assert path.read_text() == "older"
     assert left_in(tmp_path) == ["result.txt"]
 
@@ -82,7 +83,7 @@ def test_parents_are_made(tmp_path):
 
 def test_a_parent_that_is_a_file(tmp_path):
     (tmp_path / "file").write_text("x")
-    with pytest.raises((UsageError, RunError), match="file/result.txt"):
+    with pytest.raises((UsageError, RunError), match=r"file/result\.txt"):
         write(tmp_path / "file" / "result.txt")
 
 
@@ -190,18 +191,19 @@ def test_killed_in_the_middle_there_is_no_result(tmp_path):
     assert path.read_text() == "result"
 
 
-def fill(path, **how):
+def fill(path, failure=None, **how):
     with whole_folder(path, "*.png", **how) as folder:
         (folder / "1.png").write_text("picture")
+        if failure:
+            raise failure
 
 
 def test_a_folder_appears_when_it_is_whole(tmp_path):
     path = tmp_path / "a" / "pictures"
     fill(path)
     assert left_in(path) == ["1.png"]
-    with pytest.raises(ValueError, match="half"), whole_folder(tmp_path / "half", "*.png") as folder:
-        (folder / "1.png").write_text("picture")
-        raise ValueError("half")
+    with pytest.raises(ValueError, match="half"):
+        fill(tmp_path / "half", ValueError("half"))
     assert left_in(tmp_path) == ["a", "a/pictures", "a/pictures/1.png"]
 
 
@@ -215,7 +217,7 @@ def test_a_folder_is_replaced_only_when_all_in_it_is_ours(tmp_path):
     fill(path, force=True)
     assert left_in(path) == ["1.png"]
     (path / "letter.txt").write_text("dear")
-    with pytest.raises(UsageError, match="holds 'letter.txt', which is no result of ekfsim"):
+    with pytest.raises(UsageError, match=r"holds 'letter\.txt', which is no result of ekfsim"):
         fill(path, force=True)
     assert left_in(path) == ["1.png", "letter.txt"]
 

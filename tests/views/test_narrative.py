@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scenes import DESK, ROOM, rich, scene, told, unbounded
+from scenes import DESK, rich, scene, told, unbounded
 
 from ekfsim.filters.belief import Correction, Gaussian, Prediction, Refused
-from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
 from ekfsim.models.laser import Laser, Sighting
 from ekfsim.models.move_turn import MoveTurn

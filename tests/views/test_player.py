@@ -5,6 +5,7 @@ from scenes import scene
 
 from ekfsim.localization import play
 from ekfsim.records import Move, Sense
+from ekfsim.summary import Summary
 from ekfsim.views.closing import conclude
 from ekfsim.views.keyboard import HELP, Action
 from ekfsim.views.narrative import narrate
@@ -38,13 +39,6 @@ def played(*keys, place=PLACE):
     return screen.shown, out.getvalue()
 
 
-def closing(place=PLACE):
-    out = io.StringIO()
-    for key in played(*[NEXT] * 4, place=place)[1].splitlines(keepends=True):
-        out.write(key if key.startswith(("The run is over", "Position", "Heading", "Verdict")) else "")
-    return out.getvalue()
-
-
 def test_the_first_view_is_shown_before_any_key():
     assert played() == ([0], story(0))
 
@@ -62,8 +56,6 @@ def test_the_last_view_brings_the_verdict():
 
 
 def test_the_verdict_is_that_of_the_whole_run():
-    from ekfsim.summary import Summary
-
     summary = Summary()
     for step in play(PLACE):
         summary.add(step)
