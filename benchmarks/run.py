@@ -1,7 +1,7 @@
 """`ekfsim run`, narrative included, against filterpy's predict and update with a range from shapely, per command.
 
-A room with 30 obstacles; as many moves as beams. filterpy is given everything that costs it nothing (ready Jacobians,
-ready noise); it writes no narrative, draws no random number and judges nothing.
+As many moves as beams, among more and more walls. filterpy draws no random number, judges nothing and writes no
+narrative. Its Jacobian is given to it, or taken by differences from three more ranges, as shapely tells no wall.
 
 python benchmarks/run.py [--quick]
 """
@@ -28,31 +28,39 @@ COMMANDS = 1000
 NOISE = Noise(0.01, 0.01, 0.002, 0.002, 0.01)
 REACH = 50.0  # m, longer than the room
 
+Cast = Callable[[float, float, float], float]
+Jacobian = Callable[[Array], Array]
+
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="fewer rounds")
-    rounds = 3 if parser.parse_args().quick else 7
-    scene = furnished()
-    peers = {}
-    if optional("filterpy") is not None:
+    parser.add_argument("--quick", action="store_true", help="fewer rounds, and not the largest world")
+    quick = parser.parse_args().quick
+    with_filterpy = optional("filterpy") is not None
+    for pillars in (30, 250) if quick else (30, 250, 1000):
+        scene = furnished(pillars)
         rings = [shapely.LinearRing(points) for _, points in scene.world.map.rings()]
+        casts = {"one union": by_union(rings), "STRtree": by_tree(rings)}
         peers = {
-            "filterpy + shapely, one union": peer(scene, by_union(rings)),
-            "filterpy + shapely STRtree": peer(scene, by_tree(rings)),
+            f"filterpy + shapely {name}, {how}": peer(cast, jacobian(cast))
+            for name, cast in casts.items()
+            for how, jacobian in (("H given", given), ("H by differences", differences))
         }
-    print(f"{COMMANDS} commands among {len(scene.world.map.walls.segments)} walls, per run")
-    for ratio in ratios(lambda: narrative(scene), peers, rounds, seconds=0.5):
-        print(ratio)
+        print(f"{COMMANDS} commands among {pillars} obstacles, {len(scene.world.map.walls.segments)} walls")
+        for ratio in ratios(lambda s=scene: narrative(s), peers if with_filterpy else {}, 3 if quick else 7, 0.5):
+            print(ratio)
 
 
-def furnished() -> Scene:
-    """A room of 20 m by 16 m with 30 square pillars, and a robot that drives round a square beside them."""
-    pillars = [(0.7 * i + 8, y) for i in range(15) for y in (1.0, 15.0)]
-    obstacles = tuple(
-        Obstacle(f"pillar {n}", np.array([[x, y], [x + 0.3, y], [x + 0.3, y + 0.3], [x, y + 0.3]]))
-        for n, (x, y) in enumerate(pillars)
-    )
+def furnished(pillars: int = 30) -> Scene:
+    """A room of 20 m by 16 m with square pillars in two corners, and a robot that drives round a square beside them."""
+    lattice = math.ceil(math.sqrt(pillars / 2))
+    pitch = 5 / lattice
+    places = [
+        (14 + pitch * (i // 2 % lattice), (0.3 if i % 2 else 10.8) + pitch * (i // 2 // lattice))
+        for i in range(pillars)
+    ]
+    corners = pitch / 2 * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    obstacles = tuple(Obstacle(f"pillar {n}", np.array(place) + corners) for n, place in enumerate(places))
     room = Map(np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 16.0], [0.0, 16.0]]), obstacles)
     start = np.array([4.0, 8.0, 0.0])
     world = World("pillars", room, start, np.zeros(3), NOISE, Told(start, np.zeros(3), NOISE, room))
@@ -70,7 +78,7 @@ def narrative(scene: Scene) -> int:
     return characters + len(conclude(summary))
 
 
-def peer(scene: Scene, cast: Callable[[float, float, float], float]) -> Callable[[], object]:
+def peer(cast: Cast, jacobian: Jacobian) -> Callable[[], object]:
     """As many predicts and updates with filterpy as there are commands, each with a range of shapely's."""
     from filterpy.kalman import ExtendedKalmanFilter
 
@@ -84,9 +92,6 @@ def peer(scene: Scene, cast: Callable[[float, float, float], float]) -> Callable
     def predicted(x: Array) -> Array:
         return np.array([[cast(*x[:, 0])]])
 
-    def jacobian(x: Array) -> Array:
-        return np.array([[math.cos(x[2, 0]), math.sin(x[2, 0]), 0.1]])
-
     def run() -> object:
         robot = Robot(dim_x=3, dim_z=1)
         robot.Q, robot.P, robot.R = np.eye(3) * 1e-4, np.eye(3) * 1e-3, np.eye(1) * 1e-3
@@ -99,7 +104,23 @@ def peer(scene: Scene, cast: Callable[[float, float, float], float]) -> Callable
     return run
 
 
-def by_union(rings: list[shapely.LinearRing]) -> Callable[[float, float, float], float]:
+def given(cast: Cast) -> Jacobian:
+    """A Jacobian that costs nothing."""
+    return lambda x: np.array([[math.cos(x[2, 0]), math.sin(x[2, 0]), 0.1]])
+
+
+def differences(cast: Cast) -> Jacobian:
+    """The Jacobian by forward differences."""
+
+    def jacobian(x: Array) -> Array:
+        pose, step = x[:, 0], 1e-6
+        r = cast(*pose)
+        return np.array([[(cast(*(pose + step * axis)) - r) / step for axis in np.eye(3)]])
+
+    return jacobian
+
+
+def by_union(rings: list[shapely.LinearRing]) -> Cast:
     """The first thing one writes: the distance to the beam's intersection with the union of all walls."""
     walls = shapely.unary_union(rings)
 
@@ -110,7 +131,7 @@ def by_union(rings: list[shapely.LinearRing]) -> Callable[[float, float, float],
     return cast
 
 
-def by_tree(rings: list[shapely.LinearRing]) -> Callable[[float, float, float], float]:
+def by_tree(rings: list[shapely.LinearRing]) -> Cast:
     """The same with a tree over the polygons' rings."""
     tree = shapely.STRtree(rings)
 

@@ -26,7 +26,7 @@ class Ratio:
     ours: float  # s that one call of ours takes, median
 
     def __str__(self) -> str:
-        return f"{self.ratio:9.1f} × {self.peer:32s} {self.seconds * 1e6:12.2f} µs, ours {self.ours * 1e6:10.2f} µs"
+        return f"{self.ratio:9.1f} × {self.peer:50s} {self.seconds * 1e6:12.2f} µs, ours {self.ours * 1e6:10.2f} µs"
 
 
 def ratios(ours: Task, peers: Mapping[str, Task], rounds: int = 9, seconds: float = SLICE) -> list[Ratio]:

@@ -123,11 +123,19 @@ def play(show: str, out: Path, conditional: bool, force: bool, confidence: float
 @FORCE
 def render(out: Path, every: int, conditional: bool, force: bool, confidence: float, **chosen: Any) -> None:
     """Draw every step of COMMANDS into files."""
-    from ekfsim.views.animation import render_scene
+    from ekfsim.localization import play as steps_of
+    from ekfsim.views import animation, limits
+    from ekfsim.views.frames import Look
+    from ekfsim.views.playback import number_of_views, views
 
     scene = _scene(**chosen)
-    with click.progressbar(length=0, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
-        pictures = render_scene(scene, out, confidence, every, conditional, force, _advance(bar))
+    extent = limits.of(scene, steps_of(scene), confidence)
+    pictures = animation.number_of_pictures(number_of_views(scene.commands), every)
+    with click.progressbar(length=pictures, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
+        animation.render(
+            views(steps_of(scene)), scene, extent, out, look=Look(confidence, conditional), every=every, force=force,
+            progress=lambda made: bar.update(1),
+        )  # fmt: skip
     click.echo(f"{out}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
 
 
@@ -240,13 +248,3 @@ def _scene(
     scene = found.get()
     chosen: dict[str, Any] = {"seed": seed, "run": run_number, "filter": filter_name, "gate": gate, "guard": guard}
     return replace(scene, **{name: value for name, value in chosen.items() if value is not None})
-
-
-def _advance(bar: Any) -> Callable[[int, int], None]:
-    """A callback that moves the progress bar to picture n of so many."""
-
-    def advance(done: int, total: int) -> None:
-        bar.length = total
-        bar.update(done - bar.pos)
-
-    return advance

@@ -1,14 +1,14 @@
 """One press of `n` is one view; `p` is a list index."""
 
+import itertools
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import count
 
 import numpy as np
 
 from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array
-from ekfsim.records import Move, Reading, Step
+from ekfsim.records import Command, Move, Reading, Repeat, Sense, Step
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +37,28 @@ class View:
 def views(steps: Iterable[Step]) -> Iterator[View]:
     """Every view of a run, in order. Until the next move the path's last corner moves with each revised estimate."""
     settled: list[Array] = []
-    number = count()
+    number = itertools.count()
     for step in steps:
         if isinstance(step.entry.command, Move):
             settled.append(step.prior.mean[:2])
         if isinstance(step.entry.given, Reading):
             yield View(next(number), step, True, settled, len(settled))
         yield View(next(number), step, False, settled, len(settled))
+
+
+def number_of_views(commands: Iterable[Command]) -> int:
+    """How many views a run of these commands has, counted without running them.
+
+    >>> number_of_views([Repeat(10, (Sense(0.0), Move(1.0, 0.0)))])
+    31
+    """
+
+    def count(command: Command) -> int:
+        if isinstance(command, Repeat):
+            return command.times * sum(map(count, command.commands))
+        return 2 if isinstance(command, Sense) else 1
+
+    return 1 + sum(map(count, commands))
 
 
 class Playback:
