@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ekfsim.errors import UsageError
 from ekfsim.files.writing import refuse_existing, whole_file, whole_folder
-from ekfsim.provenance import provenance, told_in_a_line
+from ekfsim.provenance import metadata, told_in_a_line
 from ekfsim.records import expanded_length
 from ekfsim.scene import Scene
 from ekfsim.views import gif, video
@@ -78,9 +78,9 @@ def _number(folder: Path, frame: Frame, views: Iterable[View], scene: Scene) -> 
     """frame-0000.png, … by the views' numbers, with digits enough for them to sort."""
     most = 2 * expanded_length(scene.commands) + 1
     digits = max(DIGITS, len(str(most))) if scene.commands else UNKNOWN_DIGITS
-    made_by = {name: str(value) for name, value in provenance(scene).items() if value is not None}
+    made_by = metadata(scene)
     for view in views:
-        picture = frame.png(view, {**made_by, "view": str(view.number)})
+        picture = frame.png(view, {**made_by, "View": str(view.number)})
         (folder / f"frame-{view.number:0{digits}d}.png").write_bytes(picture)
 
 

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections import deque
 from functools import cache
+from importlib.util import find_spec
 from typing import Any
 
 from matplotlib.backend_bases import Event, KeyEvent
@@ -15,7 +16,14 @@ from ekfsim.views.keyboard import CHARACTERS, Action, Key
 from ekfsim.views.limits import Limits
 from ekfsim.views.playback import View
 
-BACKENDS = ("macosx", "qtagg", "gtk4agg", "gtk3agg", "tkagg", "wxagg")
+BACKENDS = {  # matplotlib's, each with the modules of which it needs one
+    "macosx": ("matplotlib.backends._macosx",),
+    "qtagg": ("PySide6", "PyQt6", "PyQt5", "PySide2"),
+    "gtk4agg": ("gi",),
+    "gtk3agg": ("gi",),
+    "tkagg": ("_tkinter",),
+    "wxagg": ("wx",),
+}
 PATIENCE = 20  # s for a display to answer
 LONGEST_WAIT = 0.05  # s between two looks for keys while a poll has no end
 TRIAL = "import sys; from matplotlib import pyplot as p; p.switch_backend(sys.argv[1]); p.figure().canvas.draw()"
@@ -46,7 +54,7 @@ def backend() -> str | None:
 
 
 def _opens(name: str) -> bool:
-    if name not in BACKENDS or (name == "macosx" and sys.platform != "darwin"):
+    if not any(find_spec(module) for module in BACKENDS.get(name, ())):
         return False
     try:
         trial = subprocess.run([sys.executable, "-c", TRIAL, name], capture_output=True, timeout=PATIENCE, check=False)

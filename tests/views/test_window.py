@@ -1,0 +1,69 @@
+import subprocess
+import sys
+
+import pytest
+
+from ekfsim.views import window
+from ekfsim.views.keyboard import Action
+
+
+@pytest.fixture(autouse=True)
+def forget():
+    window.backend.cache_clear()
+    yield
+    window.backend.cache_clear()
+
+
+@pytest.mark.skipif(sys.platform in ("darwin", "win32"), reason="there is always a display")
+def test_without_a_display_there_is_no_window(monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    assert not window.available()
+
+
+@pytest.mark.parametrize("name", ["agg", "nonsense"])
+def test_a_backend_without_windows_opens_none(monkeypatch, name):
+    monkeypatch.setenv("DISPLAY", ":1")
+    monkeypatch.setenv("MPLBACKEND", name)
+    assert not window.available()
+
+
+@pytest.mark.parametrize("outcome", ["aborts", "hangs"])
+def test_a_toolkit_that_aborts_or_hangs_is_passed_over(monkeypatch, outcome):
+    def run(arguments, **_):
+        if outcome == "hangs":
+            raise subprocess.TimeoutExpired(arguments, 20)
+        return subprocess.CompletedProcess(arguments, -6)
+
+    monkeypatch.setenv("DISPLAY", ":1")
+    monkeypatch.delenv("MPLBACKEND", raising=False)
+    monkeypatch.setattr(window, "find_spec", lambda module: True)
+    monkeypatch.setattr(subprocess, "run", run)
+    assert not window.available()
+
+
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        ("n", Action.NEXT),
+        ("N", Action.NEXT),
+        (" ", Action.NEXT),
+        ("enter", Action.NEXT),
+        ("right", Action.NEXT),
+        ("p", Action.BACK),
+        ("backspace", Action.BACK),
+        ("q", Action.QUIT),
+        ("escape", Action.QUIT),
+        ("r", Action.RESTART),
+        ("s", Action.SAVE),
+        ("?", Action.HELP),
+        ("f1", Action.HELP),
+        ("0", 0),
+        ("7", 7),
+        ("x", Action.UNKNOWN),
+        ("shift", None),
+        (None, None),
+    ],
+)
+def test_keys_go_by_the_terminals_names(name, key):
+    assert window.key_of(name) == key
