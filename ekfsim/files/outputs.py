@@ -1,6 +1,7 @@
 """The files that a run writes besides its narrative, each line as its step comes."""
 
 import json
+import os
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -43,8 +44,7 @@ class Outputs:
         paths = [path for path in (self.trace, self.csv, self.summary, *self._tum()) if path]
         for path in paths:
             refuse_existing(path, self.force)
-            if paths.count(path) > 1 and not special(path):
-                raise UsageError(f"{path}: named twice; give each result a file of its own")
+        _refuse_one_place_for_two([path for path in paths if not special(path)])
         with ExitStack() as stack:
             file_of = {path: stack.enter_context(whole_text(path, self.force)) for path in paths}
             sinks: list[Sink] = []
@@ -59,6 +59,18 @@ class Outputs:
             if self.summary:
                 json.dump({**summary.table(), **provenance(scene)}, file_of[self.summary], indent=2, allow_nan=False)
                 file_of[self.summary].write("\n")
+            for file in file_of.values():
+                file.flush()  # a full disk must show before the first of them appears
 
     def _tum(self) -> tuple[Path, ...]:
         return (self.tum / "truth.tum", self.tum / "estimate.tum") if self.tum else ()
+
+
+def _refuse_one_place_for_two(paths: list[Path]) -> None:
+    """Raise UsageError where two results, however spelled, would come to lie in one place or one inside the other."""
+    places = [Path(os.path.realpath(path.parent)) / path.name for path in paths]
+    for n, (path, place) in enumerate(zip(paths, places, strict=True)):
+        if place in places[:n] + places[n + 1 :]:
+            raise UsageError(f"{path}: named twice; give each result a file of its own")
+        if any(place in other.parents for other in places):
+            raise UsageError(f"{path}: is to be a file and a folder; give each result a name of its own")

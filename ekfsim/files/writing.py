@@ -1,17 +1,26 @@
 """Results appear whole or not at all: written beside their place, then renamed to it."""
 
 import errno
+import io
 import os
 import re
 import shutil
 import stat
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import mkdtemp, mkstemp
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from ekfsim.errors import RunError, UsageError
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
+
+UNWRITABLE = {
+    *(errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOENT),
+    *(errno.ENOTDIR, errno.EISDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP),
+}
 
 
 def refuse_existing(path: Path, force: bool) -> None:
@@ -33,29 +42,14 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
 
     Raises UsageError if a result exists and `force` is False, RunError if the disk refuses.
     """
-    refuse_existing(path, force)
-    if special(path):
-        with told(path):
-            yield path
-        return
-    with told(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        descriptor, name = mkstemp(prefix=f".{path.name[:100]}.", suffix=".partial", dir=path.parent)
-        os.close(descriptor)
-    beside = Path(name)
-    try:
-        with told(path):
-            yield beside
-            os.chmod(beside, 0o666 & ~_umask())  # mkstemp makes files that only their owner reads
-            os.replace(beside, path)
-    finally:
-        beside.unlink(missing_ok=True)
+    with _beside(path, force) as beside, told(path):
+        yield beside
 
 
 @contextmanager
 def whole_text(path: Path, force: bool = False) -> Iterator[TextIO]:
-    """The same, opened for text."""
-    with whole_file(path, force) as beside, _opened(beside) as file:
+    """The same, opened for text. Only what is written to this file is told as a refusal of this file."""
+    with _beside(path, force) as beside, _opened(path, beside) as file:
         yield file
         file.flush()  # a full disk must show before the rename
 
@@ -69,28 +63,89 @@ def whole_folder(path: Path, pattern: str, force: bool = False) -> Iterator[Path
 
     Raises UsageError if the folder holds something and may not be replaced, RunError if the disk refuses.
     """
-    if path.exists() and not path.is_dir():
-        raise UsageError(f"{path}: this is a file; name a folder")
-    held = sorted(path.iterdir()) if path.is_dir() else []
+    with told(path):
+        place = path.resolve()  # where a link leads: it stays a link
+        if place.exists() and not place.is_dir():
+            raise UsageError(f"{path}: this is a file; name a folder")
+        if place == Path.cwd():
+            raise UsageError(f"{path}: this is the current folder; name a new one")
+        held = sorted(place.iterdir()) if place.is_dir() else []
     if held and not force:
         raise UsageError(f"{path}: the folder is not empty; choose another, or replace its pictures with --force")
     for file in held:
         if file.is_dir() or not file.match(pattern):
             raise UsageError(f"{path}: holds {file.name!r}, which is no result of ekfsim; choose another folder")
-    with told(path):
-        path.absolute().parent.mkdir(parents=True, exist_ok=True)
-        beside = Path(mkdtemp(prefix=f".{path.name[:100]}.", suffix=".partial", dir=path.absolute().parent))
-    try:
+    with _parents(path, place), _temporary_folder(path, place) as beside:
         with told(path):
             yield beside
+        with told(path):
             os.chmod(beside, 0o777 & ~_umask())
-            if path.is_dir():
-                for file in held:
-                    file.unlink()
-                path.rmdir()
-            os.replace(beside, path)
+            if place.is_dir():
+                with _temporary_folder(path, place) as older:
+                    _exchange(place, beside, older / place.name)
+            else:
+                os.replace(beside, place)
+
+
+def _exchange(place: Path, new: Path, older: Path) -> None:
+    """Put the new folder in the place of the one that stands there, which moves to `older`; or leave all as it was."""
+    try:
+        os.replace(place, older)
+        os.replace(new, place)
+    except BaseException:
+        if older.exists() and not place.exists():
+            os.replace(older, place)
+        raise
+
+
+@contextmanager
+def _temporary_folder(path: Path, place: Path) -> Iterator[Path]:
+    """A new folder beside a place; what is left of it in the end is deleted."""
+    with told(path):
+        beside = Path(mkdtemp(prefix=f".{place.name[:100]}.", suffix=".partial", dir=place.parent))
+    try:
+        yield beside
     finally:
         shutil.rmtree(beside, ignore_errors=True)
+
+
+@contextmanager
+def _beside(path: Path, force: bool) -> Iterator[Path]:
+    """The temporary file of `whole_file`, whatever is told of the block."""
+    refuse_existing(path, force)
+    if special(path):
+        yield path
+        return
+    with _parents(path, path):
+        with told(path):
+            descriptor, name = mkstemp(prefix=f".{path.name[:100]}.", suffix=".partial", dir=path.parent)
+            os.close(descriptor)
+        beside = Path(name)
+        try:
+            yield beside
+            with told(path):
+                os.chmod(beside, 0o666 & ~_umask())  # mkstemp makes files that only their owner reads
+                os.replace(beside, path)
+        finally:
+            beside.unlink(missing_ok=True)
+
+
+@contextmanager
+def _parents(path: Path, place: Path) -> Iterator[None]:
+    """The folders above a place; those that had to be made are removed again where nothing comes to lie in them."""
+    with told(path):
+        missing = [folder for folder in place.parents if not os.path.lexists(folder)]
+    try:
+        with told(path):
+            for folder in place.parents:
+                if os.path.lexists(folder) and not folder.is_dir():
+                    raise UsageError(f"{path}: '{folder}' is no folder")
+            place.parent.mkdir(parents=True, exist_ok=True)
+        yield
+    finally:
+        for folder in missing:
+            with suppress(OSError):  # it holds something
+                folder.rmdir()
 
 
 @contextmanager
@@ -101,7 +156,7 @@ def told(path: Path) -> Iterator[None]:
     except BrokenPipeError:
         raise
     except OSError as refusal:
-        if refusal.errno in (errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.ENAMETOOLONG):
+        if refusal.errno in UNWRITABLE:
             raise UsageError(f"{path}: cannot be written: {refusal.strerror}") from refusal
         raise RunError(f"{path}: writing failed: {refusal.strerror}") from refusal
 
@@ -117,10 +172,28 @@ def special(path: Path) -> bool:
     return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
 
 
-def _opened(path: Path) -> TextIO:
-    """A file to write text to; one that is open already, as /dev/stdout, goes on where it is."""
-    descriptor = _descriptor(path)
-    return open(path if descriptor is None else os.dup(descriptor), "w", encoding="utf-8", newline="\n")
+@contextmanager
+def _opened(path: Path, beside: Path) -> Iterator[TextIO]:
+    """A file to write the text of `path` to; one that is open already, as /dev/stdout, goes on where it is."""
+    descriptor = _descriptor(beside)
+    with told(path):
+        raw = _Told(path, beside if descriptor is None else os.dup(descriptor))
+    file = io.TextIOWrapper(io.BufferedWriter(raw), encoding="utf-8", errors="replace", newline="\n")
+    with file:
+        yield file
+
+
+class _Told(io.FileIO):
+    """A file whose refusals are told under the name that the user gave it."""
+
+    def __init__(self, path: Path, opened: Path | int) -> None:
+        super().__init__(opened, "w")
+        self._path = path
+
+    def write(self, data: "ReadableBuffer", /) -> int | None:
+        """As any file does."""
+        with told(self._path):
+            return super().write(data)
 
 
 def _descriptor(path: Path) -> int | None:
