@@ -1,6 +1,8 @@
 """The command line: each command an outline of what it does. Heavy modules are imported where they are used."""
 
+import math
 import os
+import re
 import signal
 import sys
 from collections.abc import Callable
@@ -16,13 +18,19 @@ from ekfsim.errors import EkfsimError, UsageError
 if TYPE_CHECKING:
     from ekfsim.scene import Scene
 
-INTERRUPTED, TERMINATED = 130, 143
+INTERRUPTED = 130
+MOST = 2**63 - 1
+CONTROLS = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f]")
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
 
 
 def main() -> NoReturn:
     """Run the program and exit with its status: 0 done, 1 the run failed, 2 wrong usage or file, 130, 143."""
-    signal.signal(signal.SIGTERM, _terminate)
+    _open_closed_streams()
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)  # Windows does not hang up
+        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _end)
     for stream in (sys.stdout, sys.stderr):
         with suppress(AttributeError, ValueError):
             stream.reconfigure(errors="replace")  # type: ignore[union-attr]
@@ -36,7 +44,8 @@ def _status() -> int:
         sys.stdout.flush()
         return 0
     except click.ClickException as mistake:
-        mistake.show()
+        with suppress(OSError):
+            mistake.show()
         return mistake.exit_code
     except EkfsimError as error:
         _say(str(error))
@@ -44,30 +53,110 @@ def _status() -> int:
     except (KeyboardInterrupt, click.Abort):
         _say("interrupted")
         return INTERRUPTED
-    except BrokenPipeError:
-        # whoever read our output has seen enough; what is still buffered must not fail at exit
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except (_UnreadError, BrokenPipeError):
+        _forget_what_is_buffered()
         return 0
     except OSError as refusal:
         if refusal.filename is not None:
             raise  # no write to standard output, but a mistake of ours
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _forget_what_is_buffered()
         _say(f"writing to standard output failed: {refusal.strerror}")
         return 1
 
 
-def _terminate(signum: int, frame: FrameType | None) -> NoReturn:
-    sys.exit(TERMINATED)  # as an exception, so that every block cleans up behind itself
+def _open_closed_streams() -> None:
+    """Give a stream that was closed by whoever started us (`>&-`) to /dev/null: no result must come in its place."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115 (open to the end)
+
+
+def _forget_what_is_buffered() -> None:
+    """What could not be written to standard output must not fail once more at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _end(number: int, frame: FrameType | None) -> NoReturn:
+    """End by an exception, so that every block cleans up behind itself, undisturbed by whoever is impatient."""
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
+    if number == signal.SIGINT:
+        raise KeyboardInterrupt
+    sys.exit(128 + number)
 
 
 def _say(text: str) -> None:
     with suppress(OSError):
-        click.echo("\n".join(line if _placed(line) else f"ekfsim: {line}" for line in text.splitlines()), err=True)
+        lines = (line if _placed(line) else f"ekfsim: {line}" for line in _shown(text).split("\n"))
+        click.echo("\n".join(lines), err=True)
+
+
+def _shown(text: object) -> str:
+    r"""A text, in which the name of a file may stand, as it does no harm to a terminal.
+
+    >>> print(_shown("red\x1b[31m.yaml"))
+    red\x1b[31m.yaml
+    """
+    return CONTROLS.sub(lambda found: f"\\x{ord(found[0]):02x}", str(text))
 
 
 def _placed(line: str) -> bool:
     """Whether a line begins with file:line:col, which an editor wants to find at its very start."""
     return line.count(":") > 2 and line.split(":")[1].isdigit() and line.split(":")[2].isdigit()
+
+
+class _UnreadError(Exception):
+    """Whoever read our output has seen enough."""
+
+
+class Program(click.Group):
+    """The commands. click itself would make a failure of a closed pipe."""
+
+    def make_context(
+        self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
+    ) -> click.Context:
+        """Parse the arguments, and print the help that they ask for."""
+        try:
+            return super().make_context(info_name, args, parent, **extra)
+        except BrokenPipeError:
+            raise _UnreadError from None
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Do what the arguments ask for."""
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:
+            raise _UnreadError from None
+
+
+class Probability(click.FloatRange):
+    """A number between 0 and 1, and neither of them."""
+
+    def __init__(self) -> None:
+        super().__init__(0, 1, min_open=True, max_open=True)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """A float. Fails for nan too, which lies in no range and outside of none."""
+        number = float(super().convert(value, param, ctx))
+        if math.isnan(number):
+            self.fail(f"{value} is not in the range {self._describe_range()}.", param, ctx)
+        return number
+
+
+class Result(click.Path):
+    """Where a result is to be written."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """A path. Fails for a name that an unset variable leaves, and for the dash that other programs know."""
+        if value == "":
+            self.fail("the name is empty.", param, ctx)
+        if value == "-":
+            self.fail("'-' names no file; /dev/stdout is the standard output.", param, ctx)
+        return super().convert(value, param, ctx)
 
 
 def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -76,12 +165,12 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
         click.argument("commands"),
         click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names."),
         click.option("--seed", type=click.IntRange(min=0), help="In place of the file's seed."),
-        click.option("--run", "run_number", type=click.IntRange(min=0), default=0, help="Which run of the seed."),
+        click.option("--run", "run_number", type=click.IntRange(0, MOST), default=0, help="Which run of the seed."),
         click.option("--filter", "filter_name", help="ekf."),
-        click.option("--gate", type=click.FloatRange(0, 1, min_open=True, max_open=True), metavar="P",
+        click.option("--gate", type=Probability(), metavar="P",
                      help="Refuse readings whose NIS lies beyond this χ² quantile."),
         click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams."),
-        click.option("--confidence", type=click.FloatRange(0, 1, min_open=True, max_open=True), default=0.954,
+        click.option("--confidence", type=Probability(), default=0.954,
                      show_default=True, help="Probability of the ellipse and the cone."),
     ]  # fmt: skip
     for option in reversed(options):
@@ -89,7 +178,7 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return command
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.group(cls=Program, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(package_name="ekfsim", message="%(prog)s %(version)s")
 def ekfsim() -> None:
     """Simulate a robot that localizes itself with an extended Kalman filter, and read every calculation.
@@ -102,7 +191,7 @@ def ekfsim() -> None:
 @scene_options
 @click.option("--show", type=click.Choice(["auto", "window", "text", "files"]), default="auto", show_default=True,
               help="Draw in a window, as text in the terminal, or into one file rewritten in place.")  # fmt: skip
-@click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("out"), show_default=True,
+@click.option("--out", "-o", type=Result(), default=Path("out"), show_default=True,
               help="Folder for the pictures of --show files and of the key s.")  # fmt: skip
 @click.option("--conditional", is_flag=True, help="Draw the ellipse for the heading at either edge of its cone, too.")
 @FORCE
@@ -116,7 +205,7 @@ def play(show: str, out: Path, conditional: bool, force: bool, confidence: float
 
 @ekfsim.command()
 @scene_options
-@click.option("--out", "-o", type=click.Path(path_type=Path), required=True,
+@click.option("--out", "-o", type=Result(), required=True,
               help="A folder for numbered PNG files, or the name of a .gif or an .mp4.")  # fmt: skip
 @click.option("--every", type=click.IntRange(min=1), default=1, metavar="N", help="Only every N-th picture.")
 @click.option("--conditional", is_flag=True, help="Draw the ellipse for the heading at either edge of its cone, too.")
@@ -136,15 +225,15 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
             views(steps_of(scene)), scene, extent, out, look=Look(confidence, conditional), every=every, force=force,
             progress=lambda made: bar.update(1),
         )  # fmt: skip
-    click.echo(f"{out}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
+    click.echo(f"{_shown(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
 
 
 @ekfsim.command()
 @scene_options
-@click.option("--trace", type=click.Path(path_type=Path), help="Write every number of every step, as JSON lines.")
-@click.option("--tum", type=click.Path(path_type=Path), help="Folder for truth.tum and estimate.tum.")
-@click.option("--csv", type=click.Path(path_type=Path), help="Write a flat table.")
-@click.option("--summary", type=click.Path(path_type=Path), help="Write the closing summary as JSON.")
+@click.option("--trace", type=Result(), help="Write every number of every step, as JSON lines.")
+@click.option("--tum", type=Result(), help="Folder for truth.tum and estimate.tum.")
+@click.option("--csv", type=Result(), help="Write a flat table.")
+@click.option("--summary", type=Result(), help="Write the closing summary as JSON.")
 @click.option("--quiet", "-q", is_flag=True, help="Only the closing summary, no narrative.")
 @FORCE
 def run(
@@ -179,10 +268,15 @@ def check(files: tuple[str, ...]) -> None:
 
     wrong = False
     for file in files:
-        found = mistakes_in(Path(file))
+        try:
+            found = mistakes_in(Path(file))
+        except UsageError as missing:
+            _say(str(missing))
+            wrong = True
+            continue
         for warning in found.warnings:
-            click.echo(warning, err=True)
-        click.echo("\n".join(map(str, found.mistakes)) or f"{file}: ok")
+            _say(warning)
+        click.echo(_shown("\n".join(map(str, found.mistakes)) or f"{file}: ok"))
         wrong = wrong or bool(found.mistakes)
     if wrong:
         sys.exit(UsageError.status)
@@ -212,7 +306,7 @@ def list_packaged() -> None:
 
 
 @ekfsim.command()
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=Result())
 @click.option("--kind", type=click.Choice(["world", "commands"]), help="Where the name of FILE does not tell.")
 @FORCE
 def new(file: Path, kind: str | None, force: bool) -> None:
@@ -223,10 +317,12 @@ def new(file: Path, kind: str | None, force: bool) -> None:
     name = file.stem.lower()
     if kind is None and ("world" in name) == ("command" in name):
         raise UsageError(f"{file}: a world or commands? say --kind world or --kind commands")
-    told: Literal["world", "commands"] = "world" if kind == "world" or (kind is None and "world" in name) else "commands"
+    told: Literal["world", "commands"] = (
+        "world" if kind == "world" or (kind is None and "world" in name) else "commands"
+    )
     with whole_text(file, force) as out:
         out.write(template(told))
-    click.echo(f"{file}: a {told} file to start from; ekfsim check {file} validates it")
+    click.echo(_shown(f"{file}: a {told} file to start from; ekfsim check {file} validates it"))
 
 
 def _scene(
