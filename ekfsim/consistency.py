@@ -13,6 +13,7 @@ from ekfsim.geometry.ellipse import cone_factor, radius_factor
 from ekfsim.records import Nees, Step
 
 RANK = 1e-10  # an eigenvalue of the correlation matrix above this counts towards the rank
+ROUNDING = 1e-12  # m, rad; a smaller standard deviation is what sin π leaves of none
 CLEAR = 1e-8  # a determinant of the correlation matrix above this needs no eigenvalues to tell the rank
 OUTSIDE = 1e-6  # m, rad; a longer part of the error outside the range of P makes the belief impossible
 LOST = 0.999  # NEES beyond this χ² quantile: lost
@@ -51,22 +52,24 @@ def squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
     """eᵀ P⁺ e, the rank of P, and whether e has a part outside the range of P : (…) each
 
     P is often singular: it starts at 0, and a straight move adds no heading noise. Metres and radians must not decide
-    the rank, so it is counted on the correlation matrix: with D = diag(P),
+    the rank, so it is counted on the correlation matrix: with D = diag(P), rows that are zero but for rounding dropped,
 
         C = D^{-1/2} P D^{-1/2} = V Λ Vᵀ      rank = #{λ > 1e-10}      B = D^{1/2} V spans the range of P
-        eᵀ P⁺ e = yᵀ Λ⁻¹ y      where y = Vᵀ D^{-1/2} e, for an e inside that range
+        eᵀ P⁺ e = yᵀ Λ⁻¹ y      where B y is the part of e inside that range
     """
     if e.ndim == 1 and (value := _full_rank_square(e.tolist(), P.tolist())) is not None:
         return np.array(value), np.array(len(e)), np.array(False)
     σ = np.sqrt(np.maximum(np.diagonal(P, axis1=-2, axis2=-1), 0.0))
+    σ = np.where(σ > ROUNDING, σ, 0.0)
     per_σ = np.divide(1.0, σ, out=np.zeros_like(σ), where=σ > 0)
     λ, V = np.linalg.eigh(P * per_σ[..., :, None] * per_σ[..., None, :])
     kept = λ > RANK
-    rank = np.count_nonzero(kept, axis=-1)
-    within = e if np.all(kept) else _projected(e, σ[..., :, None] * V, kept)
-    y = np.vecmat(within * per_σ, V)
+    if np.all(kept):
+        y, outside = np.vecmat(e * per_σ, V), np.zeros(kept.shape[:-1])
+    else:
+        y, outside = _coordinates(e, σ[..., :, None] * V, kept)
     value = np.sum(np.divide(y * y, λ, out=np.zeros_like(y), where=kept), axis=-1)
-    return value, rank, np.linalg.norm(e - within, axis=-1) > OUTSIDE
+    return value, np.count_nonzero(kept, axis=-1), outside > OUTSIDE
 
 
 def _full_rank_square(e: list[float], P: list[list[float]]) -> float | None:
@@ -76,7 +79,7 @@ def _full_rank_square(e: list[float], P: list[list[float]]) -> float | None:
     by a test.
     """
     (a, b), (c, d) = P[0][:2], P[1][:2]
-    if not a > 0 < d:
+    if not a > ROUNDING**2 < d:
         return None
     k = c / a
     D = d - k * b
@@ -90,18 +93,23 @@ def _full_rank_square(e: list[float], P: list[list[float]]) -> float | None:
     m = p / a
     n = (q - m * b) / D
     D3 = r - m * p - n * n * D
-    if len(e) > 3 or not (r > 0 and CLEAR * d * r < D * D3):
+    if len(e) > 3 or not (r > ROUNDING**2 and CLEAR * d * r < D * D3):
         return None
     y3 = e[2] - m * e[0] - n * y
     return square + y3 * y3 / D3
 
 
-def _projected(e: Array, B: Array, kept: Booleans) -> Array:
-    """The part of e in the span of the kept columns of B, which come last. e : (…, n), B : (…, n, n)"""
-    Q, _ = np.linalg.qr(np.where(kept[..., None, :], B, 0.0)[..., ::-1])  # the kept columns first
-    Q = np.where(kept[..., None, ::-1], Q, 0.0)
-    part: Array = np.matvec(Q, np.vecmat(e, Q))
-    return part
+def _coordinates(e: Array, B: Array, kept: Booleans) -> tuple[Array, Array]:
+    """y, for which B y is the part of e in the span of the kept columns of B, and the length of the rest of e.
+
+    The kept columns come last, as eigenvalues ascend. e : (…, n), B : (…, n, n) → (…, n), (…)
+    """
+    first = kept[..., ::-1]
+    Q, R = np.linalg.qr(np.where(first[..., None, :], B[..., ::-1], 0.0))
+    along = np.where(first, np.vecmat(e, Q), 0.0)
+    y: Array = np.linalg.solve(R + np.eye(e.shape[-1]) * ~first[..., None, :], along[..., None])[..., 0]
+    rest = e - np.matvec(Q, along)
+    return y[..., ::-1], np.linalg.norm(rest, axis=-1)
 
 
 def lost(measured: Nees) -> bool:

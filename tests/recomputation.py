@@ -191,6 +191,7 @@ def sensed(mean, P, line, edges, ratio, guard, gate):
     S = sum(H[i] * PHt[i] for i in range(3)) + R
     certain = S <= 1e-18
     S = 0.0 if certain else S
+    K = [0.0] * 3 if certain else [p / S for p in PHt]
     said |= {
         "predicted_range": h,
         "range_variance": R,
@@ -198,7 +199,7 @@ def sensed(mean, P, line, edges, ratio, guard, gate):
         "incidence": math.asin(min(1.0, abs(slant) / math.hypot(sx, sy))),
         "H": H,
         "innovation_variance": S,
-        "gain": [0.0] * 3,
+        "gain": K,
     }
     if z is None:
         return mean, P, {**said, "refused": "no echo"}
@@ -209,13 +210,12 @@ def sensed(mean, P, line, edges, ratio, guard, gate):
         return mean, P, {**said, "refused": "guard"}
     if gate is not None and nis is not None and nis > chi2.ppf(gate, 1):
         return mean, P, {**said, "refused": "gate"}
-    K = [0.0] * 3 if certain else [p / S for p in PHt]
     mean = [m + k * nu for m, k in zip(mean, K, strict=True)]
     I_KH = [[(i == j) - K[i] * H[j] for j in range(3)] for i in range(3)]
     return (
         [*mean[:2], wrapped(mean[2])],
         halved(product(I_KH, P)),
-        {**said, "gain": K, "updated": True, "refused": None},
+        {**said, "updated": True, "refused": None},
     )
 
 

@@ -39,13 +39,13 @@ class Refused(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """What a reading did to the belief. nan where a number is undefined; K is 0 where the reading was refused."""
+    """What a reading did to the belief, or would have done were it not refused. nan where a number is undefined."""
 
     predicted: Array  # h(x⁻) : (…, k)
     innovation: Array  # ν : (…, k)
     R: Array  # (…, k, k)
     S: Array  # (…, k, k)
     H: Array  # (…, k, n)
-    K: Array  # (…, n, k)
+    K: Array  # (…, n, k), 0 where S = 0 or undefined
     nis: Array  # νᵀ S⁻¹ ν : (…), refused readings included; nan where S = 0
     refused: Integers  # (…) one of Refused

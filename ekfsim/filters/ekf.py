@@ -39,7 +39,7 @@ class EKF:
         """ν = z − h(x⁻)      S = H P⁻ Hᵀ + R      K = P⁻ Hᵀ S⁻¹          eqs 9, 11; z : (…, k)
         x = x⁻ + K ν      P = (I − KH) P⁻ (I − KH)ᵀ + K R Kᵀ          eq. 10; for this K eq. 12, (I − KH) P⁻
 
-        K = 0 where the reading is refused: the belief stays as it is.
+        Where the reading is refused the belief stays as it is; ν, S, K and NIS are told all the same.
         """
         x, P = prior
         h, H, R = sensor.linearize(x)
@@ -50,11 +50,11 @@ class EKF:
         nis = normalized_square(innovation, S)
         refused = refusal(z, h, nis, skip, self.gate)
         used = (refused == Refused.NOT)[..., None]
-        K = np.where(used[..., None], gain(P, H, S), 0.0)
-        ν = np.where(used, innovation, 0.0)
+        K = gain(P, H, S)
         I_KH = np.eye(P.shape[-1]) - K @ H
-        joseph = I_KH @ P @ I_KH.mT + K @ np.where(used[..., None], R, 0.0) @ K.mT  # right for any K
-        posterior = Gaussian(self._wrapped(x + np.matvec(K, ν)), symmetric(joseph))
+        joseph = I_KH @ P @ I_KH.mT + K @ R @ K.mT  # right for any K
+        revised = Gaussian(self._wrapped(x + np.matvec(K, innovation)), symmetric(joseph))
+        posterior = Gaussian(np.where(used, revised.mean, x), np.where(used[..., None], revised.covariance, P))
         return posterior, Correction(h, innovation, R, S, H, K, nis, refused)
 
     def _update_one(
@@ -68,9 +68,8 @@ class EKF:
         s = (s if s > CERTAIN * float(H_row @ H_row) * float(P.trace()) else 0.0) + r
         nis = float(ν[0]) ** 2 / s if s > 0 else math.nan
         refused = refusal_one(z, h, nis, skip, self.gate)
-        posterior, k = prior, np.zeros_like(x)
+        posterior, k = prior, PHt / s if s > 0 else np.zeros_like(x)
         if refused is Refused.NOT and s > 0:
-            k = PHt / s
             I_KH_P = P - k[:, None] * PHt
             joseph = I_KH_P - (I_KH_P @ H_row)[:, None] * k + (r * k)[:, None] * k
             posterior = Gaussian(self._wrapped(x + k * ν), symmetric(joseph))
