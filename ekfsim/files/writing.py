@@ -190,7 +190,7 @@ class _Told(io.FileIO):
         super().__init__(opened, "w")
         self._path = path
 
-    def write(self, data: "ReadableBuffer", /) -> int | None:
+    def write(self, data: "ReadableBuffer", /) -> int | None:  # type: ignore[override]  # None where it would block
         """As any file does."""
         with told(self._path):
             return super().write(data)

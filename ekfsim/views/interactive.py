@@ -15,18 +15,20 @@ from ekfsim.scene import Scene
 from ekfsim.views import limits, terminal
 from ekfsim.views.keyboard import Key, Keyboard, keys
 from ekfsim.views.limits import Limits
+from ekfsim.views.look import Look
 from ekfsim.views.playback import Playback, View
 from ekfsim.views.player import Player, Screen
 
 if TYPE_CHECKING:
-    from ekfsim.views.frames import Frame, Look
+    from ekfsim.views.frames import Frame
     from ekfsim.views.window import Window
 
 POLL = 0.05  # s between two looks at the window while no key is pressed
 MARGIN = 2  # rows of the terminal left free of the picture
+WIDEST, HIGHEST = 1000, 300  # columns and rows of a picture, whatever COLUMNS and LINES say
 
 
-def play_interactively(scene: Scene, show: str, out: Path, look: "Look", force: bool) -> None:
+def play_interactively(scene: Scene, show: str, out: Path, look: Look, force: bool) -> None:
     """Step through a scene until a key quits. show : auto, window, text or files; out : folder of saved pictures
 
     Raises UsageError where a window is asked for and there is none.
@@ -52,6 +54,9 @@ def play_interactively(scene: Scene, show: str, out: Path, look: "Look", force: 
 
 
 def _window_available() -> bool:
+    displays = ("DISPLAY", "WAYLAND_DISPLAY")
+    if sys.platform not in ("darwin", "win32") and not any(os.environ.get(name) for name in displays):
+        return False  # without the second that it takes to import matplotlib
     from ekfsim.views.window import available
 
     return available()
@@ -84,7 +89,7 @@ class Text:
         columns, rows = shutil.get_terminal_size()
         e = self._extent
         picture = terminal.draw(
-            view, self._scene, self._probability, (columns - 1, rows - MARGIN),
+            view, self._scene, self._probability, (min(columns - 1, WIDEST), min(rows - MARGIN, HIGHEST)),
             (e.left, e.right, e.bottom, e.top), self._colour, self._ascii,
         )  # fmt: skip
         self._out.write(f"{picture}\n\n")
@@ -94,7 +99,7 @@ class Text:
 class Pictures:
     """Writes pictures to files: one that is rewritten for every view, and those that are saved."""
 
-    def __init__(self, scene: Scene, extent: Limits, look: "Look", out: Path, force: bool) -> None:
+    def __init__(self, scene: Scene, extent: Limits, look: Look, out: Path, force: bool) -> None:
         self._scene, self._extent, self._look, self._out, self._force = scene, extent, look, out, force
         self._frame: Frame | None = None
 
