@@ -71,6 +71,20 @@ def test_nees_of_one_and_of_two_directions():
     assert impossible(plane, [0.2, 2e-6, 0.3])
 
 
+@pytest.mark.parametrize("degrees", [90, 180, 45, -90, 90 + 1e-9, 90 + 1e-5, 90 + 1e-3])
+@pytest.mark.parametrize("axes", [(), (1,)])
+def test_a_straight_way_in_any_direction(degrees, axes):
+    """Due north P_xx is not 0 but (6e-17 σ)², and counts for nothing."""
+    heading = math.radians(degrees)
+    way = np.array([math.cos(heading), math.sin(heading), 0.0])
+    P = np.broadcast_to(np.outer(way, way) * 0.04, (*axes, 3, 3))
+    for e in (0.3 * way, np.round(0.3 * way, 12)):
+        judged = nees(Gaussian(np.broadcast_to(e, (*axes, 3)), P), ORIGIN)
+        assert judged.value == pytest.approx(2.25, rel=1e-9)
+        assert judged.dof == 1
+        assert not judged.impossible
+
+
 def test_a_heading_that_moves_the_position_too():
     """The end of a straight way whose heading was uncertain: y = 5 θ. One degree of freedom, both errors or none."""
     P = 0.01**2 * np.array([[0, 0, 0], [0, 25, 5], [0, 5, 1.0]])

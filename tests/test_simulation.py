@@ -222,6 +222,17 @@ def test_a_bump_backwards():
     assert entry.bump == 3
 
 
+def test_bumps_of_a_study_are_those_of_its_runs():
+    made = scene(*[Move(d, 0.7) for d in (20.0, -20.0, -3.0, 3.0, -20.0)], obstacles=(DESK,), sigma=(0.3, 0.3, 0.3))
+    runs = np.arange(6)
+    for entry, *alone in zip(
+        *(simulate(s, r) for s, r in ((made, runs), *((made, np.array(k)) for k in runs))), strict=True
+    ):
+        if entry.bump is not None:
+            assert (entry.bump == [one.bump for one in alone]).all()
+            np.testing.assert_allclose(entry.truth, [one.truth for one in alone], rtol=0, atol=1e-12)
+
+
 def test_a_wall_within_a_millimetre_lets_no_way_forward():
     entries = exact(Move(20.0, 0.0), Move(1.0, 0.0), Move(0.0, TURN), Move(-1.0, 0.0), start=(5, 4, 0))
     assert [entry.bump >= 0 for entry in entries] == [True, True, False, False]
