@@ -27,7 +27,8 @@ from ekfsim.localization import play
 from ekfsim.records import Move, Sense
 from ekfsim.scene import Scene
 from ekfsim.views import limits
-from ekfsim.views.frames import STANDARD, Frame, Picture
+from ekfsim.views.frames import Frame, Picture
+from ekfsim.views.look import STANDARD
 from ekfsim.views.playback import views
 from ekfsim.world import Map, Noise, Obstacle, Told, World
 

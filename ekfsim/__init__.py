@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from ekfsim.summary import Summary as Summary
     from ekfsim.views.closing import conclude as conclude
     from ekfsim.views.frames import draw as draw
+    from ekfsim.views.look import Look as Look
     from ekfsim.views.narrative import narrate as narrate
     from ekfsim.views.playback import views as views
     from ekfsim.world import World as World
@@ -79,6 +80,7 @@ _HOMES = {
     "summary": ("Summary",),
     "views.closing": ("conclude",),
     "views.frames": ("draw",),
+    "views.look": ("Look",),
     "views.narrative": ("narrate",),
     "views.playback": ("views",),
     "world": ("World",),

@@ -197,8 +197,8 @@ def ekfsim() -> None:
 @FORCE
 def play(show: str, out: Path, conditional: bool, force: bool, confidence: float, **chosen: Any) -> None:
     """Step through COMMANDS with single keys: n next, p back, q quit, ? for all of them."""
-    from ekfsim.views.frames import Look
     from ekfsim.views.interactive import play_interactively
+    from ekfsim.views.look import Look
 
     play_interactively(_scene(**chosen), show, out, Look(confidence, conditional), force)
 
@@ -214,7 +214,7 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
     """Draw every step of COMMANDS into files."""
     from ekfsim.localization import play as steps_of
     from ekfsim.views import animation, limits
-    from ekfsim.views.frames import Look
+    from ekfsim.views.look import Look
     from ekfsim.views.playback import number_of_views, views
 
     scene = _scene(**chosen)

@@ -107,9 +107,9 @@ def _coordinates(e: Array, B: Array, kept: Booleans) -> tuple[Array, Array]:
     first = kept[..., ::-1]
     Q, R = np.linalg.qr(np.where(first[..., None, :], B[..., ::-1], 0.0))
     along = np.where(first, np.vecmat(e, Q), 0.0)
-    y: Array = np.linalg.solve(R + np.eye(e.shape[-1]) * ~first[..., None, :], along[..., None])[..., 0]
-    rest = e - np.matvec(Q, along)
-    return y[..., ::-1], np.linalg.norm(rest, axis=-1)
+    y = np.linalg.solve(R + np.eye(e.shape[-1]) * ~first[..., None, :], along[..., None])[..., 0]
+    rest = np.linalg.norm(e - np.matvec(Q, along), axis=-1)
+    return np.asarray(y[..., ::-1], np.float64), np.asarray(rest, np.float64)
 
 
 def lost(measured: Nees) -> bool:

@@ -9,8 +9,9 @@ from ekfsim.provenance import metadata, told_in_a_line
 from ekfsim.records import expanded_length
 from ekfsim.scene import Scene
 from ekfsim.views import gif, video
-from ekfsim.views.frames import STANDARD, Frame, Look
+from ekfsim.views.frames import Frame
 from ekfsim.views.limits import Limits
+from ekfsim.views.look import STANDARD, Look
 from ekfsim.views.playback import View
 from ekfsim.views.png import Pixels
 

@@ -5,7 +5,6 @@ Frame(scene, limits.of(scene, play(scene))).png(view)      # 900 × 700 pixels
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,6 +24,7 @@ from ekfsim.views.captions import notes, source, spread, title, too_large
 from ekfsim.views.labels import label_obstacles
 from ekfsim.views.lettering import drawable, families, wrapped
 from ekfsim.views.limits import Limits, including
+from ekfsim.views.look import STANDARD, Look
 from ekfsim.views.outlined import OutlinedText
 from ekfsim.views.panels import CloseUp, Main
 from ekfsim.views.playback import View
@@ -34,17 +34,6 @@ INCHES, DPI = (9.0, 7.0), 100  # 900 × 700 pixels
 MAIN = (0.075, 0.08, 0.59, 0.76)  # left, bottom, width, height as shares of the figure
 CLOSE = (0.7, 0.08, 0.28, 0.36)
 COLUMNS, LINES = 118, 3  # of the notes: characters in a line, and lines
-
-
-@dataclass(frozen=True, slots=True)
-class Look:
-    """What a picture is to show besides."""
-
-    probability: float = 0.954  # of ellipse and cone
-    conditional: bool = False  # also the ellipses were the heading at either edge of its cone
-
-
-STANDARD = Look()
 
 
 def draw(view: View | Step, scene: Scene, ax: Axes, look: Look = STANDARD, limits: Limits | None = None) -> Main:

@@ -11,9 +11,10 @@ from typing import Any
 from matplotlib.backend_bases import Event, KeyEvent
 
 from ekfsim.scene import Scene
-from ekfsim.views.frames import DPI, INCHES, STANDARD, Look, Picture
+from ekfsim.views.frames import DPI, INCHES, Picture
 from ekfsim.views.keyboard import CHARACTERS, Action, Key
 from ekfsim.views.limits import Limits
+from ekfsim.views.look import STANDARD, Look
 from ekfsim.views.playback import View
 
 BACKENDS = {  # matplotlib's, each with the modules of which it needs one

@@ -217,7 +217,7 @@ def untouched(prior, posterior, correction):
     assert (posterior.mean == prior.mean).all()
     assert (posterior.covariance == prior.covariance).all()
     if not np.isnan(correction.S).any():  # what the reading would have done is told all the same
-        assert correction.K == pytest.approx(prior.covariance @ correction.H.mT / correction.S, rel=1e-12)
+        assert pytest.approx(prior.covariance @ correction.H.mT / correction.S, rel=1e-12) == correction.K
     return True
 
 

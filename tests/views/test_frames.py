@@ -17,7 +17,8 @@ from ekfsim.localization import play
 from ekfsim.records import Kidnap, Move, Say, Sense
 from ekfsim.views import limits
 from ekfsim.views.beams import beam
-from ekfsim.views.frames import Frame, Look, Picture, draw
+from ekfsim.views.frames import Frame, Picture, draw
+from ekfsim.views.look import Look
 from ekfsim.views.panels import close_width
 from ekfsim.views.playback import views
 from ekfsim.world import Map
