@@ -252,7 +252,7 @@ def squared_error(mean, P, truth):
     """eᵀ P⁺ e, the rank of P, and whether the error leaves its range, by singular values and least squares."""
     e = np.array([mean[0] - truth[0], mean[1] - truth[1], wrapped(mean[2] - truth[2])])
     P = np.array(P)
-    alive = [i for i in range(3) if P[i, i] > 0]
+    alive = [i for i in range(3) if P[i, i] > 1e-24]  # what is less is rounding
     if not alive:
         return 0.0, 0, bool(np.linalg.norm(e) > 1e-6)
     D = np.sqrt(np.diagonal(P)[alive])

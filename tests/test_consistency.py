@@ -85,6 +85,15 @@ def test_a_straight_way_in_any_direction(degrees, axes):
         assert not judged.impossible
 
 
+@pytest.mark.parametrize("left", [0.9e-12, 1e-18])
+def test_what_rounding_leaves_of_a_variance_is_none(left):
+    for P, dof in ((np.diag([left**2, 0.04, 0]), 1), (np.diag([left**2, 0.04, 0.01]), 2)):
+        assert judge(P, [1e-9, 0.2, 0]).dof == dof
+        assert value(P, [1e-9, 0.2, 0]) == pytest.approx(1)
+        assert impossible(P, [1.1e-6, 0.2, 0])
+    assert judge(np.diag([1.1e-12**2, 0.04, 0.01]), [0, 0.2, 0]).dof == 3
+
+
 def test_a_heading_that_moves_the_position_too():
     """The end of a straight way whose heading was uncertain: y = 5 θ. One degree of freedom, both errors or none."""
     P = 0.01**2 * np.array([[0, 0, 0], [0, 25, 5], [0, 5, 1.0]])
