@@ -5,11 +5,11 @@ A notebook needs no more than this module:
 >>> import ekfsim
 >>> scene = ekfsim.load_scene("square")                     # a path, or the name of one that comes along
 >>> steps = list(ekfsim.play(scene))                         # simulate and localize; a Step for each command
->>> view = next(ekfsim.views(steps))                         # view 0: the world before the first command
->>> print(ekfsim.narrate(view, scene).splitlines()[-2][:44])
-The true position lies inside the ellipse, t
+>>> views = list(ekfsim.Playback(steps))                     # one for each press of n; view 0 is the world at the start
+>>> print(ekfsim.narrate(views[1], scene).splitlines()[0])
+==>The robot moved: distance=3, angle=90
 
-and `ekfsim.draw(view, scene, axes)` puts the picture on matplotlib axes. One level deeper, the two halves of `play`:
+and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes. One level deeper, the two halves of `play`:
 `ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter, belief)` the Steps (what
 a filter made of them).
 
@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from ekfsim.views.frames import draw as draw
     from ekfsim.views.look import Look as Look
     from ekfsim.views.narrative import narrate as narrate
-    from ekfsim.views.playback import views as views
+    from ekfsim.views.playback import Playback as Playback
     from ekfsim.world import World as World
 
 # Where each name lives. They are imported when first used: `ekfsim --help` must not wait for numpy.
@@ -82,7 +82,7 @@ _HOMES = {
     "views.frames": ("draw",),
     "views.look": ("Look",),
     "views.narrative": ("narrate",),
-    "views.playback": ("views",),
+    "views.playback": ("Playback",),
     "world": ("World",),
 }
 _HOME_OF = {name: f"ekfsim.{home}" for home, names in _HOMES.items() for name in names}

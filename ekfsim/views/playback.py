@@ -68,6 +68,14 @@ class Playback:
         self._coming = views(steps)
         self._seen: list[View] = []
 
+    def __iter__(self) -> Iterator[View]:
+        """Every view, from the first to the last."""
+        for number in itertools.count():
+            view = self.view(number)
+            if view is None:
+                return
+            yield view
+
     def view(self, number: int) -> View | None:
         """View `number`, or None where the run is over before it."""
         while len(self._seen) <= number:
