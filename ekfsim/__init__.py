@@ -9,9 +9,9 @@ A notebook needs no more than this module:
 >>> print(ekfsim.narrate(views[1], scene).splitlines()[0])
 ==>The robot moved: distance=3, angle=90
 
-and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes. One level deeper, the two halves of `play`:
-`ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter, belief)` the Steps (what
-a filter made of them).
+and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes. One level deeper, the two halves of
+`play`: `ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter, belief)` the
+Steps (what a filter made of them).
 
 Notation, letter for letter as in the code (Bar-Shalom, Särkkä, Barfoot; Thrun's book swaps Q and R):
 

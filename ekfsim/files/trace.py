@@ -87,7 +87,7 @@ def _sense(step: Step, angle: float, confidence: float) -> dict[str, Any]:
         "command": {"angle": angle},
         "range": _number(step.entry.given.z[0]),
         **_corrected(step.correction),
-        **_sighted(step.entry.given.sensor, step.sighting),
+        **_sighted(step.entry.given.sensor, step.sighting, not np.isnan(step.correction.predicted[0])),
         "prior": _gaussian(step.prior),
         "posterior": _gaussian(step.posterior),
         "truth": _numbers(step.entry.truth),
@@ -110,15 +110,15 @@ def _corrected(c: Correction) -> dict[str, Any]:
     }
 
 
-def _sighted(sensor: Any, sighting: Sighting | None) -> dict[str, Any]:
-    if not isinstance(sensor, Laser) or sighting is None or sighting.wall < 0:
-        wall = None
-    else:
+def _sighted(sensor: Any, sighting: Sighting | None, predicted: bool) -> dict[str, Any]:
+    """The wall that is expected to be met; none where the beam meets none, or runs along it."""
+    wall = incidence = None
+    if predicted and isinstance(sensor, Laser) and sighting is not None:
         name, edge = sensor.walls.name(int(sighting.wall))
-        wall = {"name": name, "edge": edge}
+        wall, incidence = {"name": name, "edge": edge}, _number(sighting.incidence)
     return {
         "wall": wall,
-        "incidence": None if sighting is None else _number(sighting.incidence),
+        "incidence": incidence,
         "ambiguous": None if sighting is None else bool(sighting.ambiguous),
     }
 

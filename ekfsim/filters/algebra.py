@@ -8,7 +8,8 @@ from ekfsim.filters.belief import Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array, Booleans, Integers
 
-CERTAIN = 1e-20  # H P Hᵀ below this share of |H|² tr P is rounding: nothing is uncertain along H
+ROUNDING = 1e-14  # a sum below this share of its terms' sizes is what rounding leaves of 0
+CERTAIN = 1e-20  # and so is an H P Hᵀ below this share of |H|² tr P, where sin π stands for 0
 
 
 def symmetric(P: Array) -> Array:
@@ -19,8 +20,16 @@ def symmetric(P: Array) -> Array:
 def innovation_covariance(P: Array, H: Array, R: Array) -> Array:
     """S = H P Hᵀ + R : (…, k, k), exactly R where the rest is rounding."""
     HPHt = H @ P @ H.mT
-    rounding = CERTAIN * np.sum(H * H, axis=(-2, -1)) * np.trace(P, axis1=-2, axis2=-1)
-    return np.where(np.abs(HPHt) <= rounding[..., None, None], 0.0, HPHt) + R
+    sin_π = CERTAIN * np.sum(H * H, axis=(-2, -1)) * np.trace(P, axis1=-2, axis2=-1)
+    rounding = ROUNDING * (np.abs(H) @ np.abs(P) @ np.abs(H.mT)) + sin_π[..., None, None]
+    return np.where(np.abs(HPHt) <= rounding, 0.0, HPHt) + R
+
+
+def settled(P: Array, prior: Array) -> Array:
+    """P after an update, without what rounding leaves of a variance that a perfect sensor has made 0. Both (…, n, n)"""
+    variances, before = (np.diagonal(M, axis1=-2, axis2=-1) for M in (P, prior))
+    left = variances > ROUNDING * before
+    return P * (left[..., :, None] & left[..., None, :])
 
 
 def gain(P: Array, H: Array, S: Array) -> Array:

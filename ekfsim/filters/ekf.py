@@ -6,12 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ekfsim.filters.algebra import (
-    CERTAIN,
+    ROUNDING,
     gain,
     innovation_covariance,
     normalized_square,
     refusal,
     refusal_one,
+    settled,
     symmetric,
 )
 from ekfsim.filters.belief import Correction, Gaussian, Prediction, Refused
@@ -53,7 +54,7 @@ class EKF:
         K = gain(P, H, S)
         I_KH = np.eye(P.shape[-1]) - K @ H
         joseph = I_KH @ P @ I_KH.mT + K @ R @ K.mT  # right for any K
-        revised = Gaussian(self._wrapped(x + np.matvec(K, innovation)), symmetric(joseph))
+        revised = Gaussian(self._wrapped(x + np.matvec(K, innovation)), settled(symmetric(joseph), P))
         posterior = Gaussian(np.where(used, revised.mean, x), np.where(used[..., None], revised.covariance, P))
         return posterior, Correction(h, innovation, R, S, H, K, nis, refused)
 
@@ -65,14 +66,20 @@ class EKF:
         H_row, r = H[0], float(R[0, 0])
         PHt = P @ H_row
         s = float(H_row @ PHt)
-        s = (s if s > CERTAIN * float(H_row @ H_row) * float(P.trace()) else 0.0) + r
+        if s > 2 * ROUNDING * float(H_row @ H_row) * float(P.trace()):  # no smaller than what may be rounding
+            s += r
+        else:
+            s = float(innovation_covariance(P, H, R)[0, 0])
         nis = float(ν[0]) ** 2 / s if s > 0 else math.nan
         refused = refusal_one(z, h, nis, skip, self.gate)
         posterior, k = prior, PHt / s if s > 0 else np.zeros_like(x)
         if refused is Refused.NOT and s > 0:
             I_KH_P = P - k[:, None] * PHt
             joseph = I_KH_P - (I_KH_P @ H_row)[:, None] * k + (r * k)[:, None] * k
-            posterior = Gaussian(self._wrapped(x + k * ν), symmetric(joseph))
+            P_new = symmetric(joseph)
+            if r <= 10 * ROUNDING * s:  # no variance falls by more than S/R
+                P_new = settled(P_new, P)
+            posterior = Gaussian(self._wrapped(x + k * ν), P_new)
         return posterior, Correction(h, ν, R, np.array([[s]]), H, k[:, None], np.array(nis), np.array(int(refused)))
 
     def _wrapped(self, x: Array) -> Array:

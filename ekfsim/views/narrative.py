@@ -115,15 +115,15 @@ def _bump(step: Step, scene: Scene) -> str:
 def _beam(step: Step, angle: float, scene: Scene) -> str:
     assert isinstance(step.entry.given, Reading)
     z = float(step.entry.given.z[0])
-    doubts = _doubts(step, step.sighting) if step.sighting is not None and scene.guard != "off" else ""
+    doubts = "" if step.sighting is None else _doubts(step, step.sighting, scene.guard != "off")
     told = "There is no echo: the beam met no wall\n" if math.isnan(z) else f"The range is {number(z)}\n"
     return f"==>Commanding the robot to sense at an angle of {turn(angle)}\n{doubts}{told}"
 
 
-def _doubts(step: Step, sighting: Sighting) -> str:
+def _doubts(step: Step, sighting: Sighting, guarded: bool) -> str:
     """What is doubtful about a beam before its reading is used."""
     doubts = ""
-    if sighting.ambiguous:
+    if sighting.ambiguous and guarded:
         doubts += (
             f"This beam is ambiguous: expected to meet {_wall_name(step, int(sighting.wall))}, but from a pose within "
             f"3 sigma it would meet {_others(step, sighting)}\n"

@@ -389,3 +389,25 @@ def test_every_filter_tells_the_same_story_alone_as_in_a_batch(name):
                     assert us[row] == pytest.approx(u, abs=1e-12)
                 case Reading(_, z), Reading(_, zs):
                     assert zs[row] == pytest.approx(z, abs=1e-12, nan_ok=True)
+
+
+def test_a_perfect_laser_settles_what_it_measures_once_and_for_all():
+    """With a known heading all is linear: two beams tell the place exactly, and S is 0 ever after, not rounding."""
+    room = Walls.of({"room": np.array([[0, 0], [8, 0], [8, 6], [0, 6.0]])})
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        truth = np.array([3.0, 2.0, 0.0])
+        P = covariance(random, 3) * 1e-4
+        P[2] = P[:, 2] = 0
+        belief = Gaussian(np.append(random.multivariate_normal(truth[:2], P[:2, :2]), 0.0), P)
+        for n, bearing in enumerate((0.3, 0.3, 1.5, 0.3, 1.5, -1.2, 0.3)):
+            laser = Laser(room, bearing, 0.0)
+            z = laser.h(truth)
+            alone, correction = EKF().update(belief, laser, z)
+            batch, batched = EKF().update(Gaussian(belief.mean[None], belief.covariance[None]), laser, z[None])
+            same(batch, alone, 0)
+            settled = n not in (0, 2)
+            assert np.isnan(correction.nis) == np.isnan(batched.nis[0]) == settled
+            belief = alone
+        assert belief.mean == pytest.approx(truth, abs=1e-9)
+        assert (belief.covariance == 0).all()

@@ -179,9 +179,10 @@ def test_what_was_not_used_has_no_gain():
         assert "Kalman gain" not in said(sensed(refused=refused))
 
 
-def test_without_a_guard_there_is_no_warning():
-    doubtful = sensed(ambiguous=True, incidence=3.0, probes=(1,) * 6)
-    assert said(doubtful, beam=True, place=replace(PLACE, guard="off")) == BEAM
+def test_without_a_guard_an_ambiguous_beam_is_not_told_and_a_grazing_one_is():
+    unguarded = replace(PLACE, guard="off")
+    assert said(sensed(ambiguous=True, probes=(1,) * 6), beam=True, place=unguarded) == BEAM
+    assert "grazes" in said(sensed(ambiguous=True, incidence=3.0, probes=(1,) * 6), beam=True, place=unguarded)
 
 
 def test_the_truth_is_told_only_where_it_is_known():
