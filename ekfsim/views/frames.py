@@ -31,7 +31,7 @@ from ekfsim.views.playback import View
 from ekfsim.views.png import Pixels, encode
 
 INCHES, DPI = (9.0, 7.0), 100  # 900 × 700 pixels
-MAIN = (0.075, 0.08, 0.59, 0.76)  # left, bottom, width, height as shares of the figure
+MAIN = (0.085, 0.08, 0.58, 0.76)  # left, bottom, width, height as shares of the figure
 CLOSE = (0.7, 0.08, 0.28, 0.36)
 COLUMNS, LINES = 118, 3  # of the notes: characters in a line, and lines
 
