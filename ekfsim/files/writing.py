@@ -64,8 +64,8 @@ def whole_folder(path: Path, pattern: str, force: bool = False) -> Iterator[Path
     Raises UsageError if the folder holds something and may not be replaced, RunError if the disk refuses.
     """
     with told(path):
-        place = path.resolve()  # where a link leads: it stays a link
-        if place.exists() and not place.is_dir():
+        place = Path(os.path.realpath(path))  # where a link leads: it stays a link
+        if os.path.lexists(place) and not place.is_dir():
             raise UsageError(f"{path}: this is a file; name a folder")
         if place == Path.cwd():
             raise UsageError(f"{path}: this is the current folder; name a new one")
@@ -137,7 +137,7 @@ def _parents(path: Path, place: Path) -> Iterator[None]:
         missing = [folder for folder in place.parents if not os.path.lexists(folder)]
     try:
         with told(path):
-            for folder in place.parents:
+            for folder in (*path.parents, *place.parents):
                 if os.path.lexists(folder) and not folder.is_dir():
                     raise UsageError(f"{path}: '{folder}' is no folder")
             place.parent.mkdir(parents=True, exist_ok=True)
