@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 MOST = 2**63 - 1
-CONTROLS = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f]")
+CONTROLS = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\udc80-\udcff]")  # and bytes of a file's name that are no text
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
 
 
@@ -98,7 +98,7 @@ def _shown(text: object) -> str:
     >>> print(_shown("red\x1b[31m.yaml"))
     red\x1b[31m.yaml
     """
-    return CONTROLS.sub(lambda found: f"\\x{ord(found[0]):02x}", str(text))
+    return CONTROLS.sub(lambda found: f"\\x{ord(found[0]) & 0xFF:02x}", str(text))
 
 
 def _placed(line: str) -> bool:
@@ -343,4 +343,6 @@ def _scene(
         _say(warning)
     scene = found.get()
     chosen: dict[str, Any] = {"seed": seed, "run": run_number, "filter": filter_name, "gate": gate, "guard": guard}
+    for name in ("world_source", "commands_source"):  # every output holds them, in a line
+        chosen[name] = _shown(getattr(scene, name)).replace("\n", "\\x0a")
     return replace(scene, **{name: value for name, value in chosen.items() if value is not None})
