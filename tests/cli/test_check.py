@@ -1,0 +1,156 @@
+"""check, schema, list and new."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+from program import SHORT, WORLD, ekfsim, lay_out, left_in, process
+
+from ekfsim.files.packaged import packaged
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    monkeypatch.chdir(lay_out(tmp_path))
+    return tmp_path
+
+
+def test_each_sound_file_is_ok_on_a_line_of_its_own():
+    told = ekfsim("check", "world.yaml", "short.yaml")
+    assert (told.status, told.out, told.err) == (0, "world.yaml: ok\nshort.yaml: ok\n", "")
+
+
+def test_every_mistake_of_every_file_is_told_at_its_place(place):
+    (place / "wrong.yaml").write_text(SHORT.replace("distance: 1", "distanz: 1").replace("angle: 0", "angle: no"))
+    (place / "odd.yaml").write_text(WORLD.replace("0.05", "-1", 1))
+    told = ekfsim("check", "wrong.yaml", "world.yaml", "odd.yaml")
+    assert told.status == 2
+    assert told.err == ""
+    assert told.out.splitlines() == [
+        "wrong.yaml:3:12: commands[0].move: unknown key 'distanz'; did you mean 'distance'?",
+        "wrong.yaml:4:20: commands[1].sense.angle: 'no' is text where a number belongs; write e.g. 90",
+        "world.yaml: ok",
+        "odd.yaml:7:27: noise.executionDstSigmaRatio: -1 is negative; write a number of 0 or more",
+    ]
+
+
+def test_a_missing_file_hides_no_other(place):
+    (place / "empty.yaml").write_text("")
+    told = ekfsim("check", "nowhere.yaml", "world.yaml", ".", "empty.yaml")
+    assert told.status == 2
+    assert told.err == "ekfsim: nowhere.yaml: no such file\nekfsim: .: is a folder; name a file in it\n"
+    assert told.out == ("world.yaml: ok\nempty.yaml:1:1: the file is empty; see `ekfsim new` for one to start from\n")
+
+
+def test_what_is_no_text_is_told_in_a_line(place):
+    (place / "bytes.yaml").write_bytes(bytes(range(255, 0, -1)))
+    for file in ("bytes.yaml", "/dev/null", "", "no\x1bwhere.yaml", "a" * 300):
+        told = ekfsim("check", file)
+        assert told.status == 2
+        assert len((told.out + told.err).splitlines()) == 1
+        assert "\x1b" not in told.out + told.err
+
+
+def test_a_file_named_in_escape_codes_does_not_reach_the_terminal(place):
+    name = "red\x1b[31m\x07.yaml"
+    (place / name).write_text(WORLD)
+    assert ekfsim("check", name).out == "red\\x1b[31m\\x07.yaml: ok\n"
+    (place / name).write_text("name: 7\n")
+    told = ekfsim("check", name)
+    assert told.out.startswith("red\\x1b[31m\\x07.yaml:1:")
+    assert "\x1b" not in told.out + told.err
+
+
+def test_warnings_go_to_the_other_stream(place):
+    (place / "short.yaml").write_text(SHORT.replace("angle: 90", "angle: 900"))
+    told = ekfsim("check", "short.yaml")
+    assert told.status == 0
+    assert told.out == "short.yaml: ok\n"
+    assert told.err.startswith("short.yaml:3:")
+
+
+def test_a_reader_who_has_seen_enough_is_no_failure():
+    told = process("check", "world.yaml", "nowhere.yaml", after='| true; exit "${PIPESTATUS[0]}"')
+    assert (told.status, told.out) == (0, "")
+
+
+@pytest.mark.parametrize("kind", ["world", "commands"])
+def test_schema_is_json(kind):
+    told = ekfsim("schema", kind)
+    assert (told.status, told.err) == (0, "")
+    assert json.loads(told.out)["title"] == f"ekfsim {kind}"
+
+
+def test_list_names_all_that_comes_along():
+    told = ekfsim("list")
+    assert (told.status, told.err) == (0, "")
+    names = [line.split()[0] for line in told.out.splitlines() if line.startswith("  ")]
+    assert names == [*packaged("worlds"), *packaged("commands")]
+
+
+def test_output_that_only_ascii_can_reach_still_comes():
+    for args in (["--help"], ["run", "--help"], ["list"], ["schema", "world"], ["run", "tour", "-q"]):
+        told = ekfsim(*args, encoding="ascii")
+        assert told.status == 0
+        assert told.out
+
+
+@pytest.mark.parametrize(("name", "kind"), [("my-world.yaml", "world"), ("sub/my-commands.yaml", "commands")])
+def test_new_writes_a_file_that_check_finds_ok(place, name, kind):
+    told = ekfsim("new", name)
+    assert told.status == 0
+    assert told.out == f"{name}: a {kind} file to start from; ekfsim check {name} validates it\n"
+    if kind == "commands":  # its world is the one to be made next
+        named = next(line for line in Path(name).read_text().splitlines() if line.startswith("world:"))
+        world = Path(name).parent / named.split()[1]
+        if not world.exists():
+            assert ekfsim("new", world, "--kind", "world").status == 0
+    assert ekfsim("check", name).out == f"{name}: ok\n"
+
+
+def test_new_overwrites_nothing_unasked(place):
+    before = (place / "world.yaml").read_text()
+    told = ekfsim("new", "world.yaml")
+    assert told.status == 2
+    assert told.err == "ekfsim: world.yaml: exists already; choose another name, or replace it with --force\n"
+    assert (place / "world.yaml").read_text() == before
+    assert ekfsim("new", "world.yaml", "--force").status == 0
+    assert (place / "world.yaml").read_text() != before
+
+
+def test_new_asks_which_kind():
+    for name in ("file.yaml", "world-commands.yaml"):
+        told = ekfsim("new", name)
+        assert told.status == 2
+        assert told.err == f"ekfsim: {name}: a world or commands? say --kind world or --kind commands\n"
+        assert not Path(name).exists()
+        assert ekfsim("new", name, "--kind", "world").status == 0
+    assert ekfsim("new", "other.yaml", "--kind", "robot").status == 2
+
+
+@pytest.mark.parametrize(
+    "name", ["", "-", ".", "world.yaml/new-world.yaml", "world" * 60, "/proc/world", "world.yaml/a/world"]
+)
+def test_new_where_no_file_can_be(place, name):
+    before = left_in(place)
+    told = ekfsim("new", name, "--kind", "world")
+    assert told.status == 2
+    assert told.out == ""
+    assert left_in(place) == before
+
+
+@pytest.mark.parametrize("args", [[], ["walk"], ["check"], ["schema"], ["schema", "robot"], ["--walk"], ["new"]])
+def test_wrong_usage_is_told_with_the_way_out(args):
+    told = ekfsim(*args)
+    assert told.status == 2
+    assert told.out == ""
+    assert "Usage: ekfsim" in told.err
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
+def test_a_file_that_may_not_be_read(place):
+    (place / "world.yaml").chmod(0)
+    told = ekfsim("check", "world.yaml")
+    assert told.status == 2
+    assert told.err == "ekfsim: world.yaml: cannot be read: Permission denied\n"

@@ -1,0 +1,130 @@
+"""render: files that are whole or absent, in bounded memory."""
+
+import signal
+
+import pytest
+from program import LONG, MEASURED, ekfsim, ended, lay_out, left_in, process, started, wait_for
+
+from ekfsim.views.png import SIGNATURE
+
+PUT_IN = ["long.yaml", "short.yaml", "world.yaml"]
+FRAMES = [f"frame-{number:04}.png" for number in range(5)]
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    monkeypatch.chdir(lay_out(tmp_path))
+    return tmp_path
+
+
+def pictures(folder):
+    assert all(file.read_bytes().startswith(SIGNATURE) for file in folder.iterdir())
+    return left_in(folder)
+
+
+def test_a_picture_for_every_view_in_a_folder(place):
+    drawn = ekfsim("render", "short.yaml", "-o", "new/frames")
+    assert (drawn.status, drawn.out, drawn.err) == (0, "new/frames: 5 pictures\n", "")
+    assert pictures(place / "new/frames") == FRAMES
+
+
+def test_every_n_th_and_the_last(place):
+    assert ekfsim("render", "short.yaml", "-o", "frames", "--every", "3").out == "frames: 3 pictures\n"
+    assert pictures(place / "frames") == [FRAMES[0], FRAMES[3], FRAMES[4]]
+    assert ekfsim("render", "short.yaml", "-o", "one.gif", "--every", "99").out == "one.gif: 2 pictures\n"
+    assert (place / "one.gif").read_bytes()[:6] == b"GIF89a"
+
+
+def test_pictures_that_exist_stay_unless_they_are_to_be_replaced(place):
+    (place / "frames").mkdir()
+    (place / "frames/frame-9999.png").write_text("older")
+    refused = ekfsim("render", "short.yaml", "-o", "frames")
+    assert refused.status == 2
+    assert refused.err.startswith("ekfsim: frames: the folder is not empty; ")
+    assert left_in(place / "frames") == ["frame-9999.png"]
+    assert ekfsim("render", "short.yaml", "-o", "frames", "--force").status == 0
+    assert pictures(place / "frames") == FRAMES
+    assert left_in(place) == ["frames", *(f"frames/{name}" for name in FRAMES), *PUT_IN]
+
+
+def test_a_folder_that_a_link_leads_to_is_filled(place):
+    (place / "far").mkdir()
+    (place / "link").symlink_to("far")
+    assert ekfsim("render", "short.yaml", "-o", "link").status == 0
+    assert (place / "link").is_symlink()
+    assert pictures(place / "far") == FRAMES
+
+
+@pytest.mark.parametrize(
+    ("out", "why"),
+    [
+        ("foreign", "foreign: holds 'thesis.tex', which is no result of ekfsim; choose another folder"),
+        ("here", "here: this is a file; name a folder"),
+        (".", ".: this is the current folder; name a new one"),
+        ("world.yaml", "world.yaml: '.yaml' is no kind of picture; "),
+        ("world.yaml/frames", "world.yaml/frames: 'world.yaml' is no folder"),
+        ("world.yaml/a.gif", "world.yaml/a.gif: 'world.yaml' is no folder"),
+        ("frames.jpg", "frames.jpg: '.jpg' is no kind of picture; "),
+        ("/dev/null", "/dev/null: this is a file; name a folder"),
+        ("/proc/frames", "/proc/frames: cannot be written: "),
+    ],
+)
+def test_where_no_picture_can_be_none_is_drawn(place, out, why):
+    (place / "foreign").mkdir()
+    (place / "foreign/thesis.tex").write_text("years")
+    (place / "here").symlink_to("here")
+    before = left_in(place)
+    refused = ekfsim("render", "short.yaml", "-o", out, "--force")
+    assert (refused.status, refused.out) == (2, "")
+    assert refused.err.startswith(f"ekfsim: {why}")
+    assert left_in(place) == before
+    assert (place / "foreign/thesis.tex").read_text() == "years"
+
+
+@pytest.mark.parametrize(
+    "more", [[], ["-o", ""], ["-o", "-"], ["-o", "a", "--every", "0"], ["-o", "a", "--every", "x"]]
+)
+def test_wrong_usage(place, more):
+    assert ekfsim("render", "short.yaml", *more).status == 2
+    assert left_in(place) == PUT_IN
+
+
+@pytest.mark.parametrize(
+    ("number", "status", "out"),
+    [
+        ("SIGINT", 130, "frames"),
+        ("SIGTERM", 143, "frames.gif"),
+        ("SIGKILL", -9, "frames"),
+        ("SIGKILL", -9, "frames.gif"),
+    ],
+)
+def test_pictures_that_are_interrupted_do_not_appear(place, number, status, out):
+    (place / "long.yaml").write_text(LONG.replace("20000", "100"))
+    running = started("render", "long.yaml", "-o", out)
+    wait_for(lambda: any(place.glob(".frames*.partial")), running)
+    running.send_signal(getattr(signal, number))
+    assert ended(running).status == status
+    left = sorted(file.name for file in place.iterdir() if file.name not in PUT_IN)
+    assert len(left) == (number == "SIGKILL")
+    assert all(name.startswith(".frames") and name.endswith(".partial") for name in left)
+
+
+def test_the_names_of_files_reach_the_pictures_whatever_they_hold(place):
+    name = "кабинет\udcff\x1b[31m\n.yaml"
+    (place / name).write_text((place / "short.yaml").read_text())
+    for out in ("frames", "one.gif"):
+        drawn = ekfsim("render", name, "-o", out, "--every", "99")
+        assert (drawn.status, drawn.err) == (0, "")
+
+
+def test_memory_does_not_grow_with_the_scenario(place):
+    peaks = []
+    for times in (10, 6000):
+        (place / "long.yaml").write_text(LONG.replace("20000", str(times)).replace("{sense: {angle: 0}}, ", "say: n, "))
+        (place / "long.yaml").write_text(
+            f"world: world.yaml\ncommands: [{{repeat: {{times: {times}, commands: [say: n]}}}}]"
+        )
+        drawn = process("render", "long.yaml", "-o", f"{times}.gif", "--every", "1000", program=MEASURED)
+        assert drawn.status == 0
+        peaks.append(int(drawn.err))
+    assert peaks[1] < peaks[0] + 6000  # kB
