@@ -1,181 +1,23 @@
 """The command line: each command an outline of what it does. Heavy modules are imported where they are used."""
 
-import math
-import os
-import re
-import signal
 import sys
-from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import click
 
-from ekfsim.errors import EkfsimError, UsageError
+from ekfsim import process
+from ekfsim.errors import UsageError
+from ekfsim.options import FORCE, Result, scene_options
+from ekfsim.process import Program, say, shown
 
 if TYPE_CHECKING:
     from ekfsim.scene import Scene
 
-INTERRUPTED = 130
-MOST = 2**63 - 1
-CONTROLS = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\udc80-\udcff]")  # and bytes of a file's name that are no text
-FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
-
 
 def main() -> NoReturn:
-    """Run the program and exit with its status: 0 done, 1 the run failed, 2 wrong usage or file, 130, 143."""
-    _open_closed_streams()
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-        number = getattr(signal, name, None)  # Windows does not hang up
-        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _end)
-    for stream in (sys.stdout, sys.stderr):
-        with suppress(AttributeError, ValueError):
-            stream.reconfigure(errors="replace")  # type: ignore[union-attr]
-    sys.exit(_status())
-
-
-def _status() -> int:
-    """What the program's exit status is; mistakes of its user end here in a sentence, ours keep their traceback."""
-    try:
-        ekfsim(standalone_mode=False)
-        sys.stdout.flush()
-        return 0
-    except click.ClickException as mistake:
-        with suppress(OSError):
-            mistake.show()
-        return mistake.exit_code
-    except EkfsimError as error:
-        _say(str(error))
-        return error.status
-    except (KeyboardInterrupt, click.Abort):
-        _say("interrupted")
-        return INTERRUPTED
-    except (_UnreadError, BrokenPipeError):
-        _forget_what_is_buffered()
-        return 0
-    except OSError as refusal:
-        if refusal.filename is not None:
-            raise  # no write to standard output, but a mistake of ours
-        _forget_what_is_buffered()
-        _say(f"writing to standard output failed: {refusal.strerror}")
-        return 1
-
-
-def _open_closed_streams() -> None:
-    """Give a stream that was closed by whoever started us (`>&-`) to /dev/null: no result must come in its place."""
-    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
-        if getattr(sys, name) is None:
-            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115 (open to the end)
-
-
-def _forget_what_is_buffered() -> None:
-    """What could not be written to standard output must not fail once more at exit."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _end(number: int, frame: FrameType | None) -> NoReturn:
-    """End by an exception, so that every block cleans up behind itself, undisturbed by whoever is impatient."""
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), signal.SIG_IGN)
-    if number == signal.SIGINT:
-        raise KeyboardInterrupt
-    sys.exit(128 + number)
-
-
-def _say(text: str) -> None:
-    with suppress(OSError):
-        lines = (line if _placed(line) else f"ekfsim: {line}" for line in _shown(text).split("\n"))
-        click.echo("\n".join(lines), err=True)
-
-
-def _shown(text: object) -> str:
-    r"""A text, in which the name of a file may stand, as it does no harm to a terminal.
-
-    >>> print(_shown("red\x1b[31m.yaml"))
-    red\x1b[31m.yaml
-    """
-    return CONTROLS.sub(lambda found: f"\\x{ord(found[0]) & 0xFF:02x}", str(text))
-
-
-def _placed(line: str) -> bool:
-    """Whether a line begins with file:line:col, which an editor wants to find at its very start."""
-    return line.count(":") > 2 and line.split(":")[1].isdigit() and line.split(":")[2].isdigit()
-
-
-class _UnreadError(Exception):
-    """Whoever read our output has seen enough."""
-
-
-class Program(click.Group):
-    """The commands. click itself would make a failure of a closed pipe."""
-
-    def make_context(
-        self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
-    ) -> click.Context:
-        """Parse the arguments, and print the help that they ask for."""
-        try:
-            return super().make_context(info_name, args, parent, **extra)
-        except BrokenPipeError:
-            raise _UnreadError from None
-
-    def invoke(self, ctx: click.Context) -> Any:
-        """Do what the arguments ask for."""
-        try:
-            return super().invoke(ctx)
-        except BrokenPipeError:
-            raise _UnreadError from None
-
-
-class Probability(click.FloatRange):
-    """A number between 0 and 1, and neither of them."""
-
-    def __init__(self) -> None:
-        super().__init__(0, 1, min_open=True, max_open=True)
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """A float. Fails for nan too, which lies in no range and outside of none."""
-        number = float(super().convert(value, param, ctx))
-        if math.isnan(number):
-            self.fail(f"{value} is not in the range {self._describe_range()}.", param, ctx)
-        return number
-
-
-class Result(click.Path):
-    """Where a result is to be written."""
-
-    def __init__(self) -> None:
-        super().__init__(path_type=Path)
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """A path. Fails for a name that an unset variable leaves, and for the dash that other programs know."""
-        if value == "":
-            self.fail("the name is empty.", param, ctx)
-        if value == "-":
-            self.fail("'-' names no file; /dev/stdout is the standard output.", param, ctx)
-        return super().convert(value, param, ctx)
-
-
-def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options by which every command that plays a scene may overrule its file."""
-    options = [
-        click.argument("commands"),
-        click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names."),
-        click.option("--seed", type=click.IntRange(min=0), help="In place of the file's seed."),
-        click.option("--run", "run_number", type=click.IntRange(0, MOST), default=0, help="Which run of the seed."),
-        click.option("--filter", "filter_name", help="ekf."),
-        click.option("--gate", type=Probability(), metavar="P",
-                     help="Refuse readings whose NIS lies beyond this χ² quantile."),
-        click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams."),
-        click.option("--confidence", type=Probability(), default=0.954,
-                     show_default=True, help="Probability of the ellipse and the cone."),
-    ]  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
+    """The program `ekfsim`."""
+    process.run(ekfsim)
 
 
 @click.group(cls=Program, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -225,7 +67,7 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
             views(steps_of(scene)), scene, extent, out, look=Look(confidence, conditional), every=every, force=force,
             progress=lambda made: bar.update(1),
         )  # fmt: skip
-    click.echo(f"{_shown(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
+    click.echo(f"{shown(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
 
 
 @ekfsim.command()
@@ -249,7 +91,8 @@ def run(
     from ekfsim.views.playback import views
 
     scene, result = _scene(**chosen), Summary()
-    with Outputs(trace, tum, csv, summary, force).open(scene, confidence, result) as sinks:
+    outputs = Outputs(trace, tum, csv, summary, force)
+    with outputs.open(scene, confidence, result) as sinks:
         for view in views(steps_of(scene)):
             if not quiet:
                 sys.stdout.write(narrate(view, scene, confidence))
@@ -257,7 +100,7 @@ def run(
                 result.add(view.step)
                 for sink in sinks:
                     sink.write(view.step)
-    sys.stdout.write(conclude(result))
+    (sys.stderr if outputs.on_stdout() else sys.stdout).write(conclude(result))
 
 
 @ekfsim.command()
@@ -265,18 +108,19 @@ def run(
 def check(files: tuple[str, ...]) -> None:
     """Validate world and command FILES: every mistake with its place, or `ok`."""
     from ekfsim.files.load import check as mistakes_in
+    from ekfsim.files.packaged import packaged, resolve
 
     wrong = False
     for file in files:
         try:
-            found = mistakes_in(Path(file))
+            found = mistakes_in(resolve(file, "worlds" if file in packaged("worlds") else "commands"))
         except UsageError as missing:
-            _say(str(missing))
+            say(str(missing))
             wrong = True
             continue
         for warning in found.warnings:
-            _say(warning)
-        click.echo(_shown("\n".join(map(str, found.mistakes)) or f"{file}: ok"))
+            say(warning)
+        click.echo(shown("\n".join(map(str, found.mistakes)) or f"{file}: ok"))
         wrong = wrong or bool(found.mistakes)
     if wrong:
         sys.exit(UsageError.status)
@@ -322,7 +166,7 @@ def new(file: Path, kind: str | None, force: bool) -> None:
     )
     with whole_text(file, force) as out:
         out.write(template(told))
-    click.echo(_shown(f"{file}: a {told} file to start from; ekfsim check {file} validates it"))
+    click.echo(shown(f"{file}: a {told} file to start from; ekfsim check {file} validates it"))
 
 
 def _scene(
@@ -340,9 +184,9 @@ def _scene(
         raise UsageError(f"--filter {filter_name}: there is no such filter; known: {', '.join(FILTERS)}")
     found = read_scene(resolve(commands, "commands"), None if world is None else resolve(world, "worlds"))
     for warning in found.warnings:
-        _say(warning)
+        say(warning)
     scene = found.get()
     chosen: dict[str, Any] = {"seed": seed, "run": run_number, "filter": filter_name, "gate": gate, "guard": guard}
     for name in ("world_source", "commands_source"):  # every output holds them, in a line
-        chosen[name] = _shown(getattr(scene, name)).replace("\n", "\\x0a")
+        chosen[name] = shown(getattr(scene, name)).replace("\n", "\\x0a")
     return replace(scene, **{name: value for name, value in chosen.items() if value is not None})

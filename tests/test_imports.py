@@ -29,6 +29,7 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"study"},
     {"views"},
     {"systems"},
+    {"process", "options"},
     {"cli", "ekfsim"},
 )
 CORE = {"geometry", "models", "filters", "world", "records", "scene", "consistency", "summary", "provenance",

@@ -41,9 +41,10 @@ class Outputs:
 
         Raises UsageError before anything is written if one of them exists and `force` is False, or is named twice.
         """
-        paths = [path for path in (self.trace, self.csv, self.summary, *self._tum()) if path]
+        paths = self._paths()
         for path in paths:
             refuse_existing(path, self.force)
+            _refuse_the_scene_itself(path, scene)
         _refuse_one_place_for_two([path for path in paths if not special(path)])
         with ExitStack() as stack:
             file_of = {path: stack.enter_context(whole_text(path, self.force)) for path in paths}
@@ -62,8 +63,22 @@ class Outputs:
             for file in file_of.values():
                 file.flush()  # a full disk must show before the first of them appears
 
+    def on_stdout(self) -> bool:
+        """Whether a result goes to standard output, where the closing summary would spoil it."""
+        return any(path.exists() and os.path.samestat(path.stat(), os.fstat(1)) for path in self._paths())
+
+    def _paths(self) -> list[Path]:
+        return [path for path in (self.trace, self.csv, self.summary, *self._tum()) if path]
+
     def _tum(self) -> tuple[Path, ...]:
         return (self.tum / "truth.tum", self.tum / "estimate.tum") if self.tum else ()
+
+
+def _refuse_the_scene_itself(path: Path, scene: Scene) -> None:
+    """Raise UsageError where a result would replace the file that it is made from."""
+    for source in map(Path, (scene.commands_source, scene.world_source)):
+        if path.exists() and source.exists() and path.samefile(source):
+            raise UsageError(f"{path}: is what the run is made from; choose another name")
 
 
 def _refuse_one_place_for_two(paths: list[Path]) -> None:

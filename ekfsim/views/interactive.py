@@ -4,6 +4,7 @@ import os
 import shutil
 import sys
 from collections.abc import Callable
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from ekfsim.views.frames import Frame
     from ekfsim.views.window import Window
 
+LOOK_AHEAD = 3000  # steps whose limits are known before the first picture; where a later one leaves them it grows
 POLL = 0.05  # s between two looks at the window while no key is pressed
 MARGIN = 2  # rows of the terminal left free of the picture
 WIDEST, HIGHEST = 1000, 300  # columns and rows of a picture, whatever COLUMNS and LINES say
@@ -36,7 +38,7 @@ def play_interactively(scene: Scene, show: str, out: Path, look: Look, force: bo
     window_wanted = show == "window" or (show == "auto" and _window_available())
     if show == "window" and not _window_available():
         raise UsageError("there is no display to open a window on; --show text draws in the terminal")
-    extent = limits.of(scene, play(scene), look.probability)
+    extent = limits.of(scene, islice(play(scene), LOOK_AHEAD), look.probability)
     pictures = Pictures(scene, extent, look, out, force)
     window: Window | None = None
     screen: Screen

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import islice
 from typing import Self
 
 import numpy as np
@@ -17,7 +16,6 @@ from ekfsim.world import World
 
 MARGIN = 0.05  # of the larger side, all around: room for the robot's body and the line widths
 LEAST = 1e-3  # m; a world of one point is still this wide
-LOOK_AHEAD = 100_000  # steps read for the limits of a run; a picture grows where a later one leaves them
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +98,7 @@ def of(scene: Scene, steps: Iterable[Step], probability: float = 0.954) -> Limit
     held = [corner for points in _drawn(scene.world) for corner in points]
     core = Limits.around(np.array(held).reshape(-1, 2)) if held else None
     wide: Limits | None = None
-    for step in islice(steps, LOOK_AHEAD):
+    for step in steps:
         here = Limits.around(positions(step))
         core = here if core is None else core.joined(here)
         reach = Limits.around(_reached(step, probability))

@@ -72,14 +72,14 @@ def narrate(view: View, scene: Scene, probability: float = 0.954) -> str:
             text = f"==>The robot was carried away to (x, y, th) = {there}; the filter was not told\n"
             text += _judged(step, probability)
         case Say(said):
-            text = f"==>{said.rstrip()}\n"
+            text = f"==>{_lines(said)}\n"
     return f"{text}\n"
 
 
 def _start(step: Step, scene: Scene, probability: float) -> str:
     x, P = step.posterior
     return (
-        f"{told_in_a_line(scene)}\n{scene.description.strip()}\n\n"
+        f"{told_in_a_line(scene)}\n{_lines(scene.description)}\n\n"
         + fill(f"First state estimate is (x, y, theta) = {POSE}\n", *pose(x.tolist()))
         + fill(f"First state covariance matrix is:\n{MATRIX}\n", *P.ravel().tolist())
         + _truth(step)
@@ -178,6 +178,11 @@ def _uncertainty(belief: Gaussian, probability: float) -> str:
         math.degrees(drawn.orientation),
         math.degrees(halfwidth),
     )
+
+
+def _lines(text: str) -> str:
+    """A text in plain lines: whatever else breaks a line or moves a cursor has no place in a narrative."""
+    return "\n".join(text.strip().splitlines())
 
 
 def _truth(step: Step) -> str:

@@ -181,7 +181,6 @@ def test_the_narrative_holds_no_control_characters(place):
         assert not set(CONTROLS) & set(ended.out + ended.err)
 
 
-@pytest.mark.xfail(reason="YAML's other line breaks are kept as they are")
 @pytest.mark.parametrize("char", BREAKS)
 def test_nor_does_another_line_break(place, char):
     (place / "short.yaml").write_text(SHORT.replace("The end.", json.dumps(f"The {char} end.")))

@@ -1,5 +1,6 @@
 """Results are whole or absent, and every way a run can end has its status."""
 
+import json
 import os
 import signal
 from pathlib import Path
@@ -111,8 +112,17 @@ def test_a_folder_that_may_not_be_written(place):
 def test_a_result_may_go_where_the_narrative_goes():
     told = process("run", "short.yaml", "-q", "--trace", "/dev/stdout", after=">both; cat both")
     assert told.status == 0
-    assert told.out.startswith('{"type":"start"')
-    assert told.out.splitlines()[-1].startswith("Verdict: ")
+    assert all(json.loads(line)["type"] for line in told.out.splitlines())
+    assert told.err.splitlines()[-1].startswith("Verdict: ")  # where it spoils no result
+
+
+def test_a_result_never_replaces_what_it_is_made_from(place):
+    refused = ekfsim("run", "short.yaml", "--trace", "./short.yaml", "--force")
+    assert (refused.status, refused.err) == (
+        2,
+        "ekfsim: short.yaml: is what the run is made from; choose another name\n",
+    )
+    assert (place / "short.yaml").read_text().startswith("world:")
 
 
 @full

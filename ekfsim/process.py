@@ -1,0 +1,123 @@
+"""How the process begins and ends: streams, signals, exit statuses, and mistakes told in sentences."""
+
+import os
+import re
+import signal
+import sys
+from contextlib import suppress
+from types import FrameType
+from typing import Any, NoReturn
+
+import click
+
+from ekfsim.errors import EkfsimError
+
+INTERRUPTED = 130
+CONTROLS = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\udc80-\udcff]")  # and bytes of a file's name that are no text
+
+
+def run(program: click.Group) -> NoReturn:
+    """Run a program and exit with its status: 0 done, 1 the run failed, 2 wrong usage or file, 130, 143."""
+    _open_closed_streams()
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)  # Windows does not hang up
+        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _end)
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(AttributeError, ValueError):
+            stream.reconfigure(errors="replace")  # type: ignore[union-attr]
+    sys.exit(_status(program))
+
+
+def _status(program: click.Group) -> int:
+    """What the program's exit status is; mistakes of its user end here in a sentence, ours keep their traceback."""
+    try:
+        program(prog_name="ekfsim", standalone_mode=False)
+        sys.stdout.flush()
+        return 0
+    except click.ClickException as mistake:
+        with suppress(OSError):
+            mistake.show()
+        return mistake.exit_code
+    except EkfsimError as error:
+        say(str(error))
+        return error.status
+    except (KeyboardInterrupt, click.Abort):
+        say("interrupted")
+        return INTERRUPTED
+    except (_UnreadError, BrokenPipeError):
+        _forget_what_is_buffered()
+        return 0
+    except OSError as refusal:
+        if refusal.filename is not None:
+            raise  # no write to standard output, but a mistake of ours
+        _forget_what_is_buffered()
+        say(f"writing to standard output failed: {refusal.strerror}")
+        return 1
+
+
+def _open_closed_streams() -> None:
+    """Give a stream that was closed by whoever started us (`>&-`) to /dev/null: no result must come in its place."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115 (open to the end)
+
+
+def _forget_what_is_buffered() -> None:
+    """What could not be written to standard output must not fail once more at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _end(number: int, frame: FrameType | None) -> NoReturn:
+    """End by an exception, so that every block cleans up behind itself, undisturbed by whoever is impatient."""
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
+    if number == signal.SIGINT:
+        raise KeyboardInterrupt
+    sys.exit(128 + number)
+
+
+def say(text: str) -> None:
+    """Tell the user something on standard error: a mistake with its place as it is, all else in our name."""
+    with suppress(OSError):
+        lines = (line if _placed(line) else f"ekfsim: {line}" for line in shown(text).split("\n"))
+        click.echo("\n".join(lines), err=True)
+
+
+def shown(text: object) -> str:
+    r"""A text, in which the name of a file may stand, as it does no harm to a terminal.
+
+    >>> print(shown("red\x1b[31m.yaml"))
+    red\x1b[31m.yaml
+    """
+    return CONTROLS.sub(lambda found: f"\\x{ord(found[0]) & 0xFF:02x}", str(text))
+
+
+def _placed(line: str) -> bool:
+    """Whether a line begins with file:line:col, which an editor wants to find at its very start."""
+    return line.count(":") > 2 and line.split(":")[1].isdigit() and line.split(":")[2].isdigit()
+
+
+class _UnreadError(Exception):
+    """Whoever read our output has seen enough."""
+
+
+class Program(click.Group):
+    """The commands. click itself would make a failure of a closed pipe."""
+
+    def make_context(
+        self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
+    ) -> click.Context:
+        """Parse the arguments, and print the help that they ask for."""
+        try:
+            return super().make_context(info_name, args, parent, **extra)
+        except BrokenPipeError:
+            raise _UnreadError from None
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Do what the arguments ask for."""
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:
+            raise _UnreadError from None
