@@ -85,6 +85,7 @@ def anew(scene: Scene, extent: limits.Limits, coming: Any) -> Callable[[], objec
 def by_irsim() -> dict[str, Callable[[], object]]:
     """ir-sim's own way, without a window."""
     os.environ["MPLBACKEND"] = "Agg"
+    sys.path.insert(0, os.getcwd())  # its pictures go to a folder in the first of these
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # it looks for windows, and says so
         irsim: Any = optional("irsim")
     if irsim is None:

@@ -23,7 +23,7 @@ def packaged(kind: Folder) -> dict[str, Path]:
 
 
 def resolve(name_or_path: str | Path, kind: Folder) -> Path:
-    """The file that a path, or the bare name of a packaged file, stands for. What exists wins over a name.
+    """The file that a path, or the bare name of a packaged file, stands for. A file that exists wins over a name.
 
     Raises UsageError where it is neither.
     """
@@ -31,7 +31,7 @@ def resolve(name_or_path: str | Path, kind: Folder) -> Path:
     known = packaged(kind)
     name = os.fspath(name_or_path)
     try:
-        exists = path.exists()
+        exists = path.exists() and not (name in known and path.is_dir())  # `render tour -o tour` made that folder
     except (OSError, ValueError):  # a name too long, or with a NUL in it
         exists = False
     if exists or name not in known:

@@ -144,6 +144,11 @@ def test_a_file_that_exists_wins_over_a_packaged_name(home):
     assert str(resolve("tour", "commands")) == "tour"
 
 
+def test_a_folder_does_not_hide_a_packaged_name(home):
+    (home / "elsewhere/tour").mkdir()  # as `render tour -o tour` leaves it
+    assert resolve("tour", "commands") == home / "commands/tour.yaml"
+
+
 def test_outputs_name_packaged_files_alike_everywhere(home):
     scene = load_scene(resolve("tour", "commands"))
     assert (scene.commands_source, scene.world_source) == ("commands/tour.yaml", "worlds/room.yaml")
