@@ -5,7 +5,7 @@ from enum import Enum
 
 import numpy as np
 
-from ekfsim.filters.belief import Gaussian
+from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.chi_square import band, quantile
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap, wrap_one
@@ -132,15 +132,17 @@ class Evidence:
     """What the steps of one run say for and against its filter, gathered one at a time."""
 
     nis_sum: float = 0.0
-    nis_dof: int = 0  # one for each update that had a NIS, refused ones included
+    nis_dof: int = 0  # one for each reading that had a NIS, refused ones included
     lost_from: int | None = None  # index of the step from which on the run is lost without a gap
     last_nees: Nees | None = None
+    nis_refused: int = 0  # how many readings of the sum were refused
 
     def add(self, step: Step) -> None:
         """Take one more step into account."""
         if step.correction is not None and not np.isnan(step.correction.nis):
             self.nis_sum += float(step.correction.nis)
             self.nis_dof += step.correction.innovation.shape[-1]
+            self.nis_refused += int(step.correction.refused != Refused.NOT)
         if step.nees is not None:
             self.last_nees = step.nees
             if not lost(step.nees):

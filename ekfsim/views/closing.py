@@ -37,7 +37,8 @@ def sentence(evidence: Evidence) -> str:
 
 def _nis(evidence: Evidence, side: str) -> str:
     low, high = evidence.nis_band
-    readings = "1 reading is" if evidence.nis_dof == 1 else f"{evidence.nis_dof} readings sums to"
+    refused = f" ({evidence.nis_refused} of them refused)" if evidence.nis_refused else ""
+    readings = "1 reading is" if evidence.nis_dof == 1 else f"{evidence.nis_dof} readings{refused} sums to"
     return (
         f"the NIS of {readings} {number(evidence.nis_sum)}, {side} the {100 * BAND:.0f} % band "
         f"{number(low)} to {number(high)}"

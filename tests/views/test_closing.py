@@ -24,6 +24,9 @@ def nees(value, dof=3, impossible=False):
          "NEES is 2.5, below its 99.9 % bound 16.2662 (3 degrees of freedom)"),
         (Evidence(26, 10), "over-confident: the NIS of 10 readings sums to 26, above the 99 % band 2.15586 to 25.1882: "
          "the filter trusts itself more than its readings allow"),
+        (Evidence(26, 10, nis_refused=2),
+         "over-confident: the NIS of 10 readings (2 of them refused) sums to 26, above the 99 % band 2.15586 to "
+         "25.1882: the filter trusts itself more than its readings allow"),
         (Evidence(2, 10), "over-cautious: the NIS of 10 readings sums to 2, below the 99 % band 2.15586 to 25.1882: "
          "the filter trusts itself less than it could"),
         (Evidence(10, 10, 7, nees(20.0, 1)),
