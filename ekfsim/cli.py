@@ -10,6 +10,7 @@ from ekfsim import process
 from ekfsim.errors import UsageError
 from ekfsim.options import FORCE, Result, scene_options
 from ekfsim.process import Program, say, shown
+from ekfsim.version import VERSION
 
 if TYPE_CHECKING:
     from ekfsim.scene import Scene
@@ -21,7 +22,7 @@ def main() -> NoReturn:
 
 
 @click.group(cls=Program, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
-@click.version_option(package_name="ekfsim", message="%(prog)s %(version)s")
+@click.version_option(VERSION, message="%(prog)s %(version)s")
 def ekfsim() -> None:
     """Simulate a robot that localizes itself with an extended Kalman filter, and read every calculation.
 

@@ -1,10 +1,7 @@
 """Which world, commands, seed and version made an output: every output says it."""
 
-from importlib.metadata import version
-
 from ekfsim.scene import Scene
-
-VERSION = version("ekfsim")
+from ekfsim.version import VERSION
 
 
 def provenance(scene: Scene) -> dict[str, str | int | float | None]:
