@@ -55,9 +55,11 @@ def play(show: str, out: Path, conditional: bool, force: bool, confidence: float
 @FORCE
 def render(out: Path, every: int, conditional: bool, force: bool, confidence: float, **chosen: Any) -> None:
     """Draw every step of COMMANDS into files."""
+    from ekfsim.views.look import Look, get_ready
+
+    get_ready()
     from ekfsim.localization import play as steps_of
     from ekfsim.views import animation, limits
-    from ekfsim.views.look import Look
     from ekfsim.views.playback import number_of_views, views
 
     scene = _scene(**chosen)

@@ -16,7 +16,7 @@ from ekfsim.scene import Scene
 from ekfsim.views import limits, terminal
 from ekfsim.views.keyboard import Key, Keyboard, keys
 from ekfsim.views.limits import Limits
-from ekfsim.views.look import Look
+from ekfsim.views.look import Look, get_ready
 from ekfsim.views.playback import Playback, View
 from ekfsim.views.player import Player, Screen
 
@@ -59,6 +59,7 @@ def _window_available() -> bool:
     displays = ("DISPLAY", "WAYLAND_DISPLAY")
     if sys.platform not in ("darwin", "win32") and not any(os.environ.get(name) for name in displays):
         return False  # without the second that it takes to import matplotlib
+    get_ready()
     from ekfsim.views.window import available
 
     return available()
@@ -120,6 +121,7 @@ class Pictures:
 
     def _write(self, view: View, path: Path, force: bool) -> None:
         if self._frame is None:
+            get_ready()
             from ekfsim.views.frames import Frame
 
             self._frame = Frame(self._scene, self._extent, self._look)

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from ekfsim.errors import UsageError
+
 
 @dataclass(frozen=True, slots=True)
 class Look:
@@ -12,3 +14,14 @@ class Look:
 
 
 STANDARD = Look()
+
+
+def get_ready() -> None:
+    """Import matplotlib, which reads its user's settings as it is imported.
+
+    Raises UsageError where one of them is wrong, such as the environment's MPLBACKEND.
+    """
+    try:
+        import matplotlib  # noqa: F401 (to see whether it can be)
+    except ValueError as refusal:
+        raise UsageError(f"matplotlib does not accept its settings: {refusal}") from refusal

@@ -128,3 +128,10 @@ def test_memory_does_not_grow_with_the_scenario(place):
         assert drawn.status == 0
         peaks.append(int(drawn.err))
     assert peaks[1] < peaks[0] + 6000  # kB
+
+
+def test_settings_that_matplotlib_refuses_are_told(place):
+    refused = process("render", "short.yaml", "-o", "frames", MPLBACKEND="bogus")
+    assert refused.status == 2
+    assert refused.err.startswith("ekfsim: matplotlib does not accept its settings: ")
+    assert left_in(place) == PUT_IN
