@@ -1,34 +1,23 @@
-"""Where a beam meets its first wall: what that means, and how to find it fast.
+"""How to find the first wall on a beam's way without trying each.
 
-A wall is a straight line from a to b; a beam leaves its origin o in the unit direction d. Seen from the beam, a point v
-lies `along` = (v − o)·d ahead and `across` = (v − o)×d to the right. A wall whose ends lie on different sides is
-crossed, and the crossing is the mean of the ends' `along`, each weighted with the other's distance across:
-
-    r = (along_a across_b − along_b across_a) / (across_b − across_a)
-
-What rounding must not decide is decided within `reach`, some units in the last place of the coordinates:
-
-- A beam that passes within reach of a wall's end hits that end. Edges that share a corner get the same numbers for
-  it, so nothing slips between them.
-- A beam along a wall hits its nearer end.
-- A beam that starts within reach of a wall has range 0, whatever its direction.
-- Of several walls at the same range (within `tie`), the one with the lowest index is hit.
-
-`meet` says all this in full. `Grid` finds the first wall without trying each: a cell lists the walls that cross it, and
-a beam looks only into the cells on its way (Amanatides & Woo, A Fast Voxel Traversal Algorithm, 1987).
+A cell lists the walls that cross it, and a beam looks only into the cells on its way (Amanatides & Woo, A Fast Voxel
+Traversal Algorithm, 1987). A crowded cell has a grid of its own: a town of walls in a wide plain is found as fast. What
+it means to meet a wall is told in meeting.py.
 """
 
 from dataclasses import dataclass
-from math import hypot, inf, nan
+from math import inf, nan
 from typing import Self
 
 import numpy as np
 
 from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.geometry.meeting import REACH, TIE, meet, meet_one, see
 
-REACH = 16 * float(np.finfo(float).eps)  # of the coordinates' size: what an aimed beam misses its mark by, and to spare
-TIE = 1e-12  # of the coordinates' size: ranges that differ by less are equal
 PAD = 1 / 64  # of a cell: a wall is listed in the cells it passes as near as this, so rounding on the way is harmless
+CROWDED = 64  # walls in a cell from which on it has a grid of its own
+DEEPEST = 4  # grids within grids; walls that all pass through one point never part
+NOTHING: list["Wall"] = []
 CHUNK = 1 << 18  # beams × walls that are held in memory at a time
 
 Wall = tuple[float, float, float, float, int]  # its ends' x, y, x, y in m, and its index
@@ -52,31 +41,44 @@ class Grid:
     start: Integers  # (cells + 1,): cell c lists walls[start[c] : start[c + 1]]
     walls: Integers  # (listed,) indices of walls, cell after cell
     border: Booleans  # (cells,)
-    lists: list[list[Wall] | None]  # the same for a single beam: each cell's walls, None for the border
+    lists: list["list[Wall] | Grid | None"]  # the same for a single beam: each cell's walls, None for the border
 
     @classmethod
     def over(cls, segments: Array) -> Self:
-        """Lay the cells so that even walls that all cross the whole map are listed some 16 times each at most."""
-        count, extent = len(segments), np.ptp(segments, axis=(0, 1))
-        lengths = np.abs(segments[:, 1] - segments[:, 0]).sum()
+        """A grid over all walls of a map."""
+        return cls._within(segments, segments, np.arange(len(segments)), float(np.abs(segments).max()), 0)
+
+    @classmethod
+    def _within(cls, segments: Array, pieces: Array, numbers: Integers, size: float, depth: int) -> Self:
+        """Lay the cells so that even walls that all cross the whole area are listed some 16 times each at most.
+
+        pieces : (W, 2, 2) m, the parts of the walls that lie in the area; numbers : (W,) indices of the walls
+        """
+        count, extent = len(segments), np.ptp(pieces, axis=(0, 1))
+        lengths = np.abs(pieces[:, 1] - pieces[:, 0]).sum()
         cell = float(max(np.sqrt(extent.prod() / count), extent.max() / count, lengths / (16 * count + 4096)))
-        left, bottom = segments.min((0, 1)) - (1 + 2 * PAD) * cell
+        left, bottom = pieces.min((0, 1)) - (1 + 2 * PAD) * cell
         columns, rows = (int(n) for n in extent // cell + 4)  # 2 for border, 2 for what is over and the pads
 
-        wall, at = crossed((segments - [left, bottom]) / cell, columns, rows)
+        wall, at = crossed((pieces - [left, bottom]) / cell, columns, rows)
         order = np.argsort(at, kind="stable")
         start = np.concatenate([[0], np.cumsum(np.bincount(at, minlength=columns * rows))])
         border = np.pad(np.zeros((columns - 2, rows - 2), bool), 1, constant_values=True).ravel()
 
-        tuples = list(zip(*segments.reshape(-1, 4).T.tolist(), range(count), strict=True))
-        listed = [tuples[k] for k in wall[order].tolist()]
-        bounds = start.tolist()
-        lists = [
+        tuples = list(zip(*segments.reshape(-1, 4).T.tolist(), numbers.tolist(), strict=True))
+        listed, bounds = [tuples[k] for k in wall[order].tolist()], start.tolist()
+        lists: list[list[Wall] | Grid | None] = [
             None if outside else listed[a:b]
             for outside, a, b in zip(border.tolist(), bounds[:-1], bounds[1:], strict=True)
         ]
-        size = float(np.abs(segments).max())
         horizon = PAD / 64 * cell / TIE - size
+        crowded = np.flatnonzero((np.diff(start) > CROWDED) & ~border & (depth < DEEPEST))
+        for c in crowded.tolist():
+            here = wall[order[start[c] : start[c + 1]]]
+            corner = np.array([left, bottom]) + np.array(divmod(c, rows)) * cell
+            inside = clipped(segments[here], corner - 2 * PAD * cell, corner + (1 + 2 * PAD) * cell)
+            nested = cls._within(segments[here], inside, numbers[here], size, depth + 1)
+            lists[c], horizon = nested, min(horizon, nested.horizon)
         place = horizon, float(left), float(bottom), cell, columns, rows
         return cls(segments, size, *place, start, wall[order], border, lists)
 
@@ -99,6 +101,13 @@ class Grid:
         best, limit = inf, inf
         found: list[tuple[float, int]] = []
         while (listed := lists[at]) is not None:
+            if isinstance(listed, Grid):
+                r, wall = listed.walk(x, y, dx, dy)
+                if r <= limit:
+                    found.append((r, wall))
+                    best = min(best, r)
+                    limit = best + tie
+                listed = NOTHING
             for ax, ay, bx, by, wall in listed:
                 ax -= x
                 ay -= y
@@ -114,7 +123,7 @@ class Grid:
                 if sides < -doubt and not -doubt <= area <= doubt:
                     r = area / (across_b - across_a)
                 else:
-                    r = _meet(along_a, across_a, along_b, across_b, REACH * span)
+                    r = meet_one(along_a, across_a, along_b, across_b, REACH * span)
                 if not 0 <= r <= limit:
                     continue
                 if r < best - tie:
@@ -215,47 +224,22 @@ def crossed(segments: Array, columns: int, rows: int) -> tuple[Integers, Integer
     return wall[part], column * rows + row
 
 
+def clipped(segments: Array, low: Array, high: Array) -> Array:
+    """The parts of segments within a box (Liang & Barsky, 1984). segments : (n, 2, 2), low and high : (2,)"""
+    a, way = segments[:, 0], segments[:, 1] - segments[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.sort([(low - a) / way, (high - a) / way], axis=0)
+    ends = np.where(way == 0, [[[-np.inf]], [[np.inf]]], ends)  # along a side: within it all the way
+    enter, leave = np.clip(ends[0].max(-1), 0, 1), np.clip(ends[1].min(-1), 0, 1)
+    t = np.stack([np.minimum(enter, leave), np.maximum(enter, leave)], axis=-1)
+    pieces: Array = np.clip(a[:, None] + t[..., None] * way[:, None], low, high)
+    return pieces
+
+
 def spread(counts: Integers) -> tuple[Integers, Integers]:
     """Counts (2, 0, 3) give owners (0, 0, 2, 2, 2) and numbers (0, 1, 0, 1, 2)."""
     owner = np.repeat(np.arange(len(counts)), counts)
     return owner, np.arange(len(owner)) - (np.cumsum(counts) - counts)[owner]
-
-
-def see(segments: Array, x: Array, y: Array, dx: Array, dy: Array) -> Array:
-    """Walls as beams see them: along and across of the first end, then of the second, (4, …) m.
-
-    segments : (…, 2, 2) m, broadcast with the beams' origin (x, y) in m and unit direction (dx, dy).
-    """
-    ax, ay, bx, by = segments[..., 0, 0] - x, segments[..., 0, 1] - y, segments[..., 1, 0] - x, segments[..., 1, 1] - y
-    return np.stack([ax * dx + ay * dy, ax * dy - ay * dx, bx * dx + by * dy, bx * dy - by * dx])
-
-
-def meet(seen: Array, reach: Array) -> Array:
-    """(…): the range in m at which beams meet the walls that they `see`, inf where not; told at the top."""
-    along_a, across_a, along_b, across_b = seen
-    at_a, at_b = np.abs(across_a) <= reach, np.abs(across_b) <= reach
-    ahead, aside = along_b - along_a, across_b - across_a
-    square = ahead * ahead + aside * aside
-    foot = np.clip(-(along_a * ahead + across_a * aside) / np.where(square, square, 1), 0, 1)  # nearest to the origin
-    distance = np.hypot(along_a + foot * ahead, across_a + foot * aside)
-    crossing = (along_a * across_b - along_b * across_a) / np.where(aside, aside, 1)
-    r = np.where((across_a < 0) != (across_b < 0), crossing, np.inf)
-    r = np.where(at_b, along_b, r)
-    r = np.where(at_a, np.where(at_b, np.minimum(along_a, along_b), along_a), r)
-    r = np.where(distance <= reach, 0.0, r)
-    return np.where(r >= 0, r, np.inf)
-
-
-def _meet(along_a: float, across_a: float, along_b: float, across_b: float, reach: float) -> float:
-    """`meet` of one beam and one wall; less than 0 or nan where they do not."""
-    ahead, aside = along_b - along_a, across_b - across_a
-    square = ahead * ahead + aside * aside or 1.0
-    foot = min(max(-(along_a * ahead + across_a * aside) / square, 0.0), 1.0)
-    if hypot(along_a + foot * ahead, across_a + foot * aside) <= reach:
-        return 0.0
-    if abs(across_a) <= reach or abs(across_b) <= reach:
-        return min(along for along, across in ((along_a, across_a), (along_b, across_b)) if abs(across) <= reach)
-    return (along_a * across_b - along_b * across_a) / aside if (across_a < 0) != (across_b < 0) else nan
 
 
 def _way(u: float, i: int, d: float, cell: float, stride: int) -> tuple[int, float, float]:

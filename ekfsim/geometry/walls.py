@@ -1,7 +1,7 @@
 """The walls of a map: which polygon each belongs to, and which of them a beam meets first.
 
 A wall is met from either side: a beam that starts inside an obstacle, or outside the boundary, meets the first edge on
-its way, whosesoever it is. What a beam through a corner, along a wall or from a wall meets is told in grid.py.
+its way, whosesoever it is. What a beam through a corner, along a wall or from a wall meets is told in meeting.py.
 """
 
 from collections.abc import Mapping
@@ -13,7 +13,8 @@ from typing import Self
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.grid import CHUNK, REACH, TIE, Grid, meet, see
+from ekfsim.geometry.grid import CHUNK, Grid
+from ekfsim.geometry.meeting import REACH, TIE, meet, see
 
 COLLINEAR = 1e-9  # rad, and of the polygon's size: edges that differ by less lie on one line
 RECENT = 8  # beams that are remembered

@@ -6,7 +6,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ekfsim.geometry.grid import REACH
+from ekfsim.geometry.meeting import REACH
 from ekfsim.geometry.walls import Walls, brute_force
 
 ROOM = np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])
@@ -324,3 +324,48 @@ def test_long_diagonals_do_not_fill_the_grid():
 def test_a_tangle_of_long_walls_stays_within_memory():
     grid = Walls.of(tangle(2000, 1)).grid
     assert len(grid.walls) < 20 * len(grid.segments)
+
+
+def town(kind, seed, width):
+    """Many walls on a small patch of a plain of 1 km, with long walls through all of it."""
+    random = np.random.default_rng(seed)
+    plain = {"plain": 1000.0 * np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])}
+    long = {f"long {i}": random.uniform(0, 1000, (3, 2)) for i in range(4)}
+    streets = {
+        "houses": {name: 500 + ring * width / 100 for name, ring in stars(400, seed).items()},
+        "lattice": {
+            f"{i} {j}": 500 + width * (np.array([[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1.0]]) / 16)
+            for i in range(16)
+            for j in range(16)
+        },
+        "fan": {
+            str(i): 500 + width * np.array([[0, 0], *random.uniform(0.2, 1, (2, 2))]) for i in range(150)
+        },  # all through one point: no cell parts them
+    }
+    return {**plain, **long, **streets[kind]}
+
+
+@pytest.mark.parametrize("width", [20.0, 0.5])
+@pytest.mark.parametrize("kind", ["houses", "lattice", "fan"])
+def test_a_town_in_a_wide_plain_is_cast_alike_by_all_ways(kind, width):
+    rings = town(kind, 5, width)
+    walls = Walls.of(rings)
+    random = np.random.default_rng(7)
+    inside = beams(300, 6, 500 - width / 10, 500 + 1.1 * width)
+    outside = beams(200, 8, 0, 1000)
+    aim = 500 + random.uniform(0, width, (200, 2)) - outside[0]
+    for origin, heading in (inside, outside, (outside[0], np.arctan2(*aim.T[::-1]))):
+        assert_all_ways_agree(walls, origin, heading, scale=1000)
+    corners = np.concatenate(list(rings.values()))[random.integers(0, len(rings), 200)]
+    to_corners = corners - inside[0][:200]
+    assert_all_ways_agree(walls, inside[0][:200], np.arctan2(*to_corners.T[::-1]), scale=1000)
+    assert_all_ways_agree(walls, corners, inside[1][:200], scale=1000)
+
+
+def test_a_town_in_a_wide_plain_is_no_crowd_in_one_cell():
+    grid = Walls.of(town("houses", 5, 10.0)).grid
+
+    def fullest(grid):
+        return max(len(cell) if isinstance(cell, list) else fullest(cell) for cell in grid.lists if cell is not None)
+
+    assert fullest(grid) <= 64
