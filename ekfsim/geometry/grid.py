@@ -16,6 +16,7 @@ from ekfsim.geometry.meeting import REACH, TIE, meet, meet_one, see
 
 PAD = 1 / 64  # of a cell: a wall is listed in the cells it passes as near as this, so rounding on the way is harmless
 CROWDED = 64  # walls in a cell from which on it has a grid of its own
+FINEST = 2e-8  # of the coordinates' size: a smaller cell, and rounding would count for beams from near by
 DEEPEST = 4  # grids within grids; walls that all pass through one point never part
 NOTHING: list["Wall"] = []
 CHUNK = 1 << 18  # beams × walls that are held in memory at a time
@@ -56,7 +57,8 @@ class Grid:
         """
         count, extent = len(segments), np.ptp(pieces, axis=(0, 1))
         lengths = np.abs(pieces[:, 1] - pieces[:, 0]).sum()
-        cell = float(max(np.sqrt(extent.prod() / count), extent.max() / count, lengths / (16 * count + 4096)))
+        fine = max(np.sqrt(extent.prod() / count), extent.max() / count, lengths / (16 * count + 4096))
+        cell = float(max(fine, FINEST * size))
         left, bottom = pieces.min((0, 1)) - (1 + 2 * PAD) * cell
         columns, rows = (int(n) for n in extent // cell + 4)  # 2 for border, 2 for what is over and the pads
 

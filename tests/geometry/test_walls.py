@@ -369,3 +369,11 @@ def test_a_town_in_a_wide_plain_is_no_crowd_in_one_cell():
         return max(len(cell) if isinstance(cell, list) else fullest(cell) for cell in grid.lists if cell is not None)
 
     assert fullest(grid) <= 64
+
+
+def test_a_hundred_times_the_same_wall_in_a_wide_plain_is_one_place():
+    dot = 500 + 1e-6 * np.array([[0, 0], [1, 0], [0, 1.0]])
+    walls = Walls.of({"plain": 1000 * ROOM / 10, **{str(i): dot for i in range(100)}})
+    origin, heading = np.tile([[499.0, 500.0]], (50, 1)), np.linspace(-2e-6, 4e-6, 50)
+    assert_all_ways_agree(walls, origin, heading, scale=1000)
+    assert walls.grid.horizon > 2000
