@@ -47,7 +47,7 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
         click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names."),
         click.option("--seed", type=click.IntRange(min=0), help="In place of the file's seed."),
         click.option("--run", "run_number", type=click.IntRange(0, MOST), default=0, help="Which run of the seed."),
-        click.option("--filter", "filter_name", help="ekf."),
+        click.option("--filter", "filter_name", help="In place of the file's filter: ekf."),
         click.option("--gate", type=Probability(), metavar="P",
                      help="Refuse readings whose NIS lies beyond this χ² quantile."),
         click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams."),
