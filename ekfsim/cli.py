@@ -9,7 +9,7 @@ import click
 from ekfsim import process
 from ekfsim.errors import UsageError
 from ekfsim.options import FORCE, Result, scene_options
-from ekfsim.process import Program, say, shown
+from ekfsim.process import Program, heed, say, shown
 from ekfsim.version import VERSION
 
 if TYPE_CHECKING:
@@ -66,9 +66,14 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
     extent = limits.of(scene, steps_of(scene), confidence)
     pictures = animation.number_of_pictures(number_of_views(scene.commands), every)
     with click.progressbar(length=pictures, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
+
+        def made_one(made: int) -> None:
+            heed()
+            bar.update(1)
+
         animation.render(
             views(steps_of(scene)), scene, extent, out, look=Look(confidence, conditional), every=every, force=force,
-            progress=lambda made: bar.update(1),
+            progress=made_one,
         )  # fmt: skip
     click.echo(f"{shown(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
 
@@ -97,6 +102,7 @@ def run(
     outputs = Outputs(trace, tum, csv, summary, force)
     with outputs.open(scene, confidence, result) as sinks:
         for view in views(steps_of(scene)):
+            heed()
             if not quiet:
                 sys.stdout.write(narrate(view, scene, confidence))
             if not view.beam:

@@ -13,6 +13,7 @@ import click
 from ekfsim.errors import EkfsimError
 
 INTERRUPTED = 130
+_ending: list[int] = []  # the signal that is to end us, once it has come
 CONTROLS = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\udc80-\udcff]")  # and bytes of a file's name that are no text
 
 
@@ -26,7 +27,14 @@ def run(program: click.Group) -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         with suppress(AttributeError, ValueError):
             stream.reconfigure(errors="replace")  # type: ignore[union-attr]
-    sys.exit(_status(program))
+    _ending.clear()
+    try:
+        status = _status(program)
+    except Exception:
+        if not _ending:
+            raise
+        status = 1  # what a library made of the signal's exception
+    sys.exit(128 + _ending[0] if _ending else status)
 
 
 def _status(program: click.Group) -> int:
@@ -68,14 +76,21 @@ def _forget_what_is_buffered() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _end(number: int, frame: FrameType | None) -> NoReturn:
+def _end(number: int, frame: FrameType | None) -> None:
     """End by an exception, so that every block cleans up behind itself, undisturbed by whoever is impatient."""
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
-    if number == signal.SIGINT:
+    _ending.append(number)
+    heed()
+
+
+def heed() -> None:
+    """End if a signal asked for it: its exception is lost where it comes up inside a library's compiled code."""
+    if _ending and _ending[0] == signal.SIGINT:
         raise KeyboardInterrupt
-    sys.exit(128 + number)
+    if _ending:
+        sys.exit(128 + _ending[0])
 
 
 def say(text: str) -> None:
