@@ -263,11 +263,24 @@ else:
             signal.signal(signal.SIGTSTP, suspend)
             enter()
 
-        endings = dict.fromkeys((signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT), _end)
+        came: list[int] = []  # a drawing library's compiled code may swallow what `end` raises: told again at next key
+
+        def end(number: int, _: FrameType | None) -> NoReturn:
+            came.append(number)
+            raise SystemExit(128 + number)
+
+        source = _descriptor(fd)
+
+        def heeding(timeout: float | None) -> bytes | None:
+            if came:
+                raise SystemExit(128 + came[0])
+            return source(timeout)
+
+        endings = dict.fromkeys((signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT), end)
         with _handling({signal.SIGCONT: enter, signal.SIGTSTP: suspend, **endings}):
             try:
                 enter()
-                yield _descriptor(fd)
+                yield heeding
             finally:
                 leave()
 
@@ -293,7 +306,3 @@ else:
         finally:
             for number, before in previous.items():
                 signal.signal(number, before if before is not None else signal.SIG_DFL)
-
-    def _end(number: int, _: FrameType | None) -> NoReturn:
-        """Leave by an exception, so that every `finally` on the way is kept."""
-        raise SystemExit(128 + number)
