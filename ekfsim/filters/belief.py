@@ -1,5 +1,6 @@
 """What a filter believes, and what it says of each step."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
@@ -15,8 +16,25 @@ class Gaussian(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
+class Particles:
+    """A belief that is a crowd of weighted states. Its mean and covariance stand for it wherever one is drawn or told."""
+
+    mean: Array  # (…, n), circular where it is a heading
+    covariance: Array  # (…, n, n)
+    states: Array  # (…, p, n)
+    weights: Array  # (…, p), their sum is 1
+
+    def __iter__(self) -> Iterator[Array]:
+        """`x, P = belief` takes any kind of belief."""
+        return iter((self.mean, self.covariance))
+
+
+Belief = Gaussian | Particles
+
+
+@dataclass(frozen=True, slots=True)
 class Prediction:
-    """How a motion input was linearised."""
+    """How a motion input was linearised; a filter without derivatives gives what stands for them."""
 
     F: Array  # ∂f/∂x : (…, n, n)
     G: Array  # ∂f/∂u : (…, n, m)
@@ -45,7 +63,7 @@ class Correction:
     innovation: Array  # ν : (…, k)
     R: Array  # (…, k, k)
     S: Array  # (…, k, k)
-    H: Array  # (…, k, n)
+    H: Array  # ∂h/∂x : (…, k, n); without derivatives what stands for it, P_zx P⁺
     K: Array  # (…, n, k), 0 where S = 0 or undefined
     nis: Array  # νᵀ S⁻¹ ν : (…), refused readings included; nan where S = 0
     refused: Integers  # (…) one of Refused

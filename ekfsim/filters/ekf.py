@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -15,7 +16,8 @@ from ekfsim.filters.algebra import (
     settled,
     symmetric,
 )
-from ekfsim.filters.belief import Correction, Gaussian, Prediction, Refused
+from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction, Refused
+from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.models.protocols import Motion, Sensor
@@ -28,14 +30,19 @@ class EKF:
     gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
 
-    def predict(self, belief: Gaussian, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
+    @classmethod
+    def begin(cls, beginning: Beginning) -> Self:
+        """The filter for a run that begins so."""
+        return cls(beginning.gate, beginning.headings)
+
+    def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
         """x⁻ = f(x, u)      P⁻ = F P Fᵀ + G M Gᵀ + Q          eqs 4, 7; u : (…, m) in the motion's units"""
         x, P = belief
         f, F, G, M, Q = motion.linearize(x, u)
         return Gaussian(f, symmetric(F @ P @ F.mT + G @ M @ G.mT + Q)), Prediction(F, G)
 
     def update(
-        self, prior: Gaussian, sensor: Sensor, z: Array, skip: Booleans | bool = False
+        self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
     ) -> tuple[Gaussian, Correction]:
         """ν = z − h(x⁻)      S = H P⁻ Hᵀ + R      K = P⁻ Hᵀ S⁻¹          eqs 9, 11; z : (…, k)
         x = x⁻ + K ν      P = (I − KH) P⁻ (I − KH)ᵀ + K R Kᵀ          eq. 10; for this K eq. 12, (I − KH) P⁻
@@ -46,7 +53,7 @@ class EKF:
         h, H, R = sensor.linearize(x)
         innovation = sensor.residual(z, h)
         if z.shape == (1,) and x.ndim == 1:
-            return self._update_one(prior, z, innovation, h, H, R, bool(skip))
+            return self._update_one(Gaussian(x, P), z, innovation, h, H, R, bool(skip))
         S = innovation_covariance(P, H, R)
         nis = normalized_square(innovation, S)
         refused = refusal(z, h, nis, skip, self.gate)

@@ -1,21 +1,38 @@
-"""What every filter offers: two pure functions."""
+"""What every filter offers: two pure functions, and how it begins."""
 
-from typing import Protocol
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol, Self
 
-from ekfsim.filters.belief import Correction, Gaussian, Prediction
+from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion, Sensor
+
+if TYPE_CHECKING:
+    from numpy.random import Generator
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """What a filter is told when a run begins. Most need no more than the gate and the headings."""
+
+    first: Gaussian  # the first belief: (…, n), (…, n, n)
+    headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
+    gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    generators: Callable[[], Sequence["Generator"]] | None = None  # one for each run, from the run's seed and number
 
 
 class Filter(Protocol):
     """A filter holds its settings and nothing else; beliefs go in and come out."""
 
-    def __init__(self, gate: float | None = None) -> None: ...
+    @classmethod
+    def begin(cls, beginning: Beginning) -> Self:
+        """The filter for a run that begins so."""
 
-    def predict(self, belief: Gaussian, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
+    def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Belief, Prediction]:
         """The belief after a motion input u : (…, m)."""
 
     def update(
-        self, prior: Gaussian, sensor: Sensor, z: Array, skip: Booleans | bool = False
-    ) -> tuple[Gaussian, Correction]:
+        self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
+    ) -> tuple[Belief, Correction]:
         """The belief after a reading z : (…, k). Where skip : (…) is set the reading is judged but not used."""

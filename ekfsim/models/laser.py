@@ -7,6 +7,7 @@ import numpy as np
 
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.walls import Walls
+from ekfsim.models.protocols import Quantity
 
 GRAZING = np.radians(15.0)  # below this angle between beam and wall a small turn moves the beam's end far
 ALONG = 1e-9  # rad; a beam this close to its wall's direction has no usable derivative
@@ -39,6 +40,11 @@ class Laser:
     walls: Walls
     bearing: float
     range_ratio: float
+
+    @property
+    def outputs(self) -> tuple[Quantity, ...]:
+        """One range."""
+        return (Quantity("range", "m"),)
 
     def h(self, x: Array) -> Array:
         """r = the distance to the first wall : (…, 1) m, nan where there is none"""

@@ -7,6 +7,7 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap, wrap_one
+from ekfsim.models.protocols import Quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,6 +16,11 @@ class MoveTurn:
 
     distance_ratio: float
     angle_ratio: float
+
+    @property
+    def inputs(self) -> tuple[Quantity, ...]:
+        """d, a"""
+        return Quantity("distance", "m"), Quantity("angle", "rad")
 
     def f(self, x: Array, u: Array) -> Array:
         """Φ(x, u) = (x + d cos θ,  y + d sin θ,  θ + a)          eq. 3"""

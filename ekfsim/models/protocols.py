@@ -1,12 +1,23 @@
 """What a filter asks of a motion and of a sensor. All arrays carry leading axes (…)."""
 
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from ekfsim.geometry import Array
 
 
+class Quantity(NamedTuple):
+    """One number of a motion input or a reading, as people call it. unit : "m", "rad", "m/s", "s", …, "" for none"""
+
+    name: str
+    unit: str
+
+
 class Motion(Protocol):
     """x⁺ = f(x, u + noise of covariance M) + noise of covariance Q, linearised by F = ∂f/∂x and G = ∂f/∂u."""
+
+    @property
+    def inputs(self) -> tuple[Quantity, ...]:
+        """What the entries of u are."""
 
     def f(self, x: Array, u: Array) -> Array:
         """The next state. x : (…, n), u : (…, m) → (…, n)"""
@@ -30,6 +41,10 @@ class Motion(Protocol):
 class Sensor(Protocol):
     """z = h(x) + noise of covariance R, linearised by H = ∂h/∂x."""
 
+    @property
+    def outputs(self) -> tuple[Quantity, ...]:
+        """What the entries of z are. Those in rad are directions: z − h wraps them, and a mean of them is circular."""
+
     def h(self, x: Array) -> Array:
         """The reading that the state x predicts : (…, k), nan where it predicts none."""
 
@@ -41,3 +56,12 @@ class Sensor(Protocol):
 
     def sight(self, x: Array, P: Array) -> Any:
         """What this sensor alone knows of a reading before it is used; None where it knows no more."""
+
+
+def angles(quantities: tuple[Quantity, ...]) -> tuple[int, ...]:
+    """Which entries are directions on the circle.
+
+    >>> angles((Quantity("range", "m"), Quantity("bearing", "rad")))
+    (1,)
+    """
+    return tuple(i for i, quantity in enumerate(quantities) if quantity.unit == "rad")
