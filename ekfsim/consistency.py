@@ -5,11 +5,12 @@ from enum import Enum
 
 import numpy as np
 
-from ekfsim.filters.belief import Gaussian, Refused
+from ekfsim.filters.belief import Belief, Gaussian, Refused, posed
 from ekfsim.filters.chi_square import band, quantile
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.geometry.ellipse import cone_factor, radius_factor
+from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Nees, Step
 
 RANK = 1e-10  # an eigenvalue of the correlation matrix above this counts towards the rank
@@ -20,17 +21,17 @@ LOST = 0.999  # NEES beyond this χ² quantile: lost
 BAND = 0.99  # the two-sided band that ΣNIS is held against
 
 
-def error(belief: Gaussian, truth: Array, headings: tuple[int, ...] = (2,)) -> Array:
-    """e = estimate − truth : (…, n), headings wrapped"""
-    e = belief.mean - truth
-    for i in headings:
-        e[..., i] = wrap_one(float(e[i])) if e.ndim == 1 else wrap(e[..., i])
+def error(belief: Belief, truth: Array) -> Array:
+    """e = estimate − truth of a pose : (…, 3), the heading wrapped"""
+    e: Array = belief.mean - truth
+    e[..., 2] = wrap_one(float(e[2])) if e.ndim == 1 else wrap(e[..., 2])
     return e
 
 
-def nees(belief: Gaussian, truth: Array) -> Nees:
-    """Normalised estimation error squared, aware of the rank of P. truth : (…, n)"""
-    value, rank, impossible = squared_error(error(belief, truth), belief.covariance)
+def nees(belief: Belief, truth: Array, layout: Layout = POSE) -> Nees:
+    """Normalised estimation error squared of the pose, aware of the rank of its P. truth : (…, 3)"""
+    pose = posed(belief, layout)
+    value, rank, impossible = squared_error(error(pose, truth), pose.covariance)
     return Nees(np.where(impossible, np.nan, value), rank, impossible)
 
 

@@ -6,23 +6,28 @@ import numpy as np
 
 from ekfsim.consistency import nees
 from ekfsim.filters import FILTERS
-from ekfsim.filters.belief import Gaussian
-from ekfsim.filters.protocol import Filter
+from ekfsim.filters.belief import Belief, Gaussian
+from ekfsim.filters.listing import ListingEKF
+from ekfsim.filters.protocol import Beginning, Filter
 from ekfsim.geometry import Integers
+from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Control, Entry, Reading, Step
 from ekfsim.scene import Guard, Scene
 from ekfsim.simulation import simulate
+from ekfsim.simulation.draws import particle_generators
 
 
-def localize(entries: Iterable[Entry], filter: Filter, belief: Gaussian, guard: Guard = "warn") -> Iterator[Step]:
+def localize(
+    entries: Iterable[Entry], filter: Filter, belief: Belief, guard: Guard = "warn", layout: Layout = POSE
+) -> Iterator[Step]:
     """Filter a log, simulated or recorded, one entry at a time."""
     for entry in entries:
-        step = advance(filter, belief, entry, guard)
+        step = advance(filter, belief, entry, guard, layout)
         belief = step.posterior
         yield step
 
 
-def advance(filter: Filter, belief: Gaussian, entry: Entry, guard: Guard = "warn") -> Step:
+def advance(filter: Filter, belief: Belief, entry: Entry, guard: Guard = "warn", layout: Layout = POSE) -> Step:
     """What the filter makes of one entry."""
     prediction = correction = sighting = None
     posterior = belief
@@ -33,20 +38,41 @@ def advance(filter: Filter, belief: Gaussian, entry: Entry, guard: Guard = "warn
             sighting = sensor.sight(*belief)
             skip = guard == "skip" and sighting is not None and sighting.ambiguous
             posterior, correction = filter.update(belief, sensor, z, skip)
-    measured = None if entry.truth is None else nees(posterior, entry.truth)
+    measured = None if entry.truth is None else nees(posterior, entry.truth, layout)
     return Step(entry, belief, posterior, prediction, correction, sighting, measured)
 
 
 def first_belief(scene: Scene, axes: tuple[int, ...] = ()) -> Gaussian:
-    """What the filter is told of the start : (…, 3), (…, 3, 3)"""
-    told = scene.world.told
-    mean = np.broadcast_to(told.start, (*axes, 3))
-    return Gaussian(mean, np.broadcast_to(np.diag(told.sigma**2), (*axes, 3, 3)))
+    """What the filter is told of the start : (…, n), (…, n, n)"""
+    mean, P = (scene.log.first if scene.log is not None else _told_first(scene))
+    return Gaussian(np.broadcast_to(mean, (*axes, *mean.shape)), np.broadcast_to(P, (*axes, *P.shape)))
+
+
+def _told_first(scene: Scene) -> Gaussian:
+    """The first belief of a simulation: the document's own, its pose as uncertain as the world file says where it does."""
+    world, told = scene.world, scene.world.told
+    if world.robot is None:
+        return Gaussian(told.start, np.diag(told.sigma**2))
+    P = world.robot.first_covariance(scene.reading).copy()
+    if np.any(told.sigma):
+        places = np.array(world.layout.places)
+        P[places[:, None], places] = np.diag(told.sigma**2)
+    return Gaussian(world.layout.state(told.start), P)
+
+
+def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
+    """The filter that watches a scene, at the beginning of its run, or of N runs side by side."""
+    numbers = np.asarray(scene.run if runs is None else runs)
+    beginning = Beginning(
+        first_belief(scene), scene.world.layout.headings, scene.gate, lambda: particle_generators(scene.seed, numbers)
+    )
+    if scene.filter == "ekf" and scene.world.system == "mower" and scene.reading == "coded":
+        return ListingEKF.begin(beginning)
+    return FILTERS[scene.filter].begin(beginning)
 
 
 def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
-    """Simulate a scene and localize in it: every Step of its run, or of N runs side by side. runs : (N,)"""
-    filter = FILTERS[scene.filter](gate=scene.gate)
-    return localize(
-        simulate(scene, runs), filter, first_belief(scene, np.shape(scene.run if runs is None else runs)), scene.guard
-    )
+    """Localize in a scene: every Step of its run, or of N runs side by side. runs : (N,)"""
+    entries = simulate(scene, runs) if scene.log is None else scene.log.entries
+    belief = first_belief(scene, np.shape(scene.run if runs is None else runs))
+    return localize(entries, filter_of(scene, runs), belief, scene.guard, scene.world.layout)

@@ -8,7 +8,7 @@ axes (…): none for one run, (N,) for a study of N runs.
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from ekfsim.filters.belief import Correction, Gaussian, Prediction
+from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.laser import Sighting
 from ekfsim.models.protocols import Motion, Sensor
@@ -95,6 +95,7 @@ class Reading:
 
     sensor: Sensor
     z: Array
+    name: str = "laser"  # which sensor it is: "marker 3", "gnss"
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,9 +107,20 @@ class Entry:
 
     index: int
     given: Control | Reading | None  # what the filter is given; None where it is told nothing
-    truth: Array | None = None  # (…, 3) true state after it, where it is known
-    command: Plain | None = None  # what was asked for; None at the start and in recorded logs
+    truth: Array | None = None  # (…, 3) true pose after it, where it is known
+    command: Plain | None = None  # what was asked for; None at the start, in drives and in recorded logs
     bump: Integers | None = None  # (…) the true wall that cut a move short, −1 where none did
+    t: float | None = None  # s, in drives and recorded logs
+    judged: bool = True  # whether errors are counted at this instant
+    fix: Array | None = None  # (…, 2) m, a position that was recorded and that the filter is not given
+
+
+@dataclass(frozen=True)
+class Log:
+    """A recorded log: what was read of it, in the order of time."""
+
+    entries: tuple[Entry, ...]  # the first is the start
+    first: Gaussian  # the belief that the filter begins with
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,8 +137,8 @@ class Step:
     """What the filter made of one entry. Every number of every output is read from here."""
 
     entry: Entry
-    prior: Gaussian  # the belief the step began with
-    posterior: Gaussian  # the belief it ended with
+    prior: Belief  # the belief the step began with
+    posterior: Belief  # the belief it ended with
     prediction: Prediction | None = None  # F and G, after a motion input
     correction: Correction | None = None  # ν, S, H, K, NIS, refused, after a reading
     sighting: Sighting | None = None  # what the laser alone knows

@@ -1,9 +1,11 @@
-"""A scene: a world, the commands given in it, and the settings of the filter that watches."""
+"""A scene: a world, what is done in it or was recorded of it, and the settings of the filter that watches."""
 
 from dataclasses import dataclass
 from typing import Literal
 
-from ekfsim.records import Command
+from ekfsim.records import Command, Log
+from ekfsim.systems.document import DocumentReading
+from ekfsim.systems.drives import Drive
 from ekfsim.world import World
 
 Guard = Literal["off", "warn", "skip"]
@@ -27,7 +29,10 @@ class Scene:
     """All that fixes a run but its number. `dataclasses.replace` makes another of it."""
 
     world: World
-    commands: tuple[Command, ...]
+    commands: tuple[Command, ...] = ()
+    drive: Drive | None = None  # in place of commands, where a robot is driven along a way
+    log: Log | None = None  # in place of both, where the run was recorded
+    reading: DocumentReading = "corrected"  # of the document whose system this is
     seed: int = 0
     run: int = 0  # which of the seed's runs is played
     filter: str = "ekf"

@@ -6,6 +6,12 @@ from functools import cached_property
 
 from ekfsim.geometry import Array
 from ekfsim.geometry.walls import Walls
+from ekfsim.models.layout import POSE, Layout
+from ekfsim.systems import Instrument, Robot
+from ekfsim.systems.document import DocumentReading
+from ekfsim.systems.instruments import Landmark as Landmark
+from ekfsim.systems.instruments import Surroundings, Target
+from ekfsim.systems.robots import PylonCart
 
 BOUNDARY = "boundary"  # the name that the boundary's ring goes by among the obstacles
 
@@ -16,15 +22,6 @@ class Obstacle:
 
     name: str
     points: Array
-
-
-@dataclass(frozen=True)
-class Landmark:
-    """A point that a sensor can tell apart from all others. x, y in m."""
-
-    id: int
-    x: float
-    y: float
 
 
 @dataclass(frozen=True)
@@ -92,3 +89,17 @@ class World:
     faults: Faults = Faults()
     landmarks: tuple[Landmark, ...] = ()
     description: str = ""
+    system: str = "classroom"
+    robot: Robot | None = None  # None in the classroom, whose robot obeys commands
+    instruments: tuple[Instrument, ...] = ()
+
+    @property
+    def layout(self) -> Layout:
+        """What the entries of the filter's state are."""
+        return POSE if self.robot is None else self.robot.layout
+
+    def targets(self, reading: DocumentReading, floor: Map) -> list[tuple[Instrument, Target]]:
+        """Everything that the instruments may read, with the sensors that know this map."""
+        yaw_sigma = self.robot.yaw_sigma if isinstance(self.robot, PylonCart) else 0.0
+        around = Surroundings(self.landmarks, floor.walls, self.layout, reading, yaw_sigma)
+        return [(instrument, target) for instrument in self.instruments for target in instrument.targets(around)]

@@ -18,6 +18,7 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"geometry"},
     {"models"},
     {"filters"},
+    {"systems"},
     {"world"},
     {"records"},
     {"scene"},
@@ -28,11 +29,11 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"localization"},
     {"study"},
     {"views"},
-    {"systems"},
+    {"figures"},
     {"process", "options"},
     {"cli", "ekfsim"},
 )
-CORE = {"geometry", "models", "filters", "world", "records", "scene", "consistency", "summary", "provenance",
+CORE = {"geometry", "models", "filters", "systems", "world", "records", "scene", "consistency", "summary", "provenance",
         "simulation", "localization"}  # fmt: skip
 HEAVY = ("numpy", "matplotlib", "pydantic", "shapely", "yaml", "scipy")
 

@@ -3,9 +3,24 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from ekfsim.geometry import Array, Integers
+from ekfsim.models.layout import Layout
+
+
+class Belief(Protocol):
+    """What every kind of belief can say: `x, P = belief`."""
+
+    @property
+    def mean(self) -> Array:
+        """(…, n)"""
+
+    @property
+    def covariance(self) -> Array:
+        """(…, n, n)"""
+
+    def __iter__(self) -> Iterator[Array]: ...
 
 
 class Gaussian(NamedTuple):
@@ -29,7 +44,10 @@ class Particles:
         return iter((self.mean, self.covariance))
 
 
-Belief = Gaussian | Particles
+def posed(belief: Belief, layout: Layout) -> Gaussian:
+    """What is believed of the pose, whatever else the state holds : (…, 3), (…, 3, 3)"""
+    x, P = belief
+    return Gaussian(layout.pose(x), layout.pose_covariance(P))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,4 @@
-"""World + commands + draws → Entries: a log being written.
-
-The truth moves here and nowhere else; what the filter is given (odometry, ranges, its own map) leaves in the Entry.
-"""
+"""The classroom's robot obeys commands: world + commands + draws → Entries."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -14,66 +11,17 @@ from ekfsim.models.laser import Laser
 from ekfsim.models.move_turn import MoveTurn
 from ekfsim.records import Control, Entry, Kidnap, Move, Reading, Say, Sense, expand
 from ekfsim.scene import Scene
+from ekfsim.simulation.draws import Draws, true_start
 from ekfsim.world import World
 
-BLOCK = 1024  # runs that share a generator
 CLEARANCE = 1e-3  # m that a robot stops short of a wall
 
 
-class Draws:
-    """The random numbers of some runs: a function of (seed, index, run) alone.
-
-    Draw i of the runs 1024·b … 1024·b + 1023 comes from Generator(PCG64(SeedSequence([seed, i, b]))): normals of shape
-    (1024, 4) first, then uniforms of shape (1024, 2). So another ratio, filter or gate changes no draw, and any run of
-    a study can be played alone.
-    """
-
-    def __init__(self, seed: int, runs: Integers) -> None:
-        self._seed = seed
-        self._runs = runs
-
-    def normals(self, i: int) -> Sequence[Array]:
-        """The four standard normals of draw i : (…) each"""
-        return self._draw(i, uniforms=False)[0]
-
-    def normals_and_uniforms(self, i: int) -> tuple[Sequence[Array], Sequence[Array]]:
-        """The four standard normals and the two uniforms in [0, 1) of draw i : (…) each"""
-        return self._draw(i, uniforms=True)
-
-    def _draw(self, i: int, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
-        if self._runs.ndim == 0:
-            return self._draw_one(i, *divmod(int(self._runs), BLOCK), uniforms)
-        normals_of, uniforms_of = np.empty((4, *self._runs.shape)), np.empty((2, *self._runs.shape))
-        blocks = self._runs // BLOCK
-        for b in np.unique(blocks):
-            here = blocks == b
-            rows = self._runs[here] % BLOCK
-            generator = self._generator(i, int(b))
-            normals_of[:, here] = generator.standard_normal((BLOCK, 4))[rows].T
-            if uniforms:
-                uniforms_of[:, here] = generator.random((BLOCK, 2))[rows].T
-        return tuple(normals_of), tuple(uniforms_of)
-
-    def _draw_one(self, i: int, b: int, row: int, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
-        """The same for one run: of the normals no more than is needed, for the uniforms stand behind all of them."""
-        generator = self._generator(i, b)
-        normals = generator.standard_normal((BLOCK if uniforms else row + 1, 4))[row].tolist()
-        return normals, generator.random((BLOCK, 2))[row].tolist() if uniforms else ()
-
-    def _generator(self, i: int, b: int) -> np.random.Generator:
-        return np.random.Generator(np.random.PCG64(np.random.SeedSequence([self._seed, i, b])))
-
-
-def simulate(scene: Scene, runs: Integers | None = None) -> Iterator[Entry]:
-    """The log of the scene's run, or of N runs side by side. runs : (N,) numbers from 0
-
-    Entry 0 is the start; then one for each expanded command.
-    """
-    world, numbers = scene.world, np.asarray(scene.run if runs is None else runs, dtype=np.int64)
-    draws, drawn = Draws(scene.seed, numbers), 0
+def obey(scene: Scene, draws: Draws) -> Iterator[Entry]:
+    """The log of a robot that obeys commands. Entry 0 is the start; then one for each expanded command."""
+    world, drawn = scene.world, 0
     motion = MoveTurn(world.told.noise.odometry_distance, world.told.noise.odometry_angle)
-    truth = world.start + world.start_sigma * np.stack(draws.normals(0)[:3], axis=-1)
-    truth[..., 2] = wrap(truth[..., 2])
+    truth = true_start(world, draws)
     yield Entry(0, None, truth)
     for index, command in enumerate(expand(scene.commands), start=1):
         match command:

@@ -1,0 +1,69 @@
+"""The random numbers of runs: each a function of the seed, the number of the draw and the run alone."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ekfsim.geometry import Array, Integers
+from ekfsim.geometry.angles import wrap
+from ekfsim.world import World
+
+BLOCK = 1024  # runs that share a generator
+PARTICLES = 1  # key of the generators of the particle filters, apart from those of the draws
+
+
+class Draws:
+    """The random numbers of some runs: a function of (seed, index, run) alone.
+
+    Draw i of the runs 1024·b … 1024·b + 1023 comes from Generator(PCG64(SeedSequence([seed, i, b]))): normals of shape
+    (1024, 4) first, then uniforms of shape (1024, 2). So another ratio, filter or gate changes no draw, and any run of
+    a study can be played alone.
+    """
+
+    def __init__(self, seed: int, runs: Integers) -> None:
+        self._seed = seed
+        self._runs = runs
+
+    def normals(self, i: int) -> Sequence[Array]:
+        """The four standard normals of draw i : (…) each"""
+        return self._draw(i, uniforms=False)[0]
+
+    def normals_and_uniforms(self, i: int) -> tuple[Sequence[Array], Sequence[Array]]:
+        """The four standard normals and the two uniforms in [0, 1) of draw i : (…) each"""
+        return self._draw(i, uniforms=True)
+
+    def _draw(self, i: int, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
+        if self._runs.ndim == 0:
+            return self._draw_one(i, *divmod(int(self._runs), BLOCK), uniforms)
+        normals_of, uniforms_of = np.empty((4, *self._runs.shape)), np.empty((2, *self._runs.shape))
+        blocks = self._runs // BLOCK
+        for b in np.unique(blocks):
+            here = blocks == b
+            rows = self._runs[here] % BLOCK
+            generator = self._generator(i, int(b))
+            normals_of[:, here] = generator.standard_normal((BLOCK, 4))[rows].T
+            if uniforms:
+                uniforms_of[:, here] = generator.random((BLOCK, 2))[rows].T
+        return tuple(normals_of), tuple(uniforms_of)
+
+    def _draw_one(self, i: int, b: int, row: int, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
+        """The same for one run: of the normals no more than is needed, for the uniforms stand behind all of them."""
+        generator = self._generator(i, b)
+        normals = generator.standard_normal((BLOCK if uniforms else row + 1, 4))[row].tolist()
+        return normals, generator.random((BLOCK, 2))[row].tolist() if uniforms else ()
+
+    def _generator(self, i: int, b: int) -> np.random.Generator:
+        return np.random.Generator(np.random.PCG64(np.random.SeedSequence([self._seed, i, b])))
+
+
+def true_start(world: World, draws: Draws) -> Array:
+    """Where each run truly starts : (…, 3), drawn from N(start, start_sigma²)"""
+    pose: Array = world.start + world.start_sigma * np.stack(draws.normals(0)[:3], axis=-1)
+    pose[..., 2] = wrap(pose[..., 2])
+    return pose
+
+
+def particle_generators(seed: int, runs: Integers) -> Sequence[np.random.Generator]:
+    """A generator for the particles of each run, alike whether it is run alone or beside others."""
+    keys = (np.random.SeedSequence([seed, int(run)], spawn_key=(PARTICLES,)) for run in np.atleast_1d(runs))
+    return [np.random.Generator(np.random.PCG64(key)) for key in keys]

@@ -1,0 +1,251 @@
+"""The instruments that the robots carry: how often each is read, what it can see, and the sensor model of each target.
+
+An instrument makes one sensor for each thing that it may see: a landmark, a direction, the sky.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple, Protocol
+
+import numpy as np
+
+from ekfsim.geometry import Array, Booleans
+from ekfsim.geometry.angles import wrap
+from ekfsim.geometry.walls import Walls
+from ekfsim.models.infrared import COLOURS, Infrared as InfraredBeam
+from ekfsim.models.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
+from ekfsim.models.layout import Layout
+from ekfsim.models.offset import LandmarkOffset
+from ekfsim.models.position import Position
+from ekfsim.models.protocols import Sensor
+from ekfsim.models.ultrasonic import Ultrasonic as UltrasonicBeam
+from ekfsim.systems.document import DocumentReading
+
+ALL_ROUND = ((-math.pi, math.pi),)
+
+
+class Landmark(NamedTuple):
+    """A landmark: a point that a sensor can tell apart from all others. x, y in m"""
+
+    id: int
+    x: float
+    y: float
+
+
+class Surroundings(NamedTuple):
+    """What an instrument's sensors are made from."""
+
+    landmarks: tuple[Landmark, ...]
+    walls: Walls  # of the map that the sensor is to know
+    layout: Layout  # of the filter's state
+    reading: DocumentReading
+    yaw_sigma: float = 0.0  # rad, of the heading by which readings are turned into the global frame
+
+
+class Target(NamedTuple):
+    """One thing that an instrument may read."""
+
+    name: str  # as the narrative and the trace call the sensor: "marker 3"
+    sensor: Sensor
+    place: tuple[float, float] | None = None  # m, where it stands; None for what has no place
+
+
+class Instrument(Protocol):
+    """What a simulation and a recorded log need to know of an instrument."""
+
+    name: ClassVar[str]  # the kind, as world files call it
+
+    @property
+    def rate(self) -> float:
+        """How often it is read, in Hz."""
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """Everything that it may read."""
+
+    def sees(self, target: Target, pose: Array) -> Booleans:
+        """Whether a target is in view from a true pose (…, 3) : (…)"""
+
+
+class _Looking:
+    """An instrument that sees what is near enough and in one of its fields of view."""
+
+    farthest: float  # m
+    views: tuple[tuple[float, float], ...]  # rad from straight ahead, counter-clockwise: from, to
+
+    def sees(self, target: Target, pose: Array) -> Booleans:
+        """Whether a target is in view from a true pose (…, 3) : (…)"""
+        if target.place is None:
+            return np.ones(pose.shape[:-1], bool)
+        dx, dy = target.place[0] - pose[..., 0], target.place[1] - pose[..., 1]
+        bearing = np.arctan2(dy, dx) - pose[..., 2]
+        near: Booleans = np.hypot(dx, dy) <= self.farthest
+        inside = np.zeros_like(near)
+        for start, end in self.views:
+            middle, half = (start + end) / 2, (end - start) / 2
+            inside |= np.abs(wrap(bearing - middle)) <= half
+        return near & inside
+
+
+@dataclass(frozen=True)
+class Markers(_Looking):
+    """Document 000: cameras in front and behind that tell azimuth and elevation of surveyed markers."""
+
+    name: ClassVar[str] = "markers"
+    rate: float = 0.5
+    height: float = 0.226  # m, μ: of the camera above the markers
+    azimuth_sigma: float = 0.048  # rad, eq. 30
+    elevation_sigma: float = 0.006  # rad
+    farthest: float = 10.0
+    views: tuple[tuple[float, float], ...] = (
+        (math.radians(-30), math.radians(30)),
+        (math.radians(150), math.radians(210)),
+    )
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """A sensor for each marker; `printed` has the signs of eq. 25."""
+        sign = -1.0 if around.reading == "printed" else 1.0
+        for mark in around.landmarks:
+            angles = MarkerAngles(
+                mark.x, mark.y, self.height, self.azimuth_sigma, self.elevation_sigma, sign, around.layout
+            )
+            yield Target(f"marker {mark.id}", angles, (mark.x, mark.y))
+
+
+@dataclass(frozen=True)
+class RangeBearings(_Looking):
+    """A camera that tells range and bearing of landmarks."""
+
+    name: ClassVar[str] = "rangeBearing"
+    rate: float = 2.0
+    range_sigma: float = 0.30  # m
+    bearing_sigma: float = 0.02  # rad
+    farthest: float = 5.0
+    views: tuple[tuple[float, float], ...] = ((math.radians(-35), math.radians(35)),)
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """A sensor for each landmark."""
+        for mark in around.landmarks:
+            sensor = RangeBearing(mark.x, mark.y, self.range_sigma, self.bearing_sigma, around.layout)
+            yield Target(f"landmark {mark.id}", sensor, (mark.x, mark.y))
+
+
+@dataclass(frozen=True)
+class Bearings(_Looking):
+    """A camera that tells the bearing of landmarks alone."""
+
+    name: ClassVar[str] = "bearing"
+    rate: float = 2.0
+    sigma: float = 0.02  # rad
+    farthest: float = 5.0
+    views: tuple[tuple[float, float], ...] = ((math.radians(-35), math.radians(35)),)
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """A sensor for each landmark."""
+        for mark in around.landmarks:
+            yield Target(
+                f"landmark {mark.id}", BearingOnly(mark.x, mark.y, self.sigma, around.layout), (mark.x, mark.y)
+            )
+
+
+@dataclass(frozen=True)
+class Ranges(_Looking):
+    """A radio that tells the range to nodes alone. What it says is scale · r + bias, and is corrected before use."""
+
+    name: ClassVar[str] = "range"
+    rate: float = 4.0
+    sigma: float = 0.6  # m
+    scale: float = 1.066
+    bias: float = 0.11  # m
+    farthest: float = 100.0
+    views: tuple[tuple[float, float], ...] = ALL_ROUND
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """A sensor for each node."""
+        for mark in around.landmarks:
+            yield Target(f"node {mark.id}", RangeOnly(mark.x, mark.y, self.sigma, around.layout), (mark.x, mark.y))
+
+    def corrected(self, raw: float) -> float:
+        """The range that a raw reading stands for, in m."""
+        return (raw - self.bias) / self.scale
+
+
+@dataclass(frozen=True)
+class Gnss(_Looking):
+    """Document 003: satellite fixes of the position."""
+
+    name: ClassVar[str] = "gnss"
+    rate: float = 10.0
+    sigma: float = 0.15  # m, on each axis
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """The fix; the recipe of the document's authors takes R = I."""
+        sigma = 1.0 if around.reading == "coded" else self.sigma
+        yield Target("gnss", Position(sigma, sigma, around.layout))
+
+
+@dataclass(frozen=True)
+class Pylon(_Looking):
+    """Document 004: a lidar that tells the offset of one pylon, turned into the global frame by the yaw."""
+
+    name: ClassVar[str] = "pylon"
+    rate: float = 10.0
+    sigma: float = 0.0075  # m, Q_t of eq. 10
+    farthest: float = 100.0
+    views: tuple[tuple[float, float], ...] = ALL_ROUND
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """A sensor for each pylon; only `corrected` knows that an error of the yaw moves the reading sideways."""
+        yaw_sigma = around.yaw_sigma if around.reading == "corrected" else 0.0
+        for mark in around.landmarks:
+            sensor = LandmarkOffset(mark.x, mark.y, self.sigma, self.sigma, around.layout, yaw_sigma)
+            yield Target("pylon", sensor, (mark.x, mark.y))
+
+
+EIGHT = tuple(math.radians(angle) for angle in range(-180, 180, 45))
+FOUR = tuple(math.radians(angle) for angle in range(-180, 180, 90))
+
+
+@dataclass(frozen=True)
+class Ultrasonic(_Looking):
+    """Document 001: a ring of ultrasonic beams; the error grows with the distance (fig. 6)."""
+
+    name: ClassVar[str] = "ultrasonic"
+    rate: float = 2.0
+    bearings: tuple[float, ...] = EIGHT  # rad from straight ahead
+    sigma: float = 0.005  # m
+    sigma_per_metre: float = 0.01
+    nearest: float = 0.1  # m
+    farthest: float = 2.0
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """A sensor for each beam."""
+        for number, bearing in enumerate(self.bearings):
+            beam = UltrasonicBeam(
+                around.walls, bearing, self.sigma, self.sigma_per_metre, self.nearest, self.farthest
+            )
+            yield Target(f"ultrasonic {number}", beam)
+
+
+@dataclass(frozen=True)
+class Infrared(_Looking):
+    """Document 001: pairs of an infrared emitter and receiver; the intensity falls with the distance (fig. 4)."""
+
+    name: ClassVar[str] = "infrared"
+    rate: float = 2.0
+    bearings: tuple[float, ...] = FOUR
+    gain: float = 1.0  # V per e-fold of the distance
+    offset: float = 1.0  # V at 1 m from white
+    colour: str = "white"  # of the walls
+    sigma: float = 0.05  # V
+    nearest: float = 0.1  # m
+    farthest: float = 1.5
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """A sensor for each pair."""
+        for number, bearing in enumerate(self.bearings):
+            beam = InfraredBeam(
+                around.walls, bearing, self.gain, self.offset, COLOURS[self.colour], self.sigma, self.nearest,
+                self.farthest,
+            )  # fmt: skip
+            yield Target(f"infrared {number}", beam)
