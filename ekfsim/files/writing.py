@@ -55,11 +55,11 @@ def whole_text(path: Path, force: bool = False) -> Iterator[TextIO]:
 
 
 @contextmanager
-def whole_folder(path: Path, pattern: str, force: bool = False) -> Iterator[Path]:
+def whole_folder(path: Path, *patterns: str, force: bool = False) -> Iterator[Path]:
     """A temporary folder that becomes `path` when the block ends well.
 
-    With `force` an older result is replaced, but only if every file in it matches `pattern`: what else lies in a
-    folder is not ours to delete.
+    With `force` an older result is replaced, but only if every file in it matches one of the `patterns`: what else
+    lies in a folder is not ours to delete.
 
     Raises UsageError if the folder holds something and may not be replaced, RunError if the disk refuses.
     """
@@ -71,9 +71,9 @@ def whole_folder(path: Path, pattern: str, force: bool = False) -> Iterator[Path
             raise UsageError(f"{path}: this is the current folder; name a new one")
         held = sorted(place.iterdir()) if place.is_dir() else []
     if held and not force:
-        raise UsageError(f"{path}: the folder is not empty; choose another, or replace its pictures with --force")
+        raise UsageError(f"{path}: the folder is not empty; choose another, or replace what it holds with --force")
     for file in held:
-        if file.is_dir() or not file.match(pattern):
+        if file.is_dir() or not any(map(file.match, patterns)):
             raise UsageError(f"{path}: holds {file.name!r}, which is no result of ekfsim; choose another folder")
     with _parents(path, place), _temporary_folder(path, place) as beside:
         with told(path):

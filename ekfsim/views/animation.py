@@ -48,7 +48,7 @@ def render(
         refuse_existing(target, force)
     frame, shown = Frame(scene, limits, look), _reported(thinned(views, every), progress)
     if suffix == "":
-        with whole_folder(target, PATTERN, force) as folder:
+        with whole_folder(target, PATTERN, force=force) as folder:
             _number(folder, frame, shown, scene)
         return
     with whole_file(target, force) as path:

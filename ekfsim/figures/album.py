@@ -1,0 +1,69 @@
+"""A folder of figures and tables with one page of captions: what to see, and how it compares with the print."""
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from ekfsim.views.lettering import drawable
+
+PATTERNS = ("*.png", "*.svg", "*.pdf", "*.csv", "captions.md")  # what an album consists of
+BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = "#0072B2", "#56B4E9", "#009E73", "#D55E00", "#CC79A7", "#E69F00"
+GREY, BLACK = "#777777", "#000000"
+DPI = 120
+
+
+@dataclass
+class Album:
+    """Collects the figures and tables of one document, and writes them."""
+
+    title: str
+    source: str  # which scene, log, seed, filter and version made it
+    folder: Path
+    formats: Sequence[str] = ("png",)
+    pages: list[str] = field(default_factory=list)
+
+    def figure(self, width: float = 7.5, height: float = 5.0) -> Figure:
+        """A new figure, in inches, that no window manages."""
+        made = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
+        FigureCanvasAgg(made)
+        return made
+
+    def add(self, figure: Figure, name: str, title: str, caption: str) -> None:
+        """Write a figure in every format, and its caption. name : as in "fig4-paths", without an ending"""
+        figure.text(0.995, 0.004, drawable(self.source), fontsize=5.5, ha="right", va="bottom", color="#777777")
+        for ending in self.formats:
+            figure.savefig(self.folder / f"{name}.{ending}", dpi=DPI)
+        self.pages.append(f"## {title}\n\n![{title}]({name}.{self.formats[0]})\n\n{caption.strip()}\n")
+
+    def table(
+        self, name: str, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], caption: str
+    ) -> None:
+        """Write a table as CSV and into the captions."""
+        with (self.folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerows([header, *rows])
+        lines = ["| " + " | ".join(cells) + " |" for cells in (header, ["---"] * len(header), *rows)]
+        self.pages.append(f"## {title}\n\n" + "\n".join(lines) + f"\n\n{caption.strip()}\n")
+
+    def close(self) -> None:
+        """Write the page of captions."""
+        text = "\n".join([f"# {self.title}\n", f"{self.source}\n", *self.pages])
+        (self.folder / "captions.md").write_text(text, encoding="utf-8")
+
+
+def labelled(axes: Axes, x: str, y: str) -> Axes:
+    """Axes with their quantities and units, and a light grid."""
+    axes.set(xlabel=x, ylabel=y)
+    axes.grid(True, color="#DDDDDD", lw=0.6)
+    axes.set_axisbelow(True)
+    return axes
+
+
+def square(axes: Axes) -> Axes:
+    """Axes of a map: metres alike in both directions."""
+    axes.set_aspect("equal", adjustable="datalim")
+    return labelled(axes, "x (m)", "y (m)")
