@@ -6,16 +6,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ekfsim.filters.belief import Gaussian
+from ekfsim.filters.belief import Belief, Gaussian, posed
 from ekfsim.geometry import Array
-from ekfsim.records import Command, Move, Reading, Repeat, Sense, Step
+from ekfsim.models.layout import POSE, Layout
+from ekfsim.records import Control, Move, Reading, Step
+
+GATHERED = 200  # motion inputs of a driven or recorded robot in one view, at most
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What is on the screen after so many presses of `n`. View 0 is the world before the first command.
+    """What is on the screen after so many presses of `n`. View 0 is the world before anything happens.
 
-    A sense has two: first the beam, while the estimate is still the old one, then the revised estimate without it.
+    A reading has two: first the beam, while the estimate is still the old one, then the revised estimate without it.
+    The motion inputs of a driven or recorded robot that follow each other share one, and its step is the last of them.
     """
 
     number: int
@@ -23,49 +27,82 @@ class View:
     beam: bool
     settled: list[Array]  # earlier estimated positions; shared by all views, and only ever grows
     corners: int  # how many of them lie behind this view
+    inputs: int = 1  # how many steps the view gathers
+    before: Belief | None = None  # the belief before the first of them, where more than one may be gathered
+    layout: Layout = POSE  # of the state that is estimated
 
     @property
-    def belief(self) -> Gaussian:
-        """The belief that is drawn: the prior while the beam is shown, the posterior after."""
+    def belief(self) -> Belief:
+        """The belief that is shown: the prior while the beam is, the posterior after."""
         return self.step.prior if self.beam else self.step.posterior
+
+    @property
+    def pose(self) -> Gaussian:
+        """What that belief says of the pose, which is drawn : (3,), (3, 3)"""
+        return posed(self.belief, self.layout)
 
     def path(self) -> Array:
         """All estimated positions from the start to the one that is drawn : (n, 2) m"""
-        return np.array([*self.settled[: self.corners], self.belief.mean[:2]])
+        return np.array([*self.settled[: self.corners], _position(self.belief, self.layout)])
 
 
-def views(steps: Iterable[Step]) -> Iterator[View]:
-    """Every view of a run, in order. Until the next move the path's last corner moves with each revised estimate."""
+def views(steps: Iterable[Step], layout: Layout = POSE) -> Iterator[View]:
+    """Every view of a run, in order. Until the next motion the path's last corner moves with each revised estimate."""
     settled: list[Array] = []
     number = itertools.count()
-    for step in steps:
-        if isinstance(step.entry.command, Move):
-            settled.append(step.prior.mean[:2])
+    for step, inputs, before in _seen(steps):
+        if before is not None or isinstance(step.entry.command, Move):
+            settled.append(_position(step.prior if before is None else before, layout))
         if isinstance(step.entry.given, Reading):
-            yield View(next(number), step, True, settled, len(settled))
-        yield View(next(number), step, False, settled, len(settled))
+            yield View(next(number), step, True, settled, len(settled), layout=layout)
+        yield View(next(number), step, False, settled, len(settled), inputs, before, layout)
 
 
-def number_of_views(commands: Iterable[Command]) -> int:
-    """How many views a run of these commands has, counted without running them.
+def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, int, Belief | None]]:
+    """The steps that have a view, how many it gathers, and the belief before the first. The others are not kept."""
+    last: Step | None = None
+    inputs, before = 0, None
+    for step in steps:
+        if _gathered(step):
+            last, inputs, before = step, inputs + 1, step.prior if before is None else before
+        if last is not None and (inputs == GATHERED or last is not step):
+            yield last, inputs, before
+            last, inputs, before = None, 0, None
+        if not _gathered(step):
+            yield step, 1, None
+    if last is not None:
+        yield last, inputs, before
 
-    >>> number_of_views([Repeat(10, (Sense(0.0), Move(1.0, 0.0)))])
-    31
-    """
 
-    def count(command: Command) -> int:
-        if isinstance(command, Repeat):
-            return command.times * sum(map(count, command.commands))
-        return 2 if isinstance(command, Sense) else 1
+def _gathered(step: Step) -> bool:
+    """Whether a step shares its view with its neighbours: a motion input that no command asked for."""
+    return step.entry.command is None and isinstance(step.entry.given, Control)
 
-    return 1 + sum(map(count, commands))
+
+def _position(belief: Belief, layout: Layout) -> Array:
+    """The estimated position : (2,) m"""
+    return layout.pose(belief.mean)[:2]
+
+
+class Tally:
+    """Counts the views that steps have, as the steps go by."""
+
+    def __init__(self) -> None:
+        self.views = 0
+        self._inputs = 0  # in the view that is being gathered
+
+    def write(self, step: Step) -> None:
+        """Count the views that this step begins."""
+        self._inputs = self._inputs % GATHERED + 1 if _gathered(step) else 0
+        if self._inputs <= 1:
+            self.views += 2 if isinstance(step.entry.given, Reading) else 1
 
 
 class Playback:
     """The views of a run by number, computed when first asked for and kept for the way back."""
 
-    def __init__(self, steps: Iterable[Step]) -> None:
-        self._coming = views(steps)
+    def __init__(self, steps: Iterable[Step], layout: Layout = POSE) -> None:
+        self._coming = views(steps, layout)
         self._seen: list[View] = []
 
     def __iter__(self) -> Iterator[View]:
