@@ -7,6 +7,7 @@ import numpy as np
 from ekfsim.filters.belief import Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.geometry.angles import wrap, wrap_one
 
 ROUNDING = 1e-14  # a sum below this share of its terms' sizes is what rounding leaves of 0
 CERTAIN = 1e-20  # and so is an H P Hᵀ below this share of |H|² tr P, where sin π stands for 0
@@ -32,13 +33,32 @@ def settled(P: Array, prior: Array) -> Array:
     return P * (left[..., :, None] & left[..., None, :])
 
 
-def gain(P: Array, H: Array, S: Array) -> Array:
-    """K = P Hᵀ S⁻¹ : (…, n, k), zero where nothing is uncertain (S = 0) or nothing was predicted (S is nan)."""
-    PHt: Array = P @ H.mT
+def inverse(S: Array) -> Array:
+    """S⁻¹ : (…, k, k); where S is singular an inverse on its range, where it is nan 0.
+
+    Metres and radians must not decide what is singular: the correlations do.
+    """
+    if S.shape[-1] == 2:
+        a, b, d = S[..., 0, 0], S[..., 0, 1], S[..., 1, 1]
+        det = a * d - b * b
+        if np.all(det > ROUNDING * a * d):
+            return np.stack([d, -b, -b, a], axis=-1).reshape(S.shape) / det[..., None, None]
+    S = np.nan_to_num(S)
+    σ = np.sqrt(np.maximum(np.diagonal(S, axis1=-2, axis2=-1), 0.0))
+    per = np.divide(1.0, σ, out=np.zeros_like(σ), where=σ > 0)
+    per_σσ = per[..., :, None] * per[..., None, :]
+    inverted: Array = np.linalg.pinv(S * per_σσ, rtol=ROUNDING, hermitian=True) * per_σσ
+    return inverted
+
+
+def gain(cross: Array, S: Array) -> Array:
+    """K = P_xz S⁻¹ : (…, n, k), zero where nothing is uncertain (S = 0) or nothing was predicted (S is nan).
+
+    cross : (…, n, k) is P_xz, the covariance of state and reading: P Hᵀ where h is linearised.
+    """
     if S.shape[-1] == 1:
-        return np.divide(PHt, S, out=np.zeros_like(PHt), where=S > 0)
-    K: Array = PHt @ np.linalg.pinv(np.nan_to_num(S), hermitian=True)
-    return K
+        return np.divide(cross, S, out=np.zeros(np.broadcast_shapes(cross.shape, S.shape)), where=S > 0)
+    return np.nan_to_num(cross) @ inverse(S)
 
 
 def normalized_square(innovation: Array, S: Array) -> Array:
@@ -47,8 +67,15 @@ def normalized_square(innovation: Array, S: Array) -> Array:
         s, ν = S[..., 0, 0], innovation[..., 0]
         nis: Array = np.divide(ν * ν, s, out=np.full(np.broadcast_shapes(ν.shape, s.shape), np.nan), where=s > 0)
         return nis
-    solved = np.matvec(np.linalg.pinv(np.nan_to_num(S), hermitian=True), innovation)
-    return np.where(np.any(S != 0, axis=(-2, -1)), np.vecdot(innovation, solved), np.nan)
+    square = np.vecdot(innovation, np.matvec(inverse(S), innovation))
+    return np.where(np.any(S != 0, axis=(-2, -1)), square, np.nan)
+
+
+def wrapped(x: Array, headings: tuple[int, ...]) -> Array:
+    """x : (…, n) with its headings in (−π, π], changed in place."""
+    for i in headings:
+        x[..., i] = wrap_one(float(x[i])) if x.ndim == 1 else wrap(x[..., i])
+    return x
 
 
 def refusal(z: Array, h: Array, nis: Array, skip: Booleans | bool, gate: float | None) -> Integers:
@@ -66,11 +93,11 @@ def refusal(z: Array, h: Array, nis: Array, skip: Booleans | bool, gate: float |
 
 
 def refusal_one(z: Array, h: Array, nis: float, skip: bool, gate: float | None) -> Refused:
-    """The same for one reading of one number."""
-    if math.isnan(z[0]):
+    """The same for one reading of one robot."""
+    if any(map(math.isnan, z.tolist())):
         return Refused.NO_ECHO
-    if math.isnan(h[0]):
+    if any(map(math.isnan, h.tolist())):
         return Refused.NO_WALL
     if skip:
         return Refused.GUARD
-    return Refused.GATE if gate is not None and nis > quantile(gate, 1) else Refused.NOT
+    return Refused.GATE if gate is not None and nis > quantile(gate, len(z)) else Refused.NOT

@@ -32,7 +32,7 @@ class Gaussian(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Particles:
-    """A belief that is a crowd of weighted states. Its mean and covariance stand for it wherever one is drawn or told."""
+    """A belief that is a crowd of weighted states. Its mean and covariance stand for it where one is drawn or told."""
 
     mean: Array  # (…, n), circular where it is a heading
     covariance: Array  # (…, n, n)

@@ -2,24 +2,15 @@
 
 import math
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
-from ekfsim.filters.algebra import (
-    ROUNDING,
-    gain,
-    innovation_covariance,
-    normalized_square,
-    refusal,
-    refusal_one,
-    settled,
-    symmetric,
-)
+from ekfsim.filters.algebra import ROUNDING, innovation_covariance, refusal_one, settled, symmetric, wrapped
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction, Refused
+from ekfsim.filters.correcting import corrected
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans
-from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.models.protocols import Motion, Sensor
 
 
@@ -27,6 +18,7 @@ from ekfsim.models.protocols import Motion, Sensor
 class EKF:
     """Extended Kalman filter: Thrun, Burgard & Fox, Probabilistic Robotics, 2005, Table 3.3; assignment, section 3."""
 
+    remark: ClassVar[str] = ""
     gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
 
@@ -54,16 +46,7 @@ class EKF:
         innovation = sensor.residual(z, h)
         if z.shape == (1,) and x.ndim == 1:
             return self._update_one(Gaussian(x, P), z, innovation, h, H, R, bool(skip))
-        S = innovation_covariance(P, H, R)
-        nis = normalized_square(innovation, S)
-        refused = refusal(z, h, nis, skip, self.gate)
-        used = (refused == Refused.NOT)[..., None]
-        K = gain(P, H, S)
-        I_KH = np.eye(P.shape[-1]) - K @ H
-        joseph = I_KH @ P @ I_KH.mT + K @ R @ K.mT  # right for any K
-        revised = Gaussian(self._wrapped(x + np.matvec(K, innovation)), settled(symmetric(joseph), P))
-        posterior = Gaussian(np.where(used, revised.mean, x), np.where(used[..., None], revised.covariance, P))
-        return posterior, Correction(h, innovation, R, S, H, K, nis, refused)
+        return corrected(Gaussian(x, P), z, h, innovation, H, R, skip, self.gate, self.headings)
 
     def _update_one(
         self, prior: Gaussian, z: Array, ν: Array, h: Array, H: Array, R: Array, skip: bool
@@ -86,10 +69,5 @@ class EKF:
             P_new = symmetric(joseph)
             if r <= 10 * ROUNDING * s:  # no variance falls by more than S/R
                 P_new = settled(P_new, P)
-            posterior = Gaussian(self._wrapped(x + k * ν), P_new)
+            posterior = Gaussian(wrapped(x + k * ν, self.headings), P_new)
         return posterior, Correction(h, ν, R, np.array([[s]]), H, k[:, None], np.array(nis), np.array(int(refused)))
-
-    def _wrapped(self, x: Array) -> Array:
-        for i in self.headings:
-            x[..., i] = wrap_one(float(x[i])) if x.ndim == 1 else wrap(x[..., i])
-        return x

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, Self
+from typing import TYPE_CHECKING, ClassVar, Protocol, Self
 
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.geometry import Array, Booleans
@@ -24,6 +24,10 @@ class Beginning:
 
 class Filter(Protocol):
     """A filter holds its settings and nothing else; beliefs go in and come out."""
+
+    remark: ClassVar[
+        str
+    ]  # what whoever reads its results should know of it, a sentence without a full stop; "" if none
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:

@@ -1,0 +1,171 @@
+"""The particle filter."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Self
+
+import numpy as np
+
+from ekfsim.filters.algebra import gain, inverse, symmetric, wrapped
+from ekfsim.filters.belief import Belief, Correction, Particles, Prediction, Refused
+from ekfsim.filters.correcting import judged
+from ekfsim.filters.protocol import Beginning
+from ekfsim.filters.unscented import square_root, weighted_mean
+from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.models.protocols import Motion, Sensor, angles
+
+if TYPE_CHECKING:
+    from numpy.random import Generator
+
+
+@dataclass(frozen=True)
+class PF:
+    """Bootstrap particle filter: Gordon, Salmond & Smith, 1993; Thrun, Burgard & Fox, 2005, Tables 4.3 and 4.4.
+
+    The one filter that is not pure: it draws, and each draw advances the generator of its run. Each run has its own,
+    and draws as many numbers whatever they are, so that a run is the same alone as among others.
+    """
+
+    remark: ClassVar[str] = ""
+    generators: tuple["Generator", ...]  # one for each run, in the order of the leading axes
+    gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
+    count: int = 500  # particles of each run
+
+    @classmethod
+    def begin(cls, beginning: Beginning) -> Self:
+        """The filter for a run that begins so, with generators of its own."""
+        if beginning.generators is None:
+            raise ValueError("a particle filter needs generators to draw from")
+        return cls(tuple(beginning.generators()), beginning.gate, beginning.headings)
+
+    def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Particles, Prediction]:
+        """xᵢ⁻ = f(xᵢ, u) + G(xᵢ, u) wᵢ + qᵢ      wᵢ ~ N(0, M)      qᵢ ~ N(0, Q)          u : (…, m)
+
+        The input's noise goes through the model's own G, for a model may mean another way for its noise than for its
+        input (document 000: the gyro turns, the wheels err). F and G told are those at the mean.
+        """
+        crowd = self._crowd(belief)
+        _, F, G, M, Q = motion.linearize(crowd.mean, u)
+        each = u[..., None, :]
+        noise = self._normals(M, crowd.mean)
+        states = motion.f(crowd.states, each) + np.matvec(motion.G(crowd.states, each), noise)
+        if np.ndim(Q):
+            states = states + self._normals(np.asarray(Q), crowd.mean)
+        return self._summed(wrapped(states, self.headings), crowd.weights), Prediction(F, G)
+
+    def update(
+        self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
+    ) -> tuple[Particles, Correction]:
+        """wᵢ ∝ wᵢ⁻ exp(−½ νᵢᵀ Rᵢ⁻¹ νᵢ) / √|Rᵢ|      νᵢ = z − h(xᵢ)          z : (…, k)
+
+        A particle that predicts no reading explains none: its weight becomes 0. If all do so, the reading is refused.
+        Where fewer than half of the particles count, 1/Σ wᵢ² < p/2, they are drawn anew by their weights.
+
+        What is told are the moments of the prior's readings: ẑ = Σ wᵢ h(xᵢ), S = their spread + Σ wᵢ Rᵢ, K = P_xz S⁻¹,
+        and P_zx P⁺ for H. They judge the reading; they do not move the particles.
+        """
+        crowd = self._crowd(prior)
+        h, _, R = sensor.linearize(crowd.states)
+        R = np.broadcast_to(R, (*h.shape, h.shape[-1]))
+        told, spread = self._told(crowd, sensor, z, h, R, skip)
+        resampling = self._uniforms(crowd.mean)
+        log = _log_likelihood(sensor.residual(z[..., None, :], h), R, spread / self.count**2)
+        seen = np.where(crowd.weights > 0, log, -np.inf)
+        best = seen.max(axis=-1, keepdims=True)
+        weights = crowd.weights * np.exp(seen - np.where(np.isfinite(best), best, 0.0))  # the best of them is not 0
+        used = np.isfinite(best) & (np.asarray(told.refused)[..., None] == Refused.NOT)
+        weights = np.where(used, weights, crowd.weights)
+        weights = weights / weights.sum(axis=-1, keepdims=True)
+        few = used & (1 / np.sum(weights**2, axis=-1, keepdims=True) < self.count / 2)
+        drawn = np.take_along_axis(crowd.states, systematic(weights, resampling)[..., None], axis=-2)
+        states = np.where(few[..., None], drawn, crowd.states)
+        posterior = self._summed(states, np.where(few, 1 / self.count, weights))
+        return Particles(
+            np.where(used, posterior.mean, crowd.mean),
+            np.where(used[..., None], posterior.covariance, crowd.covariance),
+            posterior.states,
+            posterior.weights,
+        ), told
+
+    def _told(
+        self, crowd: Particles, sensor: Sensor, z: Array, h: Array, R: Array, skip: Booleans | bool
+    ) -> tuple[Correction, Array]:
+        """The correction in numbers that people know, and the spread of the particles' readings : (…, k, k)"""
+        met = ~np.isnan(h).any(axis=-1)
+        weights = np.where(met, crowd.weights, 0.0)
+        total = weights.sum(axis=-1, keepdims=True)
+        weights = np.divide(weights, total, out=np.full_like(weights, np.nan), where=total > 0)
+        likeliest = np.argmax(np.nan_to_num(weights), axis=-1)[..., None, None]
+        about = np.take_along_axis(h, likeliest, axis=-2)
+        h, R = np.where(met[..., None], h, about), np.where(met[..., None, None], R, 0.0)
+        predicted = weighted_mean(h, weights, angles(sensor.outputs), about[..., 0, :])
+        δz = sensor.residual(h, predicted[..., None, :])
+        δx = wrapped(crowd.states - crowd.mean[..., None, :], self.headings)
+        weighted = weights[..., None] * δz
+        spread, noise = symmetric(δz.mT @ weighted), np.sum(weights[..., None, None] * R, axis=-3)
+        cross, S, innovation = δx.mT @ weighted, spread + noise, sensor.residual(z, predicted)
+        nis, refused = judged(z, predicted, innovation, S, skip, self.gate)
+        H = np.nan_to_num(cross).mT @ inverse(crowd.covariance)
+        return Correction(predicted, innovation, noise, S, H, gain(cross, S), nis, refused), spread
+
+    def _crowd(self, belief: Belief) -> Particles:
+        """The belief as particles; those of a Gaussian are drawn from it, and stand for its own mean and covariance."""
+        if isinstance(belief, Particles):
+            return belief
+        x, P = belief
+        states = wrapped(x[..., None, :] + self._normals(P, x), self.headings)
+        return Particles(x, P, states, np.full(states.shape[:-1], 1 / self.count))
+
+    def _summed(self, states: Array, weights: Array) -> Particles:
+        """A crowd with its mean, circular where it is a heading, and its covariance."""
+        mean = weighted_mean(states, weights, self.headings)
+        δ = wrapped(states - mean[..., None, :], self.headings)
+        return Particles(mean, symmetric(δ.mT @ (weights[..., None] * δ)), states, weights)
+
+    def _normals(self, covariance: Array, x: Array) -> Array:
+        """One draw from N(0, covariance) for each particle : (…, p, m). covariance : (…, m, m), x : (…, n)"""
+        m = covariance.shape[-1]
+        drawn = np.stack([generator.standard_normal((self.count, m)) for generator in self.generators])
+        drawn = drawn.reshape(*x.shape[:-1], self.count, m)
+        noise: Array = np.matvec(square_root(covariance)[..., None, :, :], drawn)
+        return noise
+
+    def _uniforms(self, x: Array) -> Array:
+        """One number in [0, 1) for each run : (…)"""
+        return np.array([generator.random() for generator in self.generators]).reshape(x.shape[:-1])
+
+
+def systematic(weights: Array, u: Array) -> Integers:
+    """Which particle each of p pointers (i + u)/p, i = 0 … p − 1, hits on the weights laid end to end : (…, p)
+
+    Systematic resampling: Thrun, Burgard & Fox, Table 4.4. weights : (…, p), u : (…) in [0, 1)
+
+    >>> systematic(np.array([0.4, 0.0, 0.3, 0.3]), np.array(0.9)).tolist()
+    [0, 2, 3, 3]
+    """
+    p = weights.shape[-1]
+    ends = np.cumsum(weights, axis=-1)
+    before = np.ceil(p * (ends / ends[..., -1:]) - u[..., None]).astype(np.int64)  # pointers before each end
+    runs = math.prod(weights.shape[:-1])
+    tally = np.bincount(
+        (before.reshape(runs, p) + (p + 1) * np.arange(runs)[:, None]).ravel(), minlength=(p + 1) * runs
+    )
+    hit: Integers = np.cumsum(tally.reshape(*weights.shape[:-1], p + 1), axis=-1)[..., :p]
+    return hit
+
+
+def _log_likelihood(ν: Array, R: Array, grain: Array) -> Array:
+    """log N(ν; 0, R) but for a constant : (…, p), −∞ where nothing was predicted. ν : (…, p, k), grain : (…, k, k)
+
+    p particles cannot tell readings apart that differ by less than their own spread divided by p, the grain. It is
+    added to R, and a sensor without noise leaves the nearest particles in place of none.
+    """
+    R = R + np.nan_to_num(grain)[..., None, :, :]
+    if R.shape[-1] == 1:
+        r = np.where(R[..., 0, 0] > 0, R[..., 0, 0], 1.0)  # all particles alike, and no noise: nothing to tell
+        log: Array = -0.5 * (ν[..., 0] ** 2 / r + np.log(r))
+    else:
+        sign, log_det = np.linalg.slogdet(np.where(np.isnan(R), 0.0, R))
+        log = -0.5 * (np.vecdot(ν, np.matvec(inverse(R), ν)) + np.where(sign > 0, log_det, 0.0))
+    return np.where(np.isnan(log), -np.inf, log)

@@ -1,0 +1,90 @@
+"""The unscented Kalman filter."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import ClassVar, Self
+
+import numpy as np
+
+from ekfsim.filters.algebra import gain, settled, symmetric, wrapped
+from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
+from ekfsim.filters.correcting import judged, where_used
+from ekfsim.filters.protocol import Beginning
+from ekfsim.filters.unscented import (
+    Weights,
+    nearest_definite,
+    statistical_slope,
+    unscented_transform,
+    weights,
+)
+from ekfsim.geometry import Array, Booleans
+from ekfsim.models.protocols import Motion, Sensor, angles
+
+_weights = lru_cache(maxsize=64)(weights)
+
+
+@dataclass(frozen=True)
+class UKF:
+    """Unscented Kalman filter: Tamás et al., section II.C (document 001); Wan & van der Merwe, 2001, table 7.3.2.
+
+    Noise is added (eqs 21, 24), not drawn into the sigma points. Headings, and readings that are angles, have circular
+    means. As they come, α, β and κ give Julier's points, and no weight is negative.
+    """
+
+    remark: ClassVar[str] = ""
+    gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
+    alpha: float = 1.0  # how far the points lie from the mean: √(α² (n + κ)) standard deviations
+    beta: float = 0.0  # what is known of the shape: 2 for a Gaussian, where α is small
+    kappa: float | None = None  # None: max(3 − n, 0)
+
+    @classmethod
+    def begin(cls, beginning: Beginning) -> Self:
+        """The filter for a run that begins so."""
+        return cls(beginning.gate, beginning.headings)
+
+    def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
+        """Xᵢ = sigma points of x, P      x⁻ = Σ Wᵢᵐ f(Xᵢ, u)          eqs 14, 20; u : (…, m)
+        P⁻ = Σ Wᵢᶜ (f(Xᵢ, u) − x⁻)(f(Xᵢ, u) − x⁻)ᵀ + G M Gᵀ + Q          eq. 21
+
+        The input's noise is spread by G, taken at x: only what the state's own uncertainty does is unscented. F told
+        is P_x⁻x P⁺.
+        """
+        x, P = belief
+        _, _, G, M, Q = motion.linearize(x, u)
+        moved = unscented_transform(x, P, lambda X: motion.f(X, u[..., None, :]), self._weights(x), self.headings)
+        P_new = symmetric(moved.covariance + G @ M @ G.mT + Q)
+        return Gaussian(moved.mean, self._definite(P_new)), Prediction(statistical_slope(moved.slope, moved.root), G)
+
+    def update(
+        self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
+    ) -> tuple[Gaussian, Correction]:
+        """Zᵢ = h(Xᵢ)      ẑ = Σ Wᵢᵐ Zᵢ      S = Σ Wᵢᶜ (Zᵢ − ẑ)(Zᵢ − ẑ)ᵀ + R          eqs 22 to 24; z : (…, k)
+        P_xz = Σ Wᵢᶜ (Xᵢ − x⁻)(Zᵢ − ẑ)ᵀ      K = P_xz S⁻¹          eqs 25, 26
+        x = x⁻ + K (z − ẑ)      P = P⁻ − K S Kᵀ = (L − KD)(L − KD)ᵀ + K (S − DDᵀ) Kᵀ          eqs 27, 28
+
+        Xᵢ are the sigma points of the prior, drawn afresh; P⁻ = L Lᵀ, P_xz = L Dᵀ. The last form of P is a sum of
+        squares: it cannot turn negative by rounding. R is taken at x⁻; H told is P_zx P⁺. Where any Zᵢ predicts no
+        reading (nan), neither ẑ nor S is known, for the points that are left no longer have the prior's mean and
+        covariance: then the reading is refused as one that meets no wall.
+        """
+        x, P = prior
+        R = sensor.linearize(x)[2]
+        seen = unscented_transform(x, P, sensor.h, self._weights(x), angles(sensor.outputs), sensor.residual)
+        L, D, noise = seen.root, seen.slope, seen.bend + R
+        innovation, S = sensor.residual(z, seen.mean), seen.covariance + R
+        nis, refused = judged(z, seen.mean, innovation, S, skip, self.gate)
+        K = gain(seen.cross, S)
+        left = L - K @ D
+        P_new = self._definite(settled(symmetric(left @ left.mT + K @ noise @ K.mT), P))
+        posterior = Gaussian(wrapped(x + np.matvec(K, innovation), self.headings), P_new)
+        return where_used(refused, posterior, Gaussian(x, P)), Correction(
+            seen.mean, innovation, R, S, statistical_slope(D, L), K, nis, refused
+        )
+
+    def _weights(self, x: Array) -> Weights:
+        return _weights(x.shape[-1], self.alpha, self.beta, self.kappa)
+
+    def _definite(self, P: Array) -> Array:
+        """P, which with a negative weight for the first point need not be a covariance."""
+        return nearest_definite(P) if self._weights(P).covariance[0] < 0 else P

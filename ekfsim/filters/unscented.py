@@ -1,0 +1,141 @@
+"""The unscented transform: a mean and a covariance through any function, without its derivative."""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ekfsim.filters.algebra import symmetric
+from ekfsim.geometry import Array
+from ekfsim.geometry.angles import wrap
+
+NO_PIVOT = 1e-13  # a pivot below this share of its variance is what rounding leaves of 0
+
+
+class Weights(NamedTuple):
+    """How far the sigma points of n numbers lie from the mean, and how much each of the 2n + 1 counts."""
+
+    spread: float  # √(n + λ), in columns of the root of P
+    mean: Array  # (2n + 1,) Wᵐ
+    covariance: Array  # (2n + 1,) Wᶜ
+
+
+class Transformed(NamedTuple):
+    """A Gaussian after a function y = g(x)."""
+
+    mean: Array  # ȳ : (…, k)
+    covariance: Array  # P_yy : (…, k, k)
+    cross: Array  # P_xy : (…, n, k)
+    root: Array  # L : (…, n, n), P = L Lᵀ
+    slope: Array  # D = Δy/Δ√P : (…, k, n), the central differences along the columns of L; P_xy = L Dᵀ
+    bend: Array  # Ω = P_yy − D Dᵀ : (…, k, k), what no straight line through the points explains
+
+
+def weights(n: int, alpha: float = 1.0, beta: float = 0.0, kappa: float | None = None) -> Weights:
+    """λ = α² (n + κ) − n      W₀ᵐ = λ/(n + λ)      W₀ᶜ = W₀ᵐ + 1 − α² + β      Wᵢ = 1/(2(n + λ))
+
+    Wan & van der Merwe, The unscented Kalman filter, 2001, eq. 7.30. With α = 1 and β = 0 these are Julier's own,
+    W₀ = κ/(n + κ): document 001, eq. 14. κ None is max(3 − n, 0): his
+    choice for a Gaussian while no weight is negative.
+
+    >>> weights(2).mean.round(3).tolist()
+    [0.333, 0.167, 0.167, 0.167, 0.167]
+    """
+    kappa = max(3.0 - n, 0.0) if kappa is None else kappa
+    scale = alpha**2 * (n + kappa)  # n + λ
+    if not scale > 0:
+        raise ValueError(f"alpha² (n + kappa) must be positive, not {scale:g}: alpha={alpha:g}, n={n}, kappa={kappa:g}")
+    outer = np.full(2 * n, 1 / (2 * scale))
+    first = 1 - n / scale
+    return Weights(math.sqrt(scale), np.append(first, outer), np.append(first + 1 - alpha**2 + beta, outer))
+
+
+def square_root(P: Array) -> Array:
+    """Lower triangular L : (…, n, n) with P = L Lᵀ: Cholesky's, a column being zero where nothing is left to explain.
+
+    P is often singular: it starts at 0, and a straight move adds no heading noise.
+    """
+    L = np.zeros_like(P)
+    for j in range(P.shape[-1]):
+        rest = P[..., j:, j] - np.matvec(L[..., j:, :j], L[..., j, :j])
+        pivot = np.where(rest[..., 0] > NO_PIVOT * P[..., j, j], rest[..., 0], 0.0)[..., None]
+        L[..., j:, j] = np.divide(rest, np.sqrt(pivot), out=np.zeros_like(rest), where=pivot > 0)
+    return L
+
+
+def sigma_points(mean: Array, L: Array, spread: float) -> Array:
+    """x̄, x̄ + √(n+λ) Lᵢ, x̄ − √(n+λ) Lᵢ, Lᵢ the columns of the root of P : (…, 2n + 1, n)          eq. 14"""
+    arms = spread * L.mT
+    points: Array = mean[..., None, :] + np.concatenate([np.zeros_like(arms[..., :1, :]), arms, -arms], axis=-2)
+    return points
+
+
+def weighted_mean(points: Array, weights: Array, angles: tuple[int, ...] = (), about: Array | None = None) -> Array:
+    """Σ Wᵢ yᵢ : (…, k), of an angle atan2(Σ Wᵢ sin yᵢ, Σ Wᵢ cos yᵢ). points : (…, p, k), weights : (…, p)
+
+    The weights sum to 1. Summed as differences to one point (…, k), the first where none is given, so that
+    large weights of opposite signs cost no digits and equal points have exactly their own mean.
+    """
+    centre = points[..., 0, :] if about is None else about
+    differences = points - centre[..., None, :]
+    mean: Array = centre + np.vecmat(weights, differences)
+    for i in angles:
+        δ = differences[..., i]
+        sine, cosine = np.vecdot(weights, np.sin(δ)), 1 + np.vecdot(weights, np.cos(δ) - 1)
+        mean[..., i] = wrap(centre[..., i] + np.arctan2(sine, cosine))
+    return mean
+
+
+def unscented_transform(
+    mean: Array,
+    covariance: Array,
+    function: Callable[[Array], Array],
+    weights: Weights,
+    angles: tuple[int, ...] = (),
+    difference: Callable[[Array, Array], Array] | None = None,
+) -> Transformed:
+    """ȳ = Σ Wᵢᵐ yᵢ      P_yy = Σ Wᵢᶜ (yᵢ − ȳ)(yᵢ − ȳ)ᵀ      P_xy = Σ Wᵢᶜ (xᵢ − x̄)(yᵢ − ȳ)ᵀ          eqs 15 to 17
+
+    function : (…, n) → (…, k), whose entries `angles` are directions. `difference` is y − ȳ, wrapped where it is an
+    angle; None wraps the `angles`.
+
+    The points come in pairs, yᵢ± = ȳ + sᵢ ± dᵢ, and 2 Wᵢ (n + λ) = 1. So the sums are, without a small difference of
+    large numbers,
+
+        D = [dᵢ] / √(n+λ)      Ω = W₀ᶜ (y₀ − ȳ)(y₀ − ȳ)ᵀ + Σ 2 Wᵢ sᵢ sᵢᵀ      P_yy = D Dᵀ + Ω      P_xy = L Dᵀ
+    """
+    n, L = mean.shape[-1], square_root(covariance)
+    y = function(sigma_points(mean, L, weights.spread))
+    y_mean = weighted_mean(y, weights.mean, angles)
+    δ = y - y_mean[..., None, :] if difference is None else difference(y, y_mean[..., None, :])
+    if difference is None:
+        for i in angles:
+            δ[..., i] = wrap(δ[..., i])
+    ahead, behind = δ[..., 1 : n + 1, :], δ[..., n + 1 :, :]
+    D = ((ahead - behind) / (2 * weights.spread)).mT
+    s = np.concatenate([δ[..., :1, :], (ahead + behind) / 2], axis=-2)
+    W = np.append(weights.covariance[0], 2 * weights.covariance[1 : n + 1])
+    bend = s.mT @ (W[:, None] * s)
+    return Transformed(y_mean, symmetric(D @ D.mT + bend), L @ D.mT, L, D, bend)
+
+
+def statistical_slope(D: Array, L: Array) -> Array:
+    """P_yx P⁺ = D L⁺ : (…, k, n), the Jacobian that stands for a function between its sigma points; P = L Lᵀ"""
+    D, n = np.nan_to_num(D), L.shape[-1]
+    pivots = np.diagonal(L, axis1=-2, axis2=-1)
+    H = np.zeros(np.broadcast_shapes(D.shape, (*L.shape[:-2], 1, n)))
+    for j in reversed(range(n)):
+        rest = D[..., j] - np.vecdot(H[..., j + 1 :], L[..., None, j + 1 :, j])
+        pivot = pivots[..., None, j]
+        H[..., j] = np.divide(rest, pivot, out=np.zeros_like(rest), where=pivot > 0)
+    singular = np.any((pivots == 0) & np.any(L != 0, axis=-1), axis=-1)  # a number that depends on the others
+    if np.any(singular):
+        H[singular] = np.broadcast_to(D, H.shape)[singular] @ np.linalg.pinv(L[singular])
+    return H
+
+
+def nearest_definite(P: Array) -> Array:
+    """P with its negative eigenvalues at 0 : (…, n, n). Only negative weights can make a covariance need it."""
+    λ, V = np.linalg.eigh(P)
+    return symmetric((V * np.maximum(λ, 0.0)[..., None, :]) @ V.mT)
