@@ -11,7 +11,7 @@ WHEELS, GYRO = TwoWheels(1.41, 0.01, Q), GyroWheels(1.41, 0.01, Q)
 
 
 def test_half_a_circle_by_hand():
-    """A wheel stands still, the other makes half a turn round it; one step of the mid-point rule goes along the chord."""
+    """One wheel stands still, the other goes half round it: the mid-point rule drives north all the way."""
     x = WHEELS.f(np.array([0.0, 0.0, 0.0]), np.array([0.0, 1.41 * math.pi]))
     assert x == pytest.approx([0, 1.41 * math.pi / 2, math.pi], abs=1e-12)
 
