@@ -69,16 +69,15 @@ class PF:
         h, _, R = sensor.linearize(crowd.states)
         R = np.broadcast_to(R, (*h.shape, h.shape[-1]))
         told, spread = self._told(crowd, sensor, z, h, R, skip)
-        resampling = self._uniforms(crowd.mean)
         log = _log_likelihood(sensor.residual(z[..., None, :], h), R, spread / self.count**2)
         seen = np.where(crowd.weights > 0, log, -np.inf)
         best = seen.max(axis=-1, keepdims=True)
         weights = crowd.weights * np.exp(seen - np.where(np.isfinite(best), best, 0.0))  # the best of them is not 0
-        used = np.isfinite(best) & (np.asarray(told.refused)[..., None] == Refused.NOT)
+        used: Booleans = np.isfinite(best) & (np.asarray(told.refused)[..., None] == Refused.NOT)
         weights = np.where(used, weights, crowd.weights)
         weights = weights / weights.sum(axis=-1, keepdims=True)
         few = used & (1 / np.sum(weights**2, axis=-1, keepdims=True) < self.count / 2)
-        drawn = np.take_along_axis(crowd.states, systematic(weights, resampling)[..., None], axis=-2)
+        drawn = np.take_along_axis(crowd.states, systematic(weights, self._uniforms(crowd.mean))[..., None], axis=-2)
         states = np.where(few[..., None], drawn, crowd.states)
         posterior = self._summed(states, np.where(few, 1 / self.count, weights))
         return Particles(
@@ -92,7 +91,7 @@ class PF:
         self, crowd: Particles, sensor: Sensor, z: Array, h: Array, R: Array, skip: Booleans | bool
     ) -> tuple[Correction, Array]:
         """The correction in numbers that people know, and the spread of the particles' readings : (…, k, k)"""
-        met = ~np.isnan(h).any(axis=-1)
+        met: Booleans = np.asarray(~np.isnan(h).any(axis=-1))
         weights = np.where(met, crowd.weights, 0.0)
         total = weights.sum(axis=-1, keepdims=True)
         weights = np.divide(weights, total, out=np.full_like(weights, np.nan), where=total > 0)

@@ -1,5 +1,5 @@
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -7,6 +7,7 @@ from filterpy.kalman import ExtendedKalmanFilter, KalmanFilter
 from hypothesis import given
 from hypothesis import strategies as st
 from numerics import covariance, definite
+from problems import close, problem, theirs
 from scenes import rich, scene
 from scipy.stats import chi2
 
@@ -21,71 +22,6 @@ from ekfsim.records import Control, Move, Reading, Sense
 
 seeds = st.integers(0, 2**32 - 1)
 LINEAR = EKF(headings=())
-
-
-@dataclass
-class Linear:
-    """A linear motion and a linear sensor of any size, with a heading among the readings where `angles` says so."""
-
-    A: np.ndarray
-    B: np.ndarray
-    input_noise: np.ndarray
-    process_noise: np.ndarray
-    C: np.ndarray
-    noise: np.ndarray
-    angles: tuple = field(default=())
-
-    def f(self, x, u):
-        return np.matvec(self.A, x) + np.matvec(self.B, u)
-
-    def F(self, x, u):
-        return np.broadcast_to(self.A, (*x.shape[:-1], *self.A.shape))
-
-    def G(self, x, u):
-        return np.broadcast_to(self.B, (*x.shape[:-1], *self.B.shape))
-
-    def M(self, u):
-        return self.input_noise
-
-    def Q(self, u):
-        return self.process_noise
-
-    def linearize(self, x, *u):
-        if u:
-            return self.f(x, *u), self.F(x, *u), self.G(x, *u), self.M(*u), self.Q(*u)
-        return self.h(x), np.broadcast_to(self.C, (*x.shape[:-1], *self.C.shape)), self.noise
-
-    def h(self, x):
-        return np.matvec(self.C, x)
-
-    def residual(self, z, h):
-        ν = z - h
-        for i in self.angles:
-            ν[..., i] = np.angle(np.exp(1j * ν[..., i]))
-        return ν
-
-    def sight(self, x, P):
-        return None
-
-
-def problem(random, n=3, m=2, k=1):
-    return Linear(
-        random.normal(size=(n, n)), random.normal(size=(n, m)), covariance(random, m), covariance(random, n),
-        random.normal(size=(k, n)), covariance(random, k) + 0.1 * np.eye(k),
-    )  # fmt: skip
-
-
-def theirs(kind, model, x, P):
-    """filterpy's filter of the same problem."""
-    n, m, k = len(model.A), model.B.shape[1], len(model.C)
-    other = kind(dim_x=n, dim_z=k, dim_u=m)
-    other.x, other.P, other.F, other.B, other.R, other.H = x.copy(), P.copy(), model.A, model.B, model.noise, model.C
-    other.Q = model.B @ model.input_noise @ model.B.T + model.process_noise
-    return other
-
-
-def close(a, b):
-    return a == pytest.approx(b, rel=1e-12, abs=1e-12 * max(1.0, np.abs(b).max()))
 
 
 @pytest.mark.parametrize("k", [1, 2])
