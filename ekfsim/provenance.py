@@ -6,7 +6,7 @@ from ekfsim.version import VERSION
 
 def provenance(scene: Scene) -> dict[str, str | int | float | None]:
     """All that another needs to make the same output again, by name."""
-    return {
+    facts: dict[str, str | int | float | None] = {
         "ekfsim": VERSION,
         "world": scene.world_source,
         "commands": scene.commands_source,
@@ -16,6 +16,11 @@ def provenance(scene: Scene) -> dict[str, str | int | float | None]:
         "seed": scene.seed,
         "run": scene.run,
     }
+    if scene.log_source is not None:
+        facts["log"] = scene.log_source
+    if scene.reading != "corrected":
+        facts["reading"] = scene.reading
+    return facts
 
 
 def told_in_a_line(scene: Scene) -> str:

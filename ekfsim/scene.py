@@ -42,3 +42,4 @@ class Scene:
     expect: Expect | None = None
     world_source: str = "world"  # how outputs name the two files they were made from
     commands_source: str = "commands"
+    log_source: str | None = None  # how outputs name the log, where the run was recorded

@@ -92,6 +92,7 @@ class World:
     system: str = "classroom"
     robot: Robot | None = None  # None in the classroom, whose robot obeys commands
     instruments: tuple[Instrument, ...] = ()
+    expected_path: Array | None = None  # (n, 2) m, the outline that was meant to be driven; it closes by itself
 
     @property
     def layout(self) -> Layout:
