@@ -58,13 +58,14 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
     from ekfsim.views.look import Look, get_ready
 
     get_ready()
+    from ekfsim.files.outputs import kept
     from ekfsim.localization import play as steps_of
     from ekfsim.views import animation, limits
-    from ekfsim.views.playback import number_of_views, views
+    from ekfsim.views.playback import Tally, views
 
-    scene = _scene(**chosen)
-    extent = limits.of(scene, steps_of(scene), confidence)
-    pictures = animation.number_of_pictures(number_of_views(scene.commands), every)
+    scene, tally = _scene(**chosen), Tally()
+    extent = limits.of(scene, kept(steps_of(scene), [tally.write]), confidence)
+    pictures = animation.number_of_pictures(tally.views, every)
     with click.progressbar(length=pictures, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
 
         def made_one(made: int) -> None:
@@ -72,8 +73,8 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
             bar.update(1)
 
         animation.render(
-            views(steps_of(scene)), scene, extent, out, look=Look(confidence, conditional), every=every, force=force,
-            progress=made_one,
+            views(steps_of(scene), scene.world.layout), scene, extent, out, look=Look(confidence, conditional),
+            every=every, force=force, progress=made_one,
         )  # fmt: skip
     click.echo(f"{shown(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
 
@@ -91,24 +92,22 @@ def run(
     confidence: float, **chosen: Any,
 ) -> None:  # fmt: skip
     """Narrate COMMANDS from the first step to the last, and sum up."""
-    from ekfsim.files.outputs import Outputs
+    from ekfsim.files.outputs import Outputs, kept
     from ekfsim.localization import play as steps_of
     from ekfsim.summary import Summary
     from ekfsim.views.closing import conclude
     from ekfsim.views.narrative import narrate
     from ekfsim.views.playback import views
 
-    scene, result = _scene(**chosen), Summary()
+    scene = _scene(**chosen)
+    result = Summary.of(scene)
     outputs = Outputs(trace, tum, csv, summary, force)
     with outputs.open(scene, confidence, result) as sinks:
-        for view in views(steps_of(scene)):
+        steps = kept(steps_of(scene), [result.add, *(sink.write for sink in sinks)])
+        for view in views(steps, scene.world.layout):
             heed()
             if not quiet:
                 sys.stdout.write(narrate(view, scene, confidence))
-            if not view.beam:
-                result.add(view.step)
-                for sink in sinks:
-                    sink.write(view.step)
     (sys.stderr if outputs.on_stdout() else sys.stdout).write(conclude(result))
 
 
@@ -176,6 +175,33 @@ def new(file: Path, kind: str | None, force: bool) -> None:
     with whole_text(file, force) as out:
         out.write(template(told))
     click.echo(shown(f"{file}: a {told} file to start from; ekfsim check {file} validates it"))
+
+
+@ekfsim.command()
+@click.argument("name", type=click.Choice(["classroom", "mower", "pioneer", "gnss", "pylon"]))
+@click.option("--out", "-o", type=Result(), required=True, help="A folder for the figures, tables and captions.md.")
+@click.option("--format", "formats", type=click.Choice(["png", "svg", "pdf"]), multiple=True, default=("png",),
+              show_default=True, help="May be given several times.")  # fmt: skip
+@click.option("--log", help="A recorded log in place of the simulated twin.")
+@click.option("--reading", type=click.Choice(["printed", "coded", "corrected"]), default="corrected",
+              show_default=True, help="Which reading of the document, where its print and its code are wrong.")  # fmt: skip
+@click.option("--seed", type=click.IntRange(min=0), help="In place of the scene's seed.")
+@FORCE
+def figures(
+    name: str, out: Path, formats: tuple[str, ...], log: str | None, reading: str, seed: int | None, force: bool
+) -> None:
+    """Draw every figure and table of one of the five documents, with captions."""
+    from ekfsim.views.look import get_ready
+
+    get_ready()
+    from ekfsim.figures import draw_figures
+
+    scene = _scene(
+        "tour" if name == "classroom" else name if log is None else f"{name}_log",
+        log=log, reading=reading, seed=seed,
+    )  # fmt: skip
+    written = draw_figures(name, scene, out, formats, force)
+    click.echo(shown(f"{out}: {len(written)} files, read captions.md first"))
 
 
 def _scene(

@@ -133,16 +133,18 @@ class Evidence:
     """What the steps of one run say for and against its filter, gathered one at a time."""
 
     nis_sum: float = 0.0
-    nis_dof: int = 0  # one for each reading that had a NIS, refused ones included
+    nis_dof: int = 0  # of the readings that had a NIS together, refused ones included
     lost_from: int | None = None  # index of the step from which on the run is lost without a gap
     last_nees: Nees | None = None
     nis_refused: int = 0  # how many readings of the sum were refused
+    nis_readings: int = 0  # how many readings it sums
 
     def add(self, step: Step) -> None:
         """Take one more step into account."""
         if step.correction is not None and not np.isnan(step.correction.nis):
             self.nis_sum += float(step.correction.nis)
             self.nis_dof += step.correction.innovation.shape[-1]
+            self.nis_readings += 1
             self.nis_refused += int(step.correction.refused != Refused.NOT)
         if step.nees is not None:
             self.last_nees = step.nees

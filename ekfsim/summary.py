@@ -2,77 +2,133 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Self
 
 from ekfsim.consistency import Evidence
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap_one
-from ekfsim.records import Control, Step
+from ekfsim.geometry.outline import path_error
+from ekfsim.models.layout import POSE, Layout
+from ekfsim.records import Control, Entry, Step
+from ekfsim.scene import Scene
 
 
 @dataclass
 class Errors:
     """Mean, spread and worst of a stream of errors, kept without keeping them."""
 
-    n: int = 0
-    total: float = 0.0
-    squares: float = 0.0
-    largest: float = 0.0
+    _n: int = 0
+    _total: float = 0.0
+    _squares: float = 0.0
+    _largest: float = 0.0
+    _last: float | None = None  # not yet in the sums: a later error of the same instant takes its place
+    _instant: float | None = None
 
-    def add(self, e: float) -> None:
-        """Take one more error into account; it may be negative."""
-        self.n += 1
-        self.total += e
-        self.squares += e * e
-        self.largest = max(self.largest, abs(e))
+    def add(self, e: float, t: float | None = None) -> None:
+        """Take one more error into account; it may be negative. Of each instant t (s) only the last one counts."""
+        if self._last is not None and (t is None or t != self._instant):
+            self._n, self._total, self._squares = self._n + 1, self._total + self._last, self._squares + self._last**2
+            self._largest = max(self._largest, abs(self._last))
+        self._last, self._instant = e, t
+
+    @property
+    def n(self) -> int:
+        """How many there were."""
+        return self._n + (self._last is not None)
+
+    @property
+    def largest(self) -> float:
+        """The largest |e|."""
+        return max(self._largest, abs(self._last or 0.0))
 
     @property
     def rmse(self) -> float | None:
-        """√(mean e²), None where no truth was known."""
-        return math.sqrt(self.squares / self.n) if self.n else None
+        """√(mean e²), None where no truth was known, or the estimate was no number."""
+        mean_square = (self._squares + (self._last or 0.0) ** 2) / self.n if self.n else math.nan
+        return math.sqrt(mean_square) if math.isfinite(mean_square) else None
 
     def table(self) -> dict[str, float | None]:
         """rmse, mean, sd (of the errors around their mean) and the largest |e|."""
-        if not self.n:
+        rmse = self.rmse
+        if rmse is None:
             return dict.fromkeys(("rmse", "mean", "sd", "max"))
-        mean = self.total / self.n
-        sd = math.sqrt(max(self.squares / self.n - mean**2, 0.0))
-        return {"rmse": self.rmse, "mean": mean, "sd": sd, "max": self.largest}
+        mean = (self._total + (self._last or 0.0)) / self.n
+        return {"rmse": rmse, "mean": mean, "sd": math.sqrt(max(rmse**2 - mean**2, 0.0)), "max": self.largest}
 
 
 @dataclass
 class Summary:
     """What is left of a run when it is over, gathered one step at a time.
 
-    Errors are taken after every step that gave the filter something: position as a distance in m, heading in rad
-    with its sign. Dead reckoning starts at the first estimate and follows the odometry alone.
+    Errors are taken at every instant, after its last reading: position as a distance in m, heading in rad with its
+    sign. Without a clock, in the classroom, every step that gave the filter something is an instant of its own. Dead
+    reckoning starts at the first estimate and follows the motion inputs alone.
     """
 
+    layout: Layout = POSE
+    expected_path: Array | None = None  # (n, 2) m, the outline that was to be driven
     steps: int = 0
+    inputs: int = 0
     updates: int = 0
     refused: dict[Refused, int] = field(default_factory=dict)
     position: Errors = field(default_factory=Errors)
     heading: Errors = field(default_factory=Errors)
+    path: Errors = field(default_factory=Errors)
     reckoned_position: Errors = field(default_factory=Errors)
     reckoned_heading: Errors = field(default_factory=Errors)
     evidence: Evidence = field(default_factory=Evidence)
-    _reckoned: Array | None = None
+    first_t: float | None = None  # s, of the start
+    last_t: float | None = None
+    _reckoned: Array | None = None  # (n,), the whole state
+    _judged: float | None = None  # s, the last instant at which errors are counted
+
+    @classmethod
+    def of(cls, scene: Scene) -> Self:
+        """An empty summary for a run of this scene."""
+        return cls(scene.world.layout, scene.world.expected_path)
+
+    @property
+    def readings(self) -> int:
+        """How many there were, used or not."""
+        return self.updates + sum(self.refused.values())
+
+    @property
+    def duration(self) -> float | None:
+        """From the start to the last instant, in s; None where there is no clock."""
+        return None if self.first_t is None or self.last_t is None else self.last_t - self.first_t
 
     def add(self, step: Step) -> None:
         """Take one more step into account; the first is the start."""
+        entry = step.entry
         self.evidence.add(step)
+        self.last_t = entry.t
         if self._reckoned is None:
-            self._reckoned = step.posterior.mean
-            return
-        self.steps += 1
-        if isinstance(step.entry.given, Control):
-            self._reckoned = step.entry.given.motion.f(self._reckoned, step.entry.given.u)
+            self._reckoned, self.first_t = step.posterior.mean, entry.t
+        else:
+            self.steps += 1
+        if isinstance(entry.given, Control):
+            self.inputs += 1
+            self._reckoned = entry.given.motion.f(self._reckoned, entry.given.u)
         if step.correction is not None:
             self._count(Refused(int(step.correction.refused)))
-        if step.entry.given is not None and step.entry.truth is not None:
-            _measure(step.posterior.mean, step.entry.truth, self.position, self.heading)
-            _measure(self._reckoned, step.entry.truth, self.reckoned_position, self.reckoned_heading)
+        if self._counts(entry):
+            self._measure(entry, self.layout.pose(step.posterior.mean), self.layout.pose(self._reckoned))
+
+    def _counts(self, entry: Entry) -> bool:
+        """Whether this is an instant of the filter, or more of one, at which errors are counted."""
+        if entry.t is None:
+            return entry.given is not None and entry.judged
+        if entry.judged:
+            self._judged = entry.t
+        return entry.t == self._judged
+
+    def _measure(self, entry: Entry, estimated: Array, reckoned: Array) -> None:
+        if entry.truth is not None:
+            _compare(estimated, entry.truth, entry.t, self.position, self.heading)
+            _compare(reckoned, entry.truth, entry.t, self.reckoned_position, self.reckoned_heading)
+        if self.expected_path is not None and entry.given is not None:
+            self.path.add(float(path_error(estimated[:2], self.expected_path)), entry.t)
 
     def _count(self, refused: Refused) -> None:
         if refused is Refused.NOT:
@@ -90,9 +146,9 @@ class Summary:
             "refused": sum(self.refused.values()),
             "position": self.position.table(),
             "heading": self.heading.table(),
-            "path_rmse": None,
+            "path_rmse": self.path.rmse,
             "nis": {
-                "mean": evidence.nis_sum / evidence.nis_dof if evidence.nis_dof else None,
+                "mean": evidence.nis_sum / evidence.nis_readings if evidence.nis_readings else None,
                 "sum": evidence.nis_sum,
                 "dof": evidence.nis_dof,
                 "low": low,
@@ -108,7 +164,7 @@ class Summary:
         }
 
 
-def _measure(mean: Array, truth: Array, position: Errors, heading: Errors) -> None:
-    ex, ey, eθ = (mean - truth).tolist()
-    position.add(math.hypot(ex, ey))
-    heading.add(wrap_one(eθ))
+def _compare(pose: Array, truth: Array, t: float | None, position: Errors, heading: Errors) -> None:
+    ex, ey, eθ = (pose - truth).tolist()
+    position.add(math.hypot(ex, ey), t)
+    heading.add(wrap_one(eθ), t)

@@ -9,13 +9,30 @@ from ekfsim.views.numbers import number, turn
 
 def conclude(summary: Summary) -> str:
     """The closing lines, each ended by a newline."""
-    lines = [f"The run is over after {_count(summary.steps, 'command')}: {_readings(summary)}"]
-    if summary.position.n:
-        lines += [
-            f"Position error: {_metres(summary.position)}; by odometry alone {_metres(summary.reckoned_position)}",
-            f"Heading error: {_degrees(summary.heading)}; by odometry alone {_degrees(summary.reckoned_heading)}",
-        ]
+    lines = [f"The run is over after {_done(summary)}: {_readings(summary)}", *_errors(summary)]
+    if summary.path.rmse is not None:
+        lines += [f"Distance to the expected path: {_metres(summary.path)}"]
     return "".join(f"{line}\n" for line in [*lines, f"Verdict: {sentence(summary.evidence)}"])
+
+
+def _done(summary: Summary) -> str:
+    """What was done: commands obeyed one by one, or a clock's time of motion inputs and readings."""
+    if summary.duration is None:
+        return _count(summary.steps, "command")
+    given = f"{_count(summary.inputs, 'motion input')} and {_count(summary.readings, 'reading')}"
+    return f"{given} over {number(summary.duration)} s"
+
+
+def _errors(summary: Summary) -> list[str]:
+    """How far off the filter was, and how far off it would have been without readings."""
+    if not summary.position.n:
+        return []
+    if summary.position.rmse is None or summary.heading.rmse is None:
+        return ["The errors are unknown: the estimate is no number"]
+    return [
+        f"Position error: {_metres(summary.position)}; by odometry alone {_metres(summary.reckoned_position)}",
+        f"Heading error: {_degrees(summary.heading)}; by odometry alone {_degrees(summary.reckoned_heading)}",
+    ]
 
 
 def sentence(evidence: Evidence) -> str:
@@ -38,10 +55,11 @@ def sentence(evidence: Evidence) -> str:
 def _nis(evidence: Evidence, side: str) -> str:
     low, high = evidence.nis_band
     refused = f" ({evidence.nis_refused} of them refused)" if evidence.nis_refused else ""
-    readings = "1 reading is" if evidence.nis_dof == 1 else f"{evidence.nis_dof} readings{refused} sums to"
+    readings = "1 reading is" if evidence.nis_readings == 1 else f"{evidence.nis_readings} readings{refused} sums to"
+    freedom = "" if evidence.nis_dof == evidence.nis_readings else f" ({_count(evidence.nis_dof, 'degree')} of freedom)"
     return (
         f"the NIS of {readings} {number(evidence.nis_sum)}, {side} the {100 * BAND:.0f} % band "
-        f"{number(low)} to {number(high)}"
+        f"{number(low)} to {number(high)}{freedom}"
     )
 
 
@@ -68,12 +86,14 @@ def _readings(summary: Summary) -> str:
 
 
 def _metres(errors: Errors) -> str:
-    assert errors.rmse is not None
+    if errors.rmse is None:
+        return "unknown"
     return f"RMSE {number(errors.rmse)} m, at most {number(errors.largest)} m"
 
 
 def _degrees(errors: Errors) -> str:
-    assert errors.rmse is not None
+    if errors.rmse is None:
+        return "unknown"
     return f"RMSE {turn(errors.rmse)} degrees, at most {turn(errors.largest)} degrees"
 
 

@@ -17,7 +17,7 @@ from ekfsim.views import limits, terminal
 from ekfsim.views.keyboard import Key, Keyboard, keys
 from ekfsim.views.limits import Limits
 from ekfsim.views.look import Look, get_ready
-from ekfsim.views.playback import Playback, View
+from ekfsim.views.playback import View
 from ekfsim.views.player import Player, Screen
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def play_interactively(scene: Scene, show: str, out: Path, look: Look, force: bo
     else:
         screen = Text(scene, extent, look.probability, sys.stdout)
     with keys() as keyboard:
-        player = Player(scene, Playback(play(scene)), screen, pictures.save, sys.stdout, look.probability)
+        player = Player(scene, play(scene), screen, pictures.save, sys.stdout, look.probability)
         player.play(keyboard if window is None else _either(keyboard, window))
 
 

@@ -1,9 +1,15 @@
 """Numbers as a person reads them: six digits, degrees, no noise of the last bit."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+
+from ekfsim.geometry import Array
+from ekfsim.models.layout import Layout
+from ekfsim.models.protocols import Quantity
 
 NOISE = 1e-15  # what is smaller is a rounding error of metres, radians or their squares
+MANY = 8  # numbers of a reading, rows and columns of a matrix; of more only so many are told
+UNITS = {"rad": "degrees", "rad/s": "degrees/s"}  # what a person reads in place of it
 
 
 def fill(template: str, *values: float) -> str:
@@ -51,3 +57,66 @@ def pose(state: Iterable[float]) -> tuple[float, float, float]:
     """
     x, y, θ = state
     return x, y, heading(θ)
+
+
+def instant(t: float) -> str:
+    """An instant in s, to a microsecond however long ago the clock began.
+
+    >>> instant(0.1 + 0.2), instant(1248272272.841), instant(14.0)
+    ('0.3', '1248272272.841', '14')
+    """
+    return f"{t:.6f}".rstrip("0").rstrip(".")
+
+
+def quantity(what: Quantity, value: float) -> str:
+    """A number of a motion input or a reading with its name and unit; radians in degrees, "nothing" for nan.
+
+    >>> quantity(Quantity("turn rate", "rad/s"), math.pi), quantity(Quantity("echo", ""), math.nan)
+    ('turn rate = 180 degrees/s', 'echo = nothing')
+    """
+    if math.isnan(value):
+        return f"{what.name} = nothing"
+    told = number(math.degrees(value) if what.unit in UNITS else value)
+    return f"{what.name} = {told} {UNITS.get(what.unit, what.unit)}".rstrip()
+
+
+def quantities(what: Sequence[Quantity], values: Array, directions: bool = False) -> str:
+    """The same for all of them; where they are directions, those in rad are told in (−180, 180].
+
+    >>> import numpy as np
+    >>> quantities((Quantity("range", "m"), Quantity("bearing", "rad")), np.array([2.0, -math.pi]), directions=True)
+    'range = 2 m, bearing = 180 degrees'
+    """
+    told = [
+        f"{q.name} = {number(heading(value))} degrees" if directions and q.unit == "rad" else quantity(q, value)
+        for q, value in zip(what[:MANY], values[:MANY].tolist(), strict=True)
+    ]
+    return ", ".join([*told, f"… ({len(what)} numbers)"] if len(what) > MANY else told)
+
+
+def state(x: Array, layout: Layout) -> str:
+    """The entries of a state with their names, headings in degrees.
+
+    >>> import numpy as np
+    >>> from ekfsim.models.layout import SPEED_POSE
+    >>> state(np.array([1.0, math.pi / 2, 3.0, 4.0]), SPEED_POSE)
+    '(v, phi, x, y) = (1, 90, 3, 4)'
+    """
+    told = [number(heading(value) if i in layout.headings else value) for i, value in enumerate(x.tolist())]
+    return f"({', '.join(layout.names)}) = ({', '.join(told)})"
+
+
+def matrix(A: Array) -> str:
+    """A matrix, a line for each row; … stands for what is too much to read.
+
+    >>> import numpy as np
+    >>> print(matrix(np.array([[1.0, 0.5], [0.25, 1 / 3]])), end="")
+    [[1 0.5]
+    [0.25 0.333333]]
+    """
+    rows, columns = A.shape
+    lines = [
+        f"[{' '.join([*map(number, row[:MANY]), *(['…'] if columns > MANY else [])])}]" for row in A[:MANY].tolist()
+    ]
+    told = "\n".join([*lines, "…"] if rows > MANY else lines)
+    return f"[{told}]\n"

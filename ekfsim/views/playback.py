@@ -30,6 +30,7 @@ class View:
     inputs: int = 1  # how many steps the view gathers
     before: Belief | None = None  # the belief before the first of them, where more than one may be gathered
     layout: Layout = POSE  # of the state that is estimated
+    since: float | None = None  # s, the instant of the first of the steps
 
     @property
     def belief(self) -> Belief:
@@ -50,28 +51,34 @@ def views(steps: Iterable[Step], layout: Layout = POSE) -> Iterator[View]:
     """Every view of a run, in order. Until the next motion the path's last corner moves with each revised estimate."""
     settled: list[Array] = []
     number = itertools.count()
-    for step, inputs, before in _seen(steps):
+    for first, step, inputs in _seen(steps):
+        before = first.prior if _gathered(first) else None
         if before is not None or isinstance(step.entry.command, Move):
-            settled.append(_position(step.prior if before is None else before, layout))
+            settled.append(_position(first.prior, layout))
         if isinstance(step.entry.given, Reading):
             yield View(next(number), step, True, settled, len(settled), layout=layout)
-        yield View(next(number), step, False, settled, len(settled), inputs, before, layout)
+        yield View(next(number), step, False, settled, len(settled), inputs, before, layout, first.entry.t)
 
 
-def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, int, Belief | None]]:
-    """The steps that have a view, how many it gathers, and the belief before the first. The others are not kept."""
+def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, Step, int]]:
+    """The steps that a view gathers: the first, the last and how many. Those between are not kept."""
+    first: Step | None = None
     last: Step | None = None
-    inputs, before = 0, None
+    inputs = 0
     for step in steps:
-        if _gathered(step):
-            last, inputs, before = step, inputs + 1, step.prior if before is None else before
-        if last is not None and (inputs == GATHERED or last is not step):
-            yield last, inputs, before
-            last, inputs, before = None, 0, None
-        if not _gathered(step):
-            yield step, 1, None
-    if last is not None:
-        yield last, inputs, before
+        gathered = _gathered(step)
+        if first is not None and last is not None and not gathered:
+            yield first, last, inputs
+            first = None
+        if not gathered:
+            yield step, step, 1
+            continue
+        first, last, inputs = (step, step, 1) if first is None else (first, step, inputs + 1)
+        if inputs == GATHERED:
+            yield first, last, inputs
+            first = None
+    if first is not None and last is not None:
+        yield first, last, inputs
 
 
 def _gathered(step: Step) -> bool:

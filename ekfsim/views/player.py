@@ -1,9 +1,11 @@
 """The interactive run: keys in, narrative and pictures out."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import InitVar, dataclass, field
 from typing import Protocol, TextIO
 
+from ekfsim.files.outputs import kept
+from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.summary import Summary
 from ekfsim.views.closing import conclude
@@ -24,14 +26,18 @@ class Player:
     """Steps through a run as keys are pressed. What it says goes to `out`, what it draws to `screen`."""
 
     scene: Scene
-    playback: Playback
+    steps: InitVar[Iterable[Step]]
     screen: Screen
     save: Callable[[View], str]  # saves the picture of a view and says where
     out: TextIO
     probability: float
     number: int = 0  # of the view on the screen
-    _told: int = -1  # the last view that was narrated
-    _summary: Summary = field(default_factory=Summary)
+    playback: Playback = field(init=False)
+    _summary: Summary = field(init=False)  # of the steps so far; ahead of what is shown by no more than a view
+
+    def __post_init__(self, steps: Iterable[Step]) -> None:
+        self._summary = Summary.of(self.scene)
+        self.playback = Playback(kept(steps, [self._summary.add]), self.scene.world.layout)
 
     def play(self, next_key: Callable[[], Key]) -> None:
         """From the first view until a key quits."""
@@ -86,10 +92,6 @@ class Player:
     def _tell(self, view: View) -> None:
         """The narrative of a view, and after the last one the closing summary."""
         self.out.write(narrate(view, self.scene, self.probability))
-        if view.number > self._told:
-            self._told = view.number
-            if not view.beam:
-                self._summary.add(view.step)
         if self.playback.view(view.number + 1) is None:
             self.out.write(conclude(self._summary))
 

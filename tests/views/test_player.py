@@ -9,7 +9,7 @@ from ekfsim.summary import Summary
 from ekfsim.views.closing import conclude
 from ekfsim.views.keyboard import HELP, Action
 from ekfsim.views.narrative import narrate
-from ekfsim.views.playback import Playback, views
+from ekfsim.views.playback import views
 from ekfsim.views.player import Player
 
 NEXT, BACK, QUIT, RESTART, SAVE = Action.NEXT, Action.BACK, Action.QUIT, Action.RESTART, Action.SAVE
@@ -34,7 +34,7 @@ def played(*keys, place=PLACE):
     """What was drawn, and what was said."""
     screen, out = Screen(), io.StringIO()
     waiting = iter([*keys, QUIT])
-    player = Player(place, Playback(play(place)), screen, lambda view: f"saved view {view.number}", out, 0.954)
+    player = Player(place, play(place), screen, lambda view: f"saved view {view.number}", out, 0.954)
     player.play(lambda: next(waiting))
     return screen.shown, out.getvalue()
 

@@ -1,0 +1,130 @@
+"""The narrative of a robot that is driven or was recorded, in the words of its own inputs, readings and state."""
+
+import math
+
+from ekfsim.filters.belief import Correction, Refused
+from ekfsim.geometry import Array
+from ekfsim.models.protocols import Quantity
+from ekfsim.records import Control, Entry, Reading
+from ekfsim.views.numbers import MANY, fill, instant, matrix, number, pose, quantities, quantity, state
+from ekfsim.views.playback import View
+from ekfsim.views.told_beams import doubts, expected_wall
+from ekfsim.views.uncertainty import beside_band, crowd, judged, uncertainty
+
+REFUSED = {
+    Refused.NOT: "",
+    Refused.NO_ECHO: "No echo: the reading is not used\n",
+    Refused.NO_WALL: "No wall: the reading is not used\n",
+    Refused.GUARD: "Guard: this ambiguous reading is left out\n",
+    Refused.GATE: "Gate: this reading is refused, its NIS is too large to be believed\n",
+}
+TRUTH = "True pose is (x, y, th) = (%.6g, %.6g, %.6g)\n"
+FIX = "A position was recorded that the filter is not given: (x, y) = (%.6g, %.6g)\n"
+
+
+def started(view: View, probability: float) -> str:
+    """The first belief, and in which units it is told."""
+    names = view.layout.names
+    headings = " and ".join(names[i] for i in view.layout.headings)
+    return (
+        f"The state is ({', '.join(names)}): {headings} in degrees, all else and the matrices in m, s and rad\n"
+        f"First state estimate is {state(view.belief.mean, view.layout)}\n"
+        f"First state covariance matrix is:\n{matrix(view.belief.covariance)}\n"
+    ) + _beside_truth(view, probability)
+
+
+def moved(view: View, probability: float) -> str:
+    """A motion input, or several that follow each other: the belief before the first and after the last."""
+    given, before = view.step.entry.given, view.step.prior if view.before is None else view.before
+    assert isinstance(given, Control)
+    told = quantities(given.motion.inputs, given.u)
+    return (
+        f"==>{_span(view)}: {told}\n"
+        f"State estimate before is {state(before.mean, view.layout)}\n"
+        f"New state estimate is {state(view.belief.mean, view.layout)}\n"
+        f"New state covariance matrix is:\n{matrix(view.belief.covariance)}\n"
+    ) + _beside_truth(view, probability)
+
+
+def read(view: View, guarded: bool) -> str:
+    """A reading as it came, before it is used."""
+    given = view.step.entry.given
+    assert isinstance(given, Reading)
+    nothing = all(map(math.isnan, given.z.tolist()))
+    told = "nothing came back" if nothing else quantities(given.sensor.outputs, given.z, directions=True)
+    return f"==>{_at(view.step.entry)}{given.name} was read: {told}\n{doubts(view.step, guarded)}"
+
+
+def revised(view: View, probability: float) -> str:
+    """What was expected in place of the reading, and what the filter made of the difference."""
+    given, c = view.step.entry.given, view.step.correction
+    assert isinstance(given, Reading)
+    assert c is not None
+    x, P = view.belief
+    return (
+        _expected(view, given.sensor.outputs, c)
+        + _innovation(given.sensor.outputs, c)
+        + REFUSED[Refused(int(c.refused))]
+        + (_gain(view, given.sensor.outputs, c.K) if c.refused == Refused.NOT else "")
+        + f"Revised state estimate: {state(x, view.layout)}\n"
+        + f"Revised covariance matrix is:\n{matrix(P)}"
+        + _beside_truth(view, probability)
+    )
+
+
+def _expected(view: View, outputs: tuple[Quantity, ...], c: Correction) -> str:
+    if all(map(math.isnan, c.predicted.tolist())):
+        return "No reading was predicted: nothing of the filter's map is in view there\n"
+    return (
+        f"The predicted reading was {quantities(outputs, c.predicted, directions=True)}\n{expected_wall(view.step)}"
+        f"The derivatives are (rows {_names(outputs)}; columns {', '.join(view.layout.names)}):\n{matrix(c.H)}"
+    )
+
+
+def _innovation(outputs: tuple[Quantity, ...], c: Correction) -> str:
+    if any(map(math.isnan, c.innovation.tolist())):
+        return ""
+    nis, innovation = float(c.nis), f"The innovation is {quantities(outputs, c.innovation)}"
+    if math.isnan(nis):
+        return f"{innovation}; nothing is uncertain, so NIS is undefined and the gain is 0\n"
+    dof = len(outputs)
+    beside = beside_band("NIS", nis, dof)
+    if dof == 1:
+        deviation = quantity(Quantity("deviation", outputs[0].unit), math.sqrt(float(c.S[0, 0])))
+        return f"{innovation}, its standard {deviation.replace(' =', '')}; NIS is {number(nis)}\n{beside}"
+    return f"{innovation}; its covariance is:\n{matrix(c.S)}NIS is {number(nis)} ({dof} degrees of freedom)\n{beside}"
+
+
+def _gain(view: View, outputs: tuple[Quantity, ...], K: Array) -> str:
+    """The gain of a filter that has one; particles are weighed in its place."""
+    told = f"The Kalman gain is (rows {', '.join(view.layout.names)}; columns {_names(outputs)}):\n{matrix(K)}"
+    return crowd(view.step.posterior) or told
+
+
+def _beside_truth(view: View, probability: float) -> str:
+    """The truth where it is known, how uncertain the pose is, and how the two agree."""
+    entry = view.step.entry
+    return (
+        ("" if entry.truth is None else fill(TRUTH, *pose(entry.truth.tolist())))
+        + ("" if entry.fix is None else fill(FIX, *entry.fix.tolist()))
+        + uncertainty(view.pose, probability)
+        + judged(view.step, view.pose, probability)
+    )
+
+
+def _span(view: View) -> str:
+    """When the inputs of a view came, and how many there were."""
+    if view.inputs == 1:
+        return f"{_at(view.step.entry)}the motion input was"
+    if view.since is None or view.step.entry.t is None:
+        return f"{view.inputs} motion inputs; the last"
+    span = f"From t = {instant(view.since)} s to {instant(view.step.entry.t)} s"
+    return f"{span}: {view.inputs} motion inputs; the last"
+
+
+def _at(entry: Entry) -> str:
+    return "" if entry.t is None else f"At t = {instant(entry.t)} s "
+
+
+def _names(outputs: tuple[Quantity, ...]) -> str:
+    return ", ".join([*(q.name for q in outputs[:MANY]), *(["…"] if len(outputs) > MANY else [])])

@@ -1,0 +1,68 @@
+"""What is said of a belief: how uncertain it is, and how it stands beside the truth."""
+
+import math
+
+import numpy as np
+
+from ekfsim.consistency import BAND, inside_cone, inside_ellipse
+from ekfsim.filters.belief import Belief, Gaussian, Particles
+from ekfsim.filters.chi_square import band
+from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse
+from ekfsim.records import Nees, Step
+from ekfsim.views.numbers import fill, number
+
+ELLIPSE = """\
+Uncertainty ellipse is:
+  minor radius is %.6g
+  major radius is %.6g
+  orientation is %.6g degrees
+  {:.4g}*sigma_theta is %.6g degrees
+"""
+
+
+def uncertainty(pose: Gaussian, probability: float) -> str:
+    """The ellipse of the position and the cone of the heading."""
+    drawn, factor = ellipse(pose.covariance, probability), cone_factor(probability)
+    halfwidth = cone_halfwidth(float(pose.covariance[2, 2]), probability)
+    return fill(
+        ELLIPSE.format(factor),
+        float(drawn.minor),
+        float(drawn.major),
+        math.degrees(drawn.orientation),
+        math.degrees(halfwidth),
+    )
+
+
+def judged(step: Step, pose: Gaussian, probability: float) -> str:
+    """The belief of the pose after a step held against the truth, where the truth is known."""
+    if step.entry.truth is None or step.nees is None:
+        return ""
+    ellipse_side = "inside" if inside_ellipse(pose, step.entry.truth, probability) else "outside"
+    cone_side = "inside" if inside_cone(pose, step.entry.truth, probability) else "outside"
+    told = f"The true position lies {ellipse_side} the ellipse, the true heading {cone_side} the cone; "
+    return told + _nees(step.nees)
+
+
+def _nees(measured: Nees) -> str:
+    if measured.impossible:
+        return "the belief is impossible: the error has a part where the covariance claims certainty\n"
+    value, dof = float(measured.value), int(measured.dof)
+    told = f"NEES is {number(value)} ({dof} {'degree' if dof == 1 else 'degrees'} of freedom)\n"
+    return told + (beside_band("NEES", value, dof) if dof else "")
+
+
+def beside_band(name: str, value: float, dof: int) -> str:
+    """A line of its own for a value outside its two-sided 99 % band, on either side."""
+    low, high = band(BAND, dof)
+    if low <= value <= high:
+        return ""
+    side = "above" if value > high else "below"
+    return f"{name} lies {side} its two-sided {100 * BAND:.0f} % band, {number(low)} to {number(high)}\n"
+
+
+def crowd(belief: Belief) -> str:
+    """How many of the particles count, where the belief is a crowd: 1/Σ wᵢ² alike ones say as much."""
+    if not isinstance(belief, Particles):
+        return ""
+    alike = 1 / float(np.sum(belief.weights**2))
+    return f"The particles were weighed by the reading; the {len(belief.weights)} say as much as {alike:.0f} alike\n"
