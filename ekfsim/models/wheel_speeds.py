@@ -1,11 +1,12 @@
 """The speeds of two wheels, and a state that holds the robot's speed (document 003)."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap
+from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.models.protocols import Quantity
 
 INPUTS = Quantity("left", "m/s"), Quantity("right", "m/s"), Quantity("dt", "s")
@@ -81,7 +82,34 @@ class WheelSpeeds:
 
     def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, float]:
         """f, F, G, M and Q at once."""
+        if x.ndim == u.ndim == 1:
+            return self._linearize_one(*x.tolist(), *u.tolist())
         return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), 0.0
+
+    def _linearize_one(
+        self, _: float, φ: float, x: float, y: float, left: float, right: float, dt: float
+    ) -> tuple[Array, Array, Array, Array, float]:
+        """The same for one robot in plain floats: several times as fast, held equal to the above by a test."""
+        V, R, per_second = (left + right) / 2, self.half_track, 1 / dt if dt > 0 else 0.0
+        rate, turned = (right - left) / (2 * R), dt / (2 * R)
+        φ += rate * dt
+        c, s = math.cos(φ), math.sin(φ)
+        dx, dy = V * c * dt, V * s * dt
+        q_V, q_φ = self.speed_density**2 * per_second, (R * self.turn_density) ** 2 * per_second
+        return (
+            np.array([V, wrap_one(φ), x + dx, y + dy]),
+            np.array([[0.0] * 4, [0.0, 1.0, 0.0, 0.0], [0.0, -dy, 1.0, 0.0], [0.0, dx, 0.0, 1.0]]),
+            np.array(
+                [
+                    [0.5, 0.5, 0.0],
+                    [-turned, turned, rate],
+                    [c * dt / 2 + dy * turned, c * dt / 2 - dy * turned, V * c - dy * rate],
+                    [s * dt / 2 - dx * turned, s * dt / 2 + dx * turned, V * s + dx * rate],
+                ]
+            ),
+            np.array([[q_V + q_φ, q_V - q_φ, 0.0], [q_V - q_φ, q_V + q_φ, 0.0], [0.0] * 3]),
+            0.0,
+        )
 
     def _motion(self, u: Array) -> tuple[Array, Array, Array]:
         """V = (v_L + v_R)/2      φ̇ = (v_R − v_L)/(2R)      dt"""
@@ -95,7 +123,8 @@ class WheelSpeedsAsWritten:
 
     What is wrong with it: the yaw rate is made of the mean speed, V R, where (v_R − v_L)/(2R) belongs; the position
     moves by V per step, where V dt belongs; its F is not the derivative of its f, which takes V from the wheels; Q = I
-    does not know how long a step lasts.
+    does not know how long a step lasts. It can only follow the fixes, and so its authors correct at every row of the
+    wheels, by an interpolated fix; their innovation is taken at the state before the prediction, as by `Frozen`.
     """
 
     gauge: float = 0.27  # m, R
