@@ -43,3 +43,8 @@ class Scene:
     world_source: str = "world"  # how outputs name the two files they were made from
     commands_source: str = "commands"
     log_source: str | None = None  # how outputs name the log, where the run was recorded
+
+    @property
+    def commanded(self) -> bool:
+        """Whether the robot obeys commands one by one and knows no clock, as in the classroom."""
+        return self.drive is None and self.log is None

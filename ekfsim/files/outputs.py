@@ -57,14 +57,18 @@ class Outputs:
         with ExitStack() as stack:
             file_of = {path: stack.enter_context(whole_text(path, self.force)) for path in paths}
             sinks: list[Sink] = []
+            tum: Tum | None = None
             if self.trace:
                 sinks.append(Trace(file_of[self.trace], scene, confidence))
             if self.csv:
                 sinks.append(Table(file_of[self.csv], scene, confidence))
             if self.tum:
                 truth, estimate = self._tum()
-                sinks.append(Tum(file_of[truth], file_of[estimate], scene))
+                tum = Tum(file_of[truth], file_of[estimate], scene)
+                sinks.append(tum)
             yield sinks
+            if tum is not None:
+                tum.finish()
             if self.summary:
                 json.dump({**summary.table(), **provenance(scene)}, file_of[self.summary], indent=2, allow_nan=False)
                 file_of[self.summary].write("\n")
@@ -84,8 +88,9 @@ class Outputs:
 
 def _refuse_the_scene_itself(path: Path, scene: Scene) -> None:
     """Raise UsageError where a result would replace the file that it is made from."""
-    for source in map(Path, (scene.commands_source, scene.world_source)):
-        if path.exists() and source.exists() and path.samefile(source):
+    sources = (scene.commands_source, scene.world_source, scene.log_source)
+    for source in (Path(name) for name in sources if name is not None):
+        if path.exists() and source.exists() and any(map(source.samefile, (path, path.parent))):
             raise UsageError(f"{path}: is what the run is made from; choose another name")
 
 

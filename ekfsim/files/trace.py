@@ -6,7 +6,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from ekfsim.filters.belief import Correction, Gaussian, Refused
+from ekfsim.filters.belief import Belief, Correction, Refused
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import ellipse
 from ekfsim.models.laser import Laser, Sighting
@@ -15,7 +15,7 @@ from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense, Step
 from ekfsim.scene import Scene
 
 FORMAT = 1
-STATE = ("x", "y", "theta")
+ODOMETRY = "odometry"  # what a line calls the sensor of its motion input
 
 
 class Trace:
@@ -32,17 +32,21 @@ class Trace:
 
 def line_of(step: Step, scene: Scene, confidence: float) -> dict[str, Any]:
     """The trace's line of one step."""
-    match step.entry.command:
-        case None:
-            return _start(step, scene, confidence)
-        case Move() as move:
+    match step.entry.command, step.entry.given:
+        case Move() as move, _:
             return _move(step, move, scene, confidence)
-        case Sense(angle):
+        case Sense(angle), _:
             return _sense(step, angle, confidence)
-        case Kidnap(x, y, theta):
+        case Kidnap(x, y, theta), _:
             return _told("kidnap", {"x": x, "y": y, "theta": theta}, step)
-        case Say(text):
+        case Say(text), _:
             return _told("say", {"text": text}, step)
+        case _, Control() as control:
+            return _predict(step, control, scene)
+        case _, Reading() as reading:
+            return _update(step, reading, scene)
+        case _:
+            return _start(step, scene, confidence)
 
 
 def _start(step: Step, scene: Scene, confidence: float) -> dict[str, Any]:
@@ -51,9 +55,58 @@ def _start(step: Step, scene: Scene, confidence: float) -> dict[str, Any]:
         "format": FORMAT,
         **provenance(scene),
         "confidence": confidence,
-        "state": list(STATE),
-        **_gaussian(step.posterior),
+        **({} if step.entry.t is None else {"t": step.entry.t}),
+        "state": list(scene.world.layout.names),
+        **_belief(step.posterior),
         "truth": _numbers(step.entry.truth),
+    }
+
+
+def _predict(step: Step, control: Control, scene: Scene) -> dict[str, Any]:
+    """A motion input of a driven or recorded robot: a line like that of a reading, of which none was predicted."""
+    assert step.prediction is not None
+    return {
+        **_happened("predict", step, ODOMETRY, control.u),
+        **dict.fromkeys(("predicted", "innovation", "S", "H", "gain", "nis")),
+        "updated": True,
+        "refused": None,
+        "F": _finite(step.prediction.F),
+        "G": _finite(step.prediction.G),
+        **_believed(step, scene),
+    }
+
+
+def _update(step: Step, reading: Reading, scene: Scene) -> dict[str, Any]:
+    c = step.correction
+    assert c is not None
+    predicted = not np.isnan(c.predicted).all()
+    return {
+        **_happened("update", step, reading.name, reading.z),
+        "predicted": _finite(c.predicted),
+        "innovation": _finite(c.innovation),
+        "S": _finite(c.S) if predicted else None,
+        "H": _finite(c.H) if predicted else None,
+        "gain": _finite(c.K) if predicted else None,
+        "nis": _number(c.nis),
+        "updated": bool(c.refused == Refused.NOT),
+        "refused": Refused(int(c.refused)).word,
+        **_believed(step, scene),
+    }
+
+
+def _happened(kind: str, step: Step, sensor: str, z: Array) -> dict[str, Any]:
+    return {"type": kind, "index": step.entry.index, "t": step.entry.t, "sensor": sensor, "z": _finite(z)}
+
+
+def _believed(step: Step, scene: Scene) -> dict[str, Any]:
+    """The beliefs of the whole state; NEES is that of its pose, as the truth is a pose."""
+    return {
+        "state": list(scene.world.layout.names),
+        "prior": _belief(step.prior),
+        "posterior": _belief(step.posterior),
+        "truth": _numbers(step.entry.truth),
+        **({} if step.entry.fix is None else {"fix": _finite(step.entry.fix)}),
+        **_nees(step),
     }
 
 
@@ -70,8 +123,8 @@ def _move(step: Step, move: Move, scene: Scene, confidence: float) -> dict[str, 
         "odometry": {"distance": distance, "angle": angle},
         "F": _numbers(step.prediction.F),
         "G": _numbers(step.prediction.G),
-        "prior": _gaussian(step.prior),
-        "posterior": _gaussian(step.posterior),
+        "prior": _belief(step.prior),
+        "posterior": _belief(step.posterior),
         "truth": _numbers(step.entry.truth),
         "bump": scene.world.map.walls.name(bump)[0] if bump >= 0 else None,
         **_judged(step, confidence),
@@ -88,8 +141,8 @@ def _sense(step: Step, angle: float, confidence: float) -> dict[str, Any]:
         "range": _number(step.entry.given.z[0]),
         **_corrected(step.correction),
         **_sighted(step.entry.given.sensor, step.sighting, not np.isnan(step.correction.predicted[0])),
-        "prior": _gaussian(step.prior),
-        "posterior": _gaussian(step.posterior),
+        "prior": _belief(step.prior),
+        "posterior": _belief(step.posterior),
         "truth": _numbers(step.entry.truth),
         **_judged(step, confidence),
     }
@@ -124,13 +177,20 @@ def _sighted(sensor: Any, sighting: Sighting | None, predicted: bool) -> dict[st
 
 
 def _judged(step: Step, confidence: float) -> dict[str, Any]:
-    drawn, measured = ellipse(step.posterior.covariance, confidence), step.nees
+    drawn = ellipse(step.posterior.covariance, confidence)
     return {
         "ellipse": {
             "major": float(drawn.major),
             "minor": float(drawn.minor),
             "orientation": float(drawn.orientation),
         },
+        **_nees(step),
+    }
+
+
+def _nees(step: Step) -> dict[str, Any]:
+    measured = step.nees
+    return {
         "nees": None if measured is None else _number(measured.value),
         "nees_dof": None if measured is None else int(measured.dof),
         "impossible": None if measured is None else bool(measured.impossible),
@@ -141,8 +201,8 @@ def _told(kind: str, command: dict[str, Any], step: Step) -> dict[str, Any]:
     return {"type": kind, "index": step.entry.index, "command": command, "truth": _numbers(step.entry.truth)}
 
 
-def _gaussian(belief: Gaussian) -> dict[str, Any]:
-    return {"mean": belief.mean.tolist(), "covariance": belief.covariance.tolist()}
+def _belief(belief: Belief) -> dict[str, Any]:
+    return {"mean": _finite(belief.mean), "covariance": _finite(belief.covariance)}
 
 
 def _number(value: Any) -> float | None:
@@ -152,3 +212,10 @@ def _number(value: Any) -> float | None:
 
 def _numbers(values: Array | None) -> Any:
     return None if values is None else values.tolist()
+
+
+def _finite(values: Array) -> Any:
+    """Nested lists, None in the place of what is no number."""
+    if np.isfinite(values).all():
+        return values.tolist()
+    return np.array([_number(value) for value in values.flat], object).reshape(values.shape).tolist()

@@ -9,6 +9,7 @@ from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense, Step
 from ekfsim.scene import Scene
 from ekfsim.views import driven_narrative
+from ekfsim.views.driven_narrative import REFUSED
 from ekfsim.views.numbers import fill, number, pose, turn
 from ekfsim.views.playback import View
 from ekfsim.views.told_beams import doubts, expected_wall
@@ -36,7 +37,6 @@ REVISED = f"""\
 Revised state estimate: (x, y, theta) = {POSE}
 Revised covariance matrix is:
 {MATRIX}"""
-REFUSED = driven_narrative.REFUSED
 
 
 def narrate(view: View, scene: Scene, probability: float = 0.954) -> str:
@@ -79,7 +79,7 @@ def _opening(scene: Scene) -> str:
 
 
 def _start(view: View, scene: Scene, probability: float) -> str:
-    if scene.world.robot is not None:
+    if not scene.commanded:
         return driven_narrative.started(view, probability)
     x, P = view.belief
     return (
