@@ -16,6 +16,7 @@ from ekfsim.views.playback import View
 from ekfsim.views.png import Pixels
 
 BEAM, OTHER, LAST = 0.8, 1.2, 3.2  # s that a view stays
+DRIVEN = 0.4  # the same for a driven or recorded robot, whose run has thousands
 PATTERN = "frame-*.png"
 DIGITS, UNKNOWN_DIGITS = 4, 6  # in the pictures' names: at least, and where the length of a run is not known
 
@@ -88,7 +89,13 @@ def _number(folder: Path, frame: Frame, views: Iterable[View], scene: Scene) -> 
 def _timed(frame: Frame, views: Iterable[View]) -> Iterator[tuple[Pixels, float]]:
     """The pixels of each view and how many s it stays."""
     for view, is_last in _lasting(views):
-        yield frame.rgb(view), LAST if is_last else BEAM if view.beam else OTHER
+        yield frame.rgb(view), LAST if is_last else _tempo(view)
+
+
+def _tempo(view: View) -> float:
+    if view.step.entry.t is not None:
+        return DRIVEN
+    return BEAM if view.beam else OTHER
 
 
 def _reported(views: Iterable[View], progress: Progress) -> Iterator[View]:

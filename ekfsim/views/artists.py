@@ -9,12 +9,12 @@ from itertools import compress
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection, PathCollection, PolyCollection
 from matplotlib.colors import to_rgba
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
-from ekfsim.filters.belief import Refused
+from ekfsim.filters.belief import Particles, Refused
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import conditioned, cone_halfwidth, outline
 from ekfsim.views.beams import Beam
@@ -24,11 +24,14 @@ from ekfsim.world import World
 
 BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = "#0072B2", "#56B4E9", "#009E73", "#D55E00", "#CC79A7", "#E69F00"
 OUTSIDE, FLOOR, OBSTACLE, EDGE, TRUTH = "#E4E4E4", "white", "#C8C8C8", "#555555", "black"
+MEANT = "#777777"
 
 CONE = 5.0  # body radii from the estimate to the end of its cone
 NOSE = 1.7  # body radii from the reference point to the tip of the robot
 TRUE_HEADING = 2.6  # body radii from the true position to the end of its segment
+GRAIN, HEAVIEST = 5.0, 8.0  # points², of a particle of mean weight; and how many times as large one may be
 IN_AIR, IN_WALL = "o", "X"  # markers at the end of a beam
+NOWHERE = np.empty((0, 2))
 DOTS = 500  # corners of a path up to which each has its dot; more would be a ribbon
 
 
@@ -64,7 +67,13 @@ class WorldArtists:
             label="filter's map",
         )
         axes.add_collection(self.told, autolim=False)
-        self._shown = (bool(floor.obstacles), bool(believed), bool(world.landmarks))
+        self.meant = Line2D(
+            *(NOWHERE if world.expected_path is None else closed(world.expected_path)).T,
+            color=MEANT, lw=1.2, ls=(0, (5, 3)), zorder=1.25, gid="expected-path", label="way that was meant",
+        )  # fmt: skip
+        axes.add_line(self.meant)
+        meant = world.expected_path is not None
+        self._shown = (bool(floor.obstacles), bool(believed), bool(world.landmarks), meant)
         marks = np.array([[mark.x, mark.y] for mark in world.landmarks]).reshape(-1, 2)
         self.landmarks = Line2D(
             *marks.T, linestyle="none", marker="^", color=EDGE, ms=6, zorder=1.3, gid="landmarks", label="landmark"
@@ -73,14 +82,17 @@ class WorldArtists:
 
     def handles(self) -> Iterator[Artist]:
         """What the legend shows of it."""
-        yield from compress((self.obstacles, self.told, self.landmarks), self._shown)
+        yield from compress((self.obstacles, self.told, self.landmarks, self.meant), self._shown)
 
 
 class BeliefArtists:
     """The estimate with its ellipse, cone and path, and the truth."""
 
-    def __init__(self, axes: Axes, probability: float, conditional: bool, body: bool = True) -> None:
-        self._probability = probability
+    def __init__(
+        self, axes: Axes, probability: float, conditional: bool, body: bool = True, crowd: bool = False
+    ) -> None:
+        """body : whether to draw the robot; crowd : whether the belief may be particles, for the legend"""
+        self._probability, self._crowd = probability, crowd
         self.cone = _area(axes, SKY, 0.35, "--", 1.0, 2.0, "cone", cone_label(probability))
         self.ellipse = _area(axes, GREEN, 0.18, "-", 1.6, 3.1, "ellipse", ellipse_label(probability))
         self.conditioned: dict[int, Line2D] = {}
@@ -89,6 +101,9 @@ class BeliefArtists:
                 label = conditioned_label(probability, sign)
                 line = Line2D([], [], color=color, lw=1.8, ls=(0, dashes), zorder=2.4, gid=gid, label=label)
                 self.conditioned[sign] = axes.add_line(line)
+        self.particles = axes.scatter(
+            [], [], s=[GRAIN], c=PURPLE, alpha=0.45, linewidths=0, zorder=2.2, gid="particles", label="particles"
+        )
         self.path = axes.add_line(
             Line2D([], [], color=BLUE, lw=1.2, marker=".", ms=5, zorder=3, gid="path", label="path of the estimates")
         )
@@ -104,12 +119,16 @@ class BeliefArtists:
 
     def show(self, view: View, unit: float) -> None:
         """Move everything to a view. unit : m, what the robot's body measures in this Axes"""
-        x, P = view.belief
+        x, P = view.pose
         half = cone_halfwidth(float(P[2, 2]), self._probability)
         self.cone.set_xy(sector(x, half, CONE * unit))
         self.ellipse.set_xy(outline(x, P[:2, :2], self._probability))
         for sign, line in self.conditioned.items():
             line.set_data(*outline(*conditioned(x, P, sign * half), self._probability).T)
+        if isinstance(view.belief, Particles):
+            scatter(self.particles, view.layout.pose(view.belief.states), view.belief.weights)
+        else:
+            self.particles.set_offsets(NOWHERE)
         path = view.path()
         self.path.set_data(*path.T)
         self.path.set_marker("." if len(path) <= DOTS else "")
@@ -128,6 +147,8 @@ class BeliefArtists:
         yield self.ellipse
         yield self.cone
         yield from self.conditioned.values()
+        if self._crowd:
+            yield self.particles
         yield self.heading, self.truth
 
 
@@ -181,6 +202,14 @@ def mark_end(line: Line2D, solid: bool, refused: Refused = Refused.NOT) -> Line2
     line.set_marker(IN_WALL if solid else IN_AIR)
     line.set_markerfacecolor(VERMILLION if solid and not refused else "white")
     return line
+
+
+def scatter(crowd: PathCollection, poses: Array, weights: Array) -> None:
+    """Draw particles as dots whose areas are their weights. poses : (p, 3), weights : (p,)"""
+    finite = np.isfinite(poses[:, :2]).all(axis=-1)
+    areas = GRAIN * np.minimum(weights * len(weights), HEAVIEST)
+    crowd.set_offsets(poses[finite, :2])
+    crowd.set_sizes(areas[finite])
 
 
 def robot(x: Array, size: float) -> Array:

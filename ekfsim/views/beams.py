@@ -1,4 +1,4 @@
-"""What can be said of a laser's beam: where it ends in the filter's map, and where else it might have ended."""
+"""What can be said of a beam to a wall: where it ends in the filter's map, and where else it might have ended."""
 
 import math
 from collections.abc import Iterator
@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from ekfsim.filters.belief import Refused
+from ekfsim.filters.belief import Refused, posed
 from ekfsim.geometry import Array
-from ekfsim.models.laser import Laser, Sighting
+from ekfsim.models.laser import Sighting
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.lettering import shortened
+from ekfsim.views.sights import BeamSensor, beam_length
 from ekfsim.world import BOUNDARY, Map
 
 TOUCHING = 1e-9  # of the range: what rounding makes of an end on the wall
@@ -34,16 +35,19 @@ class Beam:
 
 
 def beam(step: Step, scene: Scene) -> Beam | None:
-    """The beam of a step, None where it is not a laser's."""
+    """The beam of a step, None where it is of no sensor that has one."""
     given, correction, sighting = step.entry.given, step.correction, step.sighting
-    if not isinstance(given, Reading) or not isinstance(given.sensor, Laser) or correction is None or sighting is None:
+    if not isinstance(given, Reading) or correction is None or sighting is None:
         return None
-    laser, pose = given.sensor, step.prior.mean + np.array([0.0, 0.0, given.sensor.bearing])
-    measured, predicted, wall = float(given.z[0]), float(correction.predicted[0]), int(sighting.wall)
+    sensor = given.sensor
+    if not isinstance(sensor, BeamSensor):
+        return None
+    pose, wall = posed(step.prior, scene.world.layout).mean + np.array([0.0, 0.0, sensor.bearing]), int(sighting.wall)
+    measured, predicted = beam_length(sensor, float(given.z[0])), beam_length(sensor, float(correction.predicted[0]))
     solid, ending = False, ""
     if not math.isnan(measured):
         end = pose[:2] + measured * np.array([math.cos(pose[2]), math.sin(pose[2])])
-        name = laser.walls.name(wall)[0] if wall >= 0 else ""
+        name = sensor.walls.name(wall)[0] if wall >= 0 else ""
         solid, ending = landing(scene.world.told.map, end, measured - predicted, name, TOUCHING * measured)
     return Beam(
         pose,
@@ -52,7 +56,7 @@ def beam(step: Step, scene: Scene) -> Beam | None:
         Refused(int(correction.refused)),
         bool(sighting.ambiguous),
         float(sighting.incidence) if sighting.grazing else None,
-        tuple(astray(laser, sighting)) if sighting.ambiguous else (),
+        tuple(astray(sensor, sighting)) if sighting.ambiguous else (),
         solid,
         ending,
     )
@@ -77,7 +81,7 @@ def landing(floor: Map, end: Array, gap: float, wall: str, tolerance: float) -> 
     return False, "in the air" + (f", {length(-gap)} short of {called(wall)}" if gap < 0 else "")
 
 
-def astray(laser: Laser, sighting: Sighting) -> Iterator[tuple[Array, float]]:
+def astray(laser: BeamSensor, sighting: Sighting) -> Iterator[tuple[Array, float]]:
     """The probe beams, as pose and range, that meet another wall line than the estimate's beam does, or none (nan)."""
     beams = sighting.probes + np.array([0.0, 0.0, laser.bearing])
     hit = laser.walls.cast(beams[:, :2], beams[:, 2])

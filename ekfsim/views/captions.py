@@ -4,11 +4,13 @@ import math
 
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse, radius_factor
+from ekfsim.models.infrared import Infrared
 from ekfsim.records import Entry, Kidnap, Move, Reading, Say, Sense, Step
 from ekfsim.scene import Scene
 from ekfsim.views.beams import Beam, called, length
 from ekfsim.views.lettering import shortened
 from ekfsim.views.playback import View
+from ekfsim.views.sights import Sight, instants, told
 
 REFUSALS = {
     Refused.NO_ECHO: "no echo: nothing to learn",
@@ -19,8 +21,13 @@ REFUSALS = {
 ARROWS = "→↗↑↖←↙↓↘"
 
 
-def title(entry: Entry, total: int) -> str:
-    """The command and its number: "3 of 12: move 1.75 m, turn 90°"."""
+def title(view: View, total: int) -> str:
+    """The command and its number, or the instant and what was measured: "3 of 12: move 1.75 m, turn 90°"."""
+    entry, inputs = view.step.entry, view.inputs
+    if entry.t is not None:
+        return f"t = {instants(view.since, entry.t)} s: {_measured(entry, inputs)}"
+    if entry.command is None and entry.index > 0:
+        return f"{entry.index}: {_measured(entry, inputs)}"
     number = f"{entry.index} of {total}" if total else str(entry.index)
     return f"{number}: {_asked(entry)}"
 
@@ -35,21 +42,33 @@ def _asked(entry: Entry) -> str:
             return f"kidnap to ({signed(x)}, {signed(y)}), heading {degrees(theta)}"
         case Say():
             return "say"
+    return "the start"
+
+
+def _measured(entry: Entry, inputs: int) -> str:
     if entry.index == 0:
         return "the start"
-    return "reading" if isinstance(entry.given, Reading) else "motion"
+    if isinstance(entry.given, Reading):
+        return shortened(entry.given.name, 40)
+    return "a motion input" if inputs == 1 else f"{inputs} motion inputs"
 
 
-def notes(view: View, scene: Scene, beam: Beam | None) -> list[str]:
+def notes(view: View, scene: Scene, read: Beam | Sight | None) -> list[str]:
     """What is to be seen in this view, a paragraph each."""
-    step = view.step
+    step, given = view.step, view.step.entry.given
     match step.entry.command:
         case Say(text):
             return [text]
         case Kidnap():
             return ["the robot was carried away; the filter was not told"]
     if view.beam:
-        return [] if beam is None else [*_ranges(beam), *_warnings(beam)]
+        match read:
+            case Beam():
+                intensity = [told_of(step)] if isinstance(given, Reading) and isinstance(given.sensor, Infrared) else []
+                return [*intensity, *_ranges(read), *_warnings(read)]
+            case Sight():
+                return [told_of(step), *([] if not read.refused else [REFUSALS[read.refused]])]
+        return []
     told = []
     if step.entry.bump is not None and (wall := int(step.entry.bump)) >= 0:
         told.append(f"bumped into {called(scene.world.map.walls.name(wall)[0])}")
@@ -77,9 +96,18 @@ def _warnings(beam: Beam) -> list[str]:
     return ["; ".join(told)] if told else []
 
 
+def told_of(step: Step) -> str:
+    """What was measured and what was expected: "measured azimuth 12.3°; expected azimuth 12.8°"."""
+    reading, correction = step.entry.given, step.correction
+    assert isinstance(reading, Reading)
+    assert correction is not None
+    outputs = reading.sensor.outputs
+    return f"measured {told(reading.z, outputs)}; expected {told(correction.predicted, outputs)}"
+
+
 def spread(view: View, probability: float) -> str:
     """How large ellipse and cone are, in numbers."""
-    P = view.belief.covariance
+    P = view.pose.covariance
     shape = ellipse(P, probability)
     half = math.degrees(cone_halfwidth(float(P[2, 2]), probability))
     return f"radii {length(float(shape.major))}, {length(float(shape.minor))}; heading ± {half:.3g}°"
@@ -87,7 +115,7 @@ def spread(view: View, probability: float) -> str:
 
 def too_large(view: View, probability: float) -> str:
     """What stands for an ellipse that the picture cannot hold."""
-    shape = ellipse(view.belief.covariance, probability)
+    shape = ellipse(view.pose.covariance, probability)
     radii = f"{length(float(shape.major))} and {length(float(shape.minor))}"
     return f"the {percent(probability)} ellipse is larger than the picture: radii {radii}"
 
@@ -95,16 +123,20 @@ def too_large(view: View, probability: float) -> str:
 def away(step: Step, view: View) -> str:
     """Where the truth is, seen from the estimate: "truth 1.3 m away ↗"."""
     assert step.entry.truth is not None
-    east, north = step.entry.truth[:2] - view.belief.mean[:2]
+    east, north = step.entry.truth[:2] - view.pose.mean[:2]
     arrow = ARROWS[round(math.atan2(north, east) / (math.pi / 4)) % 8]
     return f"truth {length(math.hypot(east, north))} away {arrow}"
 
 
 def source(scene: Scene) -> str:
-    """What made the picture: "classroom — seed 7, run 0, ekf"."""
+    """What made the picture: "classroom — seed 7, run 0, ekf". A log has a seed only where particles use it."""
     gate = f", gate {percent(scene.gate)}" if scene.gate is not None else ""
     guard = ", guard skips" if scene.guard == "skip" else ""
-    return f"{shortened(scene.world.name, 30)} — seed {scene.seed}, run {scene.run}, {scene.filter}{gate}{guard}"
+    reading = f", as {scene.reading}" if scene.reading != "corrected" else ""
+    drawn = f"seed {scene.seed}, run {scene.run}" if scene.log is None or scene.filter == "pf" else ""
+    log = "recorded" if scene.log is not None else ""
+    origin = ", ".join(filter(None, (log, drawn, scene.filter)))
+    return f"{shortened(scene.world.name, 30)} — {origin}{gate}{guard}{reading}"
 
 
 def ellipse_label(probability: float) -> str:

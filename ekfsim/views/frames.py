@@ -19,14 +19,13 @@ from ekfsim.geometry.ellipse import outline
 from ekfsim.records import Step, expanded_length
 from ekfsim.scene import Scene
 from ekfsim.views import limits as limits_of_run
-from ekfsim.views.beams import beam
 from ekfsim.views.captions import notes, source, spread, title, too_large
-from ekfsim.views.labels import label_obstacles
+from ekfsim.views.labels import label_landmarks, label_obstacles
 from ekfsim.views.lettering import drawable, families, wrapped
 from ekfsim.views.limits import Limits, including
 from ekfsim.views.look import STANDARD, Look
 from ekfsim.views.outlined import OutlinedText
-from ekfsim.views.panels import CloseUp, Main
+from ekfsim.views.panels import CloseUp, Main, reading
 from ekfsim.views.playback import View
 from ekfsim.views.png import Pixels, encode
 
@@ -43,11 +42,11 @@ def draw(view: View | Step, scene: Scene, ax: Axes, look: Look = STANDARD, limit
     artists: `picture = draw(view, scene, ax)`, then `picture.show(other, None)`.
     """
     if isinstance(view, Step):
-        view = View(0, view, False, [], 0)
+        view = View(0, view, False, [], 0, layout=scene.world.layout)
     main = Main(
         ax, scene, limits or limits_of_run.of(scene, [view.step], look.probability), look.probability, look.conditional
     )
-    main.show(view, beam(view.step, scene) if view.beam else None)
+    main.show(view, reading(view, scene))
     handles, words = _legend(main.handles())
     ax.legend(handles, words, fontsize=8, handler_map={tuple: HandlerTuple(ndivide=1)})
     return main
@@ -76,10 +75,12 @@ class Picture:
         self.names: list[Text] = []
 
     def label(self) -> None:
-        """Write the obstacles' names where the present limits leave room for them."""
+        """Write the obstacles' names and the landmarks' numbers where the present limits leave room for them."""
         for name in self.names:
             name.remove()
-        self.names = label_obstacles(self.main.axes, self._scene.world.map)
+        world, axes = self._scene.world, self.main.axes
+        names = label_obstacles(axes, world.map)
+        self.names = [*names, *label_landmarks(axes, world.landmarks, names)]
 
     def show(self, view: View) -> bool:
         """Move everything to a view; whether the limits had to grow for it."""
@@ -87,14 +88,14 @@ class Picture:
         grown = needed != self.main.limits
         if grown:
             self.main.limit(needed)
-        ray = beam(view.step, self._scene) if view.beam else None
-        self.main.show(view, ray)
-        self.close.show(view, ray, self.main.limits)
-        told = notes(view, self._scene, ray)
-        x, P = view.belief
+        read = reading(view, self._scene)
+        self.main.show(view, read)
+        self.close.show(view, read, self.main.limits)
+        told = notes(view, self._scene, read)
+        x, P = view.pose
         if not self.main.limits.hold(outline(x, P[:2, :2], self._probability)):
             told = [*told, too_large(view, self._probability)]
-        self.title.set_text(title(view.step.entry, self._total))
+        self.title.set_text(title(view, self._total))
         self.notes.set_text("\n".join(wrapped(told, COLUMNS, LINES)))
         self.spread.set_text(spread(view, self._probability))
         return grown

@@ -1,4 +1,6 @@
-"""Obstacles' names, lightly, where they fit."""
+"""Obstacles' names and landmarks' numbers, lightly, where they fit."""
+
+from collections.abc import Sequence
 
 import numpy as np
 import shapely
@@ -8,10 +10,12 @@ from shapely.geometry.base import BaseGeometry
 
 from ekfsim.geometry import Array
 from ekfsim.views.lettering import drawable, families, shortened
-from ekfsim.world import Map
+from ekfsim.world import Landmark, Map
 
 MOST = 60  # names in one picture; the largest obstacles come first
+MOST_NUMBERS = 200  # of landmarks
 GAP = 4  # pixels between a name and what stands beside it
+MARK = 9  # pixels that a landmark's triangle is wide and high
 
 
 def label_obstacles(axes: Axes, floor: Map) -> list[Text]:
@@ -42,6 +46,30 @@ def label_obstacles(axes: Axes, floor: Map) -> list[Text]:
         name.set_position((x, y))
         taken.append(_box(place[0], place[1], size))
         written.append(name)
+    return written
+
+
+def label_landmarks(axes: Axes, landmarks: Sequence[Landmark], names: Sequence[Text] = ()) -> list[Text]:
+    """Write each landmark's number beside it, where that covers no other landmark, number or name."""
+    if not landmarks or len(landmarks) > MOST_NUMBERS:
+        return []
+    axes.apply_aspect()
+    places = axes.transData.transform([[mark.x, mark.y] for mark in landmarks])
+    marks = [_box(x, y, np.array([MARK, MARK])) for x, y in places]
+    taken = [*marks, *(shapely.box(*name.get_window_extent().extents) for name in names)]
+    window, written = shapely.box(*axes.bbox.extents), []
+    for mark, shape in zip(landmarks, marks, strict=True):
+        number = axes.text(0, 0, str(mark.id), fontsize=6.5, color="#444444", ha="center", va="center", zorder=1.5)
+        number.set(gid="number", clip_on=True)
+        size = np.array(number.get_window_extent().size)
+        place = _beside(shape, taken, window, size)
+        if place is None:
+            number.remove()
+            continue
+        x, y = axes.transData.inverted().transform(place)
+        number.set_position((x, y))
+        taken.append(_box(*place, size))
+        written.append(number)
     return written
 
 

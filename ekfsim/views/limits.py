@@ -1,17 +1,21 @@
 """How much of the plane a run's pictures show: fixed for the whole run, so that nothing jumps."""
 
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 
+from ekfsim.filters.belief import Belief
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import radius_factor
 from ekfsim.models.laser import Laser
+from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.playback import View
+from ekfsim.views.sights import sight
 from ekfsim.world import World
 
 MARGIN = 0.05  # of the larger side, all around: room for the robot's body and the line widths
@@ -89,53 +93,101 @@ class Limits:
         return not np.isfinite(points).all(axis=-1).any() or self.joined(around) == self
 
 
+class _Box:
+    """A rectangle that grows around points, one at a time and as fast as a run of many thousand steps asks for."""
+
+    __slots__ = ("bottom", "left", "right", "top")
+
+    def __init__(self) -> None:
+        self.left = self.bottom = math.inf
+        self.right = self.top = -math.inf
+
+    def hold(self, x: float, y: float) -> None:
+        """Grow to hold a point, if it is finite."""
+        if not -math.inf < x < math.inf or not -math.inf < y < math.inf:
+            return
+        if x < self.left:
+            self.left = x
+        if x > self.right:
+            self.right = x
+        if y < self.bottom:
+            self.bottom = y
+        if y > self.top:
+            self.top = y
+
+    @property
+    def limits(self) -> Limits | None:
+        """What it holds, None where that is nothing."""
+        return Limits(self.left, self.bottom, self.right, self.top) if self.left <= self.right else None
+
+
 def of(scene: Scene, steps: Iterable[Step], probability: float = 0.954) -> Limits:
     """The limits of a run: both maps, every estimate and every truth, whatever else a picture shows of them.
 
-    Ellipses and beams' ends are held as well, up to twice the size of all that: one that is larger than the world must
-    not shrink the world to a dot. The steps are read once and none is kept.
+    Ellipses, recorded fixes and the ends of readings are held as well, up to twice the size of all that: one that is
+    larger than the world must not shrink the world to a dot. The steps are read once and none is kept.
     """
-    held = [corner for points in _drawn(scene.world) for corner in points]
-    core = Limits.around(np.array(held).reshape(-1, 2)) if held else None
-    wide: Limits | None = None
+    layout, k = scene.world.layout, radius_factor(probability)
+    must, may = _Box(), _Box()
+    for points in _drawn(scene.world):
+        for x, y in points.tolist():
+            must.hold(x, y)
+    last: Belief | None = None
     for step in steps:
-        here = Limits.around(positions(step))
-        core = here if core is None else core.joined(here)
-        reach = Limits.around(_reached(step, probability))
-        wide = reach if wide is None else wide.joined(reach)
-    if core is None:
-        core = Limits(0.0, 0.0, 1.0, 1.0)
+        for belief in (step.posterior,) if step.prior is last else (step.prior, step.posterior):
+            _hold(must, may, belief, layout, k)
+        last, entry = step.posterior, step.entry
+        if entry.truth is not None:
+            x, y, _ = entry.truth.tolist()
+            must.hold(x, y)
+        if entry.fix is not None:
+            may.hold(*entry.fix.tolist())
+        if isinstance(entry.given, Reading):
+            for x, y in _reached(step, layout):
+                may.hold(x, y)
+    core, wide = must.limits or Limits(0.0, 0.0, 1.0, 1.0), may.limits
     if wide is not None:
         core = core.joined(wide.cut(core.grown(core.size / 2))) if core.size > LEAST else core.joined(wide)
     return core.grown(MARGIN * core.size)
 
 
+def _hold(must: _Box, may: _Box, belief: Belief, layout: Layout, k: float) -> None:
+    """Hold the estimated position, and the box about its ellipse. k : the ellipse's radii in σ"""
+    i, j = layout.position
+    mean, P = belief
+    x, y = float(mean[i]), float(mean[j])
+    must.hold(x, y)
+    variance_x, variance_y = float(P[i, i]), float(P[j, j])
+    east = k * math.sqrt(variance_x) if variance_x > 0 else 0.0
+    north = k * math.sqrt(variance_y) if variance_y > 0 else 0.0
+    may.hold(x - east, y - north)
+    may.hold(x + east, y + north)
+
+
 def including(limits: Limits, view: View) -> Limits:
     """The same limits where they hold the view's estimate and truth, else doubled until they do."""
-    points = positions(view.step)
+    points = positions(view.step, view.layout)
     if limits.hold(points):
         return limits
     return limits.joined(Limits.around(points).grown(limits.size / 2))
 
 
-def positions(step: Step) -> Array:
+def positions(step: Step, layout: Layout = POSE) -> Array:
     """What must never be cut off: the estimates before and after, and the truth : (n, 2) m"""
-    known = [step.prior.mean, step.posterior.mean, *([] if step.entry.truth is None else [step.entry.truth])]
-    return np.array([state[:2] for state in known])
+    known = [layout.pose(step.prior.mean), layout.pose(step.posterior.mean)]
+    return np.array([pose[:2] for pose in (*known, *([] if step.entry.truth is None else [step.entry.truth]))])
 
 
-def _reached(step: Step, probability: float) -> Array:
-    """The corners of the boxes about the ellipses, and the end of the beam : (n, 2) m"""
-    k = radius_factor(probability)
-    points = []
-    for x, P in (step.prior, step.posterior):
-        arms = k * np.sqrt(np.maximum(np.diagonal(P)[:2], 0.0))
-        points += [x[:2] - arms, x[:2] + arms]
+def _reached(step: Step, layout: Layout) -> Iterator[list[float]]:
+    """The end of what is drawn of a reading, x and y in m."""
     given = step.entry.given
     if isinstance(given, Reading) and isinstance(given.sensor, Laser):
-        direction = step.prior.mean[2] + given.sensor.bearing
-        points.append(step.prior.mean[:2] + given.z * np.array([np.cos(direction), np.sin(direction)]))
-    return np.array(points)
+        x, y, θ = step.prior.mean.tolist()
+        direction = θ + given.sensor.bearing
+        yield [x + float(given.z[0]) * math.cos(direction), y + float(given.z[0]) * math.sin(direction)]
+    elif (seen := sight(step, layout)) is not None:
+        yield from seen.end.tolist()
+        yield from seen.place.tolist()
 
 
 def _drawn(world: World) -> Iterator[Array]:
@@ -145,3 +197,5 @@ def _drawn(world: World) -> Iterator[Array]:
             yield ring
     for landmark in world.landmarks:
         yield np.array([[landmark.x, landmark.y]])
+    if world.expected_path is not None:
+        yield world.expected_path

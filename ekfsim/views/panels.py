@@ -9,14 +9,20 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from ekfsim.geometry.ellipse import ellipse
+from ekfsim.models.infrared import Infrared
+from ekfsim.models.laser import Laser
+from ekfsim.models.protocols import Sensor
+from ekfsim.models.ultrasonic import Ultrasonic
 from ekfsim.records import Command, Repeat, Sense
 from ekfsim.scene import Scene
 from ekfsim.views.artists import BeamArtists, BeliefArtists, WorldArtists
-from ekfsim.views.beams import Beam, length
+from ekfsim.views.beams import Beam, beam, length
 from ekfsim.views.captions import away
 from ekfsim.views.limits import Limits
 from ekfsim.views.outlined import OutlinedText
 from ekfsim.views.playback import View
+from ekfsim.views.sight_artists import FixArtists, SightArtists
+from ekfsim.views.sights import Sight, kinds, sight
 
 BODY = 0.022  # of the picture's longer side: the robot's radius
 CLOSE_BODY = 0.07  # of the close-up's width: what the cone and the true heading are measured by there
@@ -26,16 +32,24 @@ CERTAIN = 0.1  # of the picture's longer side: the close-up's width where nothin
 NARROWEST = 1e-4  # m
 
 
+def reading(view: View, scene: Scene) -> Beam | Sight | None:
+    """What is drawn of a reading, while it is shown."""
+    return (beam(view.step, scene) or sight(view.step, view.layout)) if view.beam else None
+
+
 class Main:
-    """World, belief, truth and beam on one Axes."""
+    """World, belief, truth and the reading on one Axes."""
 
     def __init__(self, axes: Axes, scene: Scene, limits: Limits, probability: float, conditional: bool) -> None:
         self._scene = scene
         self.axes = axes
         self.world = WorldArtists(axes, scene.world)
         static = set(axes.get_children())
-        self.belief = BeliefArtists(axes, probability, conditional)
+        self.belief = BeliefArtists(axes, probability, conditional, crowd=scene.filter == "pf")
         self.beam = BeamArtists(axes)
+        self._sensors = sensors(scene)
+        self.sight = SightArtists(axes, self._sensors)
+        self.fixes = FixArtists(axes, scene)
         self.moving = [child for child in axes.get_children() if child not in static]
         axes.set_aspect("equal", adjustable="box")
         axes.set(xlabel="x (m)", ylabel="y (m)")
@@ -50,17 +64,21 @@ class Main:
         self.limits = limits.shaped(float(box.width * width / (box.height * height)))
         self.axes.set(xlim=(self.limits.left, self.limits.right), ylim=(self.limits.bottom, self.limits.top))
 
-    def show(self, view: View, beam: Beam | None) -> None:
-        """Move the artists to a view."""
+    def show(self, view: View, read: Beam | Sight | None) -> None:
+        """Move the artists to a view. read : what is drawn of its reading"""
         self.belief.show(view, BODY * self.limits.size)
-        self.beam.show(beam, 2 * self.limits.size)
+        self.beam.show(read if isinstance(read, Beam) else None, 2 * self.limits.size)
+        self.sight.show(read if isinstance(read, Sight) else None)
+        self.fixes.show(view.step.entry)
 
     def handles(self) -> Iterator[Artist | tuple[Artist, ...]]:
         """What the legend shows, in its order."""
         yield from self.belief.handles()
         yield from self.world.handles()
-        if senses(self._scene.commands) or not self._scene.commands:
+        yield from self.fixes.handles()
+        if not self._sensors.isdisjoint((Laser, Ultrasonic, Infrared)):
             yield from self.beam.handles()
+        yield from self.sight.handles()
 
 
 class CloseUp:
@@ -72,6 +90,8 @@ class CloseUp:
         self.world = WorldArtists(axes, scene.world)
         self.belief = BeliefArtists(axes, probability, conditional, body=False)
         self.beam = BeamArtists(axes)
+        self.sight = SightArtists(axes)
+        self.fixes = FixArtists(axes, scene)
         axes.set_aspect("equal", adjustable="box")
         axes.set(xticks=[], yticks=[])
         axes.set_title("close-up of the estimate", fontsize=9, pad=4)
@@ -89,13 +109,15 @@ class CloseUp:
         axes.add_artist(self.away)
         self.moving = [*(child for child in axes.get_children() if child.get_gid()), *axes.spines.values()]
 
-    def show(self, view: View, beam: Beam | None, world: Limits) -> None:
+    def show(self, view: View, read: Beam | Sight | None, world: Limits) -> None:
         """Move there, and show it."""
-        x, truth = view.belief.mean, view.step.entry.truth
+        x, truth = view.pose.mean, view.step.entry.truth
         width = close_width(view, self._probability, CERTAIN * world.size)
         self.axes.set(xlim=(x[0] - width / 2, x[0] + width / 2), ylim=(x[1] - width / 2, x[1] + width / 2))
         self.belief.show(view, CLOSE_BODY * width)
-        self.beam.show(beam, 2 * width)
+        self.beam.show(read if isinstance(read, Beam) else None, 2 * width)
+        self.sight.show(read if isinstance(read, Sight) else None)
+        self.fixes.show(view.step.entry)
         bar = one_two_five(width / 6)
         self.bar.set_data([0.05, 0.05 + bar / width], [0.045, 0.045])
         self.scale.set_text(length(bar))
@@ -105,10 +127,10 @@ class CloseUp:
 
 def close_width(view: View, probability: float, certain: float) -> float:
     """How wide the close-up is, in m: 1, 2 or 5 times a power of ten, so that it seldom changes."""
-    radius, truth = float(ellipse(view.belief.covariance, probability).major), view.step.entry.truth
+    radius, truth = float(ellipse(view.pose.covariance, probability).major), view.step.entry.truth
     if radius == 0:
         return one_two_five(max(certain, NARROWEST))
-    error = 0.0 if truth is None else math.hypot(*(truth[:2] - view.belief.mean[:2]))
+    error = 0.0 if truth is None else math.hypot(*(truth[:2] - view.pose.mean[:2]))
     held = error if error <= REACH * radius else 0.0
     return one_two_five(max(ROOM * max(radius, held), NARROWEST))
 
@@ -121,6 +143,13 @@ def one_two_five(least: float) -> float:
     """
     power = math.floor(math.log10(least))
     return next(v for digit in (1, 2, 5, 10, 20) if (v := float(f"{digit}e{power}")) >= least)
+
+
+def sensors(scene: Scene) -> set[type[Sensor]]:
+    """The kinds of sensors whose readings a run may hold; all that the classroom has where nothing is commanded yet."""
+    if scene.drive is not None or scene.log is not None:
+        return kinds(scene)
+    return {Laser} if senses(scene.commands) or not scene.commands else set()
 
 
 def senses(commands: Iterable[Command]) -> bool:

@@ -1,19 +1,19 @@
 """A view drawn in text, for a terminal over any ssh: what the window shows, in braille dots or in plain ASCII."""
 
 import math
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 
-from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import cone_halfwidth, outline
-from ekfsim.models.laser import Laser
-from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense, Step
+from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense
 from ekfsim.scene import Scene
 from ekfsim.views.braille import Bounds, Canvas, Pen, ansi, cells, inside, paint, printable, shorten
 from ekfsim.views.playback import View
-from ekfsim.world import World
+from ekfsim.views.sights import instants
+from ekfsim.views.terminal_readings import Item, direction, draw_fix, draw_particles, draw_reading, outcome
+from ekfsim.world import Landmark, World
 
 WALL = Pen()
 UNKNOWN_WALL = Pen(ascii="%", on=4, off=3)  # stands there, and the filter does not know
@@ -21,21 +21,14 @@ IMAGINED_WALL = Pen(ascii=":", on=1, off=3)  # the filter believes in it
 PATH = Pen(ansi("#56B4E9"), ".", on=1, off=2)
 ELLIPSE = Pen(ansi("#009E73"), "*")
 CONE = Pen(ansi("#009E73"), "'")
-BEAM = Pen(ansi("#D55E00"), "-")
+MEANT = Pen(ansi("#777777"), ",", on=1, off=4)  # the way that was meant
 ESTIMATE = Pen("1;" + ansi("#0072B2"))
 TRUTH = Pen("1", "~")  # bright, on a light terminal as on a dark one
 
 ROBOT = np.array([[2.5, 0.0], [-1.5, 1.75], [-1.5, -1.75]])  # cells' widths ahead and to the left
 HEADING = 3.5  # cells' widths from the true position to the end of its heading
+CROWDED = 300  # landmarks, above which none shows its number
 CONE_LENGTH = 0.25  # of the shorter side of the picture
-
-
-class Item(NamedTuple):
-    """One entry of the legend."""
-
-    sample: str
-    word: str
-    colour: str = ""
 
 
 def draw(
@@ -54,12 +47,13 @@ def draw(
     """
     columns, rows = max(size[0], 1), max(size[1], 1)
     canvas = Canvas(columns, max(rows - 2, 1), limits, ascii)
-    step, (mean, P) = view.step, view.belief
+    step, (mean, P) = view.step, view.pose
     legend = _draw_world(canvas, scene.world)
     canvas.polyline(view.path(), PATH)
-    legend += _draw_uncertainty(canvas, mean, P, probability)
+    legend += draw_particles(canvas, view) + _draw_uncertainty(canvas, mean, P, probability)
+    legend += draw_fix(canvas, step.entry)
     if view.beam:
-        legend = _draw_beam(canvas, mean, step) + legend
+        legend = draw_reading(canvas, view) + legend
     legend = _draw_robots(canvas, mean, step.entry.truth) + legend
     lines = [
         _title_line(_title(view, scene.world), _scale(limits), columns, ascii),
@@ -83,10 +77,25 @@ def _draw_world(canvas: Canvas, world: World) -> list[Item]:
         place = _place(obstacle.points, canvas.cell * np.array([len(name) + 2, 4]))
         if place is not None and cells(name) == len(name):
             canvas.text(place, name)
-    for landmark in world.landmarks:
-        canvas.text((landmark.x, landmark.y), f"#{landmark.id}")
     legend = [Item("%%" if canvas.ascii else "⠒⠂", "not on its map")] if unknown else []
-    return legend + ([Item("::" if canvas.ascii else "⠂⠂", "on its map only")] if imagined else [])
+    legend += [Item("::" if canvas.ascii else "⠂⠂", "on its map only")] if imagined else []
+    if world.expected_path is not None:
+        canvas.polygons([world.expected_path], MEANT)
+        legend.append(Item(",," if canvas.ascii else "⠂⠐", "meant way", MEANT.colour))
+    _draw_landmarks(canvas, world.landmarks)
+    return legend
+
+
+def _draw_landmarks(canvas: Canvas, landmarks: Sequence[Landmark]) -> None:
+    """Each landmark with its number, without where that would cover another."""
+    written: list[tuple[float, float, int]] = []
+    for x, y, text in ((mark.x, mark.y, f"#{mark.id}") for mark in landmarks):
+        for x_other, y_other, length in written if len(landmarks) <= CROWDED else ():
+            if abs(y - y_other) < 2 * canvas.cell and abs(x - x_other) < (len(text) + length + 1) / 2 * canvas.cell:
+                text = text[:1]
+                break
+        written.append((x, y, len(text)))
+        canvas.text((x, y), text if len(landmarks) <= CROWDED else text[:1])
 
 
 def _place(ring: Array, box: Array) -> Array | None:
@@ -114,7 +123,7 @@ def _draw_uncertainty(canvas: Canvas, mean: Array, P: Array, probability: float)
     length, halfwidth = CONE_LENGTH * min(xmax - xmin, ymax - ymin), cone_halfwidth(float(P[2, 2]), probability)
     if halfwidth < math.pi:
         for side in (halfwidth, -halfwidth):
-            canvas.polyline([mean[:2], mean[:2] + length * _direction(mean[2] + side)], CONE)
+            canvas.polyline([mean[:2], mean[:2] + length * direction(mean[2] + side)], CONE)
     return [
         Item(".." if canvas.ascii else "⠄⠠", "path", PATH.colour),
         Item("*" if canvas.ascii else "⢎⡱", f"{100 * probability:g} % ellipse", ELLIPSE.colour),
@@ -122,23 +131,9 @@ def _draw_uncertainty(canvas: Canvas, mean: Array, P: Array, probability: float)
     ]
 
 
-def _draw_beam(canvas: Canvas, mean: Array, step: Step) -> list[Item]:
-    """The beam as measured, from the estimate, and a mark where the filter had predicted its end. mean : (3,)"""
-    reading, correction = step.entry.given, step.correction
-    if not isinstance(reading, Reading) or not isinstance(reading.sensor, Laser):
-        return []
-    ahead = _direction(mean[2] + reading.sensor.bearing)
-    measured = mean[:2] + reading.z[0] * ahead  # nan without an echo, and then nothing is drawn
-    canvas.polyline([mean[:2], measured], BEAM)
-    canvas.text(measured, "*", BEAM.colour)
-    if correction is not None:
-        canvas.text(mean[:2] + correction.predicted[0] * ahead, "x", BEAM.colour)
-    return [Item("-*" if canvas.ascii else "⠒*", "beam", BEAM.colour), Item("x", "predicted", BEAM.colour)]
-
-
 def _draw_robots(canvas: Canvas, mean: Array, truth: Array | None) -> list[Item]:
     """The robot where it is believed to be, and a mark where it is. mean, truth : (3,)"""
-    ahead = _direction(mean[2])
+    ahead = direction(mean[2])
     triangle = mean[:2] + canvas.cell * ROBOT @ np.array([ahead, [-ahead[1], ahead[0]]])
     if canvas.ascii:
         quarter = round(mean[2] / (math.pi / 2)) % 4 if math.isfinite(mean[2]) else 0
@@ -150,15 +145,10 @@ def _draw_robots(canvas: Canvas, mean: Array, truth: Array | None) -> list[Item]
     legend = [Item(">" if canvas.ascii else "⡷⠄", "estimate" + lost, ESTIMATE.colour)]
     if truth is None:
         return legend
-    canvas.polyline([truth[:2], truth[:2] + HEADING * canvas.cell * _direction(truth[2])], TRUTH)
+    canvas.polyline([truth[:2], truth[:2] + HEADING * canvas.cell * direction(truth[2])], TRUTH)
     canvas.text(truth[:2], "o", TRUTH.colour)
     lost = "" if inside(truth[:2], canvas.bounds) else " (outside)"
     return [*legend, Item("o~" if canvas.ascii else "o⠒", "truth" + lost, TRUTH.colour)]
-
-
-def _direction(angle: float) -> Array:
-    """The unit vector of a direction in rad : (2,)"""
-    return np.array([math.cos(angle), math.sin(angle)])
 
 
 def _title(view: View, world: World) -> str:
@@ -170,33 +160,18 @@ def _title(view: View, world: World) -> str:
             what = f"move {distance:g} m, turn {math.degrees(angle):.4g}°"
             what += (f", slip {slip:g}" if slip else "") + (": bumped into a wall" if bumped else "")
         case Sense(angle), _:
-            what = f"sense at {math.degrees(angle):.4g}°, {_outcome(step, view.beam)}"
+            what = f"sense at {math.degrees(angle):.4g}°, {outcome(step, view.beam)}"
         case Kidnap(), _:
             what = "the robot is carried away, and the filter is not told"
         case Say(text), _:
             what = text
         case None, Control():
-            what = "odometry"
-        case None, Reading():
-            what = f"reading, {_outcome(step, view.beam)}"
+            what = "a motion input" if view.inputs == 1 else f"{view.inputs} motion inputs"
+        case None, Reading(name=name):
+            what = f"{name}, {outcome(step, view.beam)}"
         case _:
             what = f"the start in {world.name}"
-    return f"{entry.index}: {what}"
-
-
-def _outcome(step: Step, beam: bool) -> str:
-    """What a reading said, while the beam is shown, and what became of it, after."""
-    reading, correction = step.entry.given, step.correction
-    if not isinstance(reading, Reading) or correction is None:
-        return "not used"
-    if not beam:
-        word = Refused(int(correction.refused)).word
-        return "the estimate is revised" if word is None else f"not used ({word})"
-    measured, predicted = (
-        f"{value[0]:.3f} m" if math.isfinite(value[0]) else "nothing" for value in (reading.z, correction.predicted)
-    )
-    ambiguous = step.sighting is not None and bool(step.sighting.ambiguous)
-    return f"measured {measured}, predicted {predicted}{', ambiguous' if ambiguous else ''}"
+    return f"{entry.index if entry.t is None else f't = {instants(view.since, entry.t)} s'}: {what}"
 
 
 def _scale(limits: Bounds) -> str:
