@@ -9,7 +9,7 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.world import World
 
 BLOCK = 1024  # runs that share a generator
-PARTICLES = 1  # key of the generators of the particle filters, apart from those of the draws
+PARTICLES, STREAMS = 1, 2  # keys of the generators of particle filters and of streams, apart from those of the draws
 
 
 class Draws:
@@ -31,6 +31,10 @@ class Draws:
     def normals_and_uniforms(self, i: int) -> tuple[Sequence[Array], Sequence[Array]]:
         """The four standard normals and the two uniforms in [0, 1) of draw i : (…) each"""
         return self._draw(i, uniforms=True)
+
+    def stream(self, *key: int) -> "Stream":
+        """Normals of these runs that come one after another."""
+        return Stream(self._seed, self._runs, key)
 
     def _draw(self, i: int, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
         if self._runs.ndim == 0:
@@ -54,6 +58,26 @@ class Draws:
 
     def _generator(self, i: int, b: int) -> np.random.Generator:
         return np.random.Generator(np.random.PCG64(np.random.SeedSequence([self._seed, i, b])))
+
+
+class Stream:
+    """Standard normals of some runs, taken one after another: a function of (seed, run, key) alone.
+
+    Those of run k come from Generator(PCG64(SeedSequence([seed, k], spawn_key=(2, *key)))) in the order of time.
+    However many are taken at once, they are the same: a driven robot's noises are drawn for many ticks together.
+    """
+
+    def __init__(self, seed: int, runs: Integers, key: tuple[int, ...]) -> None:
+        self._axes = runs.shape
+        self._generators = [
+            np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, int(run)], spawn_key=(STREAMS, *key))))
+            for run in np.atleast_1d(runs)
+        ]
+
+    def normals(self, rows: int, columns: int) -> Array:
+        """The next ones : (rows, …, columns)"""
+        drawn = np.stack([generator.standard_normal((rows, columns)) for generator in self._generators], axis=1)
+        return drawn.reshape(rows, *self._axes, columns)
 
 
 def true_start(world: World, draws: Draws) -> Array:

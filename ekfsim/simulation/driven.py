@@ -1,113 +1,142 @@
 """A robot that is driven along a way, its instruments read at their own rates: world + drive + draws → Entries."""
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from ekfsim.filters.unscented import square_root
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap
-from ekfsim.models.protocols import angles
+from ekfsim.models.layout import Layout
+from ekfsim.models.protocols import Motion, angles
 from ekfsim.records import Control, Entry, Reading
 from ekfsim.scene import Scene
-from ekfsim.simulation.draws import Draws, true_start
-from ekfsim.systems.drives import Course, Drive
+from ekfsim.simulation.draws import Draws, Stream, true_start
+from ekfsim.simulation.driver import Driver
+from ekfsim.systems.drives import Drive
 from ekfsim.systems.instruments import Instrument, Pylon, Target
-from ekfsim.systems.robots import PylonCart, Tick
+from ekfsim.systems.robots import PylonCart
 
-ALONG, ACROSS, AROUND = 1.0, 1.0, 2.0  # 1/s, rad/s per m, 1/s: how hard the driver steers back to the way
 GPS_SIGMA, GPS_PERIOD = 0.4, 2.0  # m, s: of the pylon cart's GPS, which is recorded and not used
 SOON = 1e-9  # of a period: what rounding makes of an instant
+AT_ONCE = 20_000  # ticks times runs that are worked out together: one by one is slow, all at once takes much memory
+DISTURBANCE, INPUT, FIX, READING = range(4)  # the streams of random numbers, the last one for each target
 
 
 def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
     """The log of a driven robot: at every tick its motion input, then the readings of that instant, one after another.
 
-    The truth follows the right equations whatever reading of the document the filter follows. Draws are numbered by
-    all that could be drawn, seen or not: 0 is the start; then for each tick the disturbance of the motion, the noise
-    of its input, and one for every target.
+    The truth follows the right equations whatever reading of the document the filter follows. What disturbs the
+    motion, the noise of its input and the noise of each target's readings are streams of their own (see `Stream`).
+    They go on whether a target is seen or not, so no noise, range or field of view changes the numbers of another.
     """
     world, robot = scene.world, scene.world.robot
     assert robot is not None
-    told_motion, motion, dt = robot.motion(scene.reading), robot.motion("corrected"), 1 / robot.rate
-    told, true = world.targets(scene.reading, world.told.map), world.targets("corrected", world.map)
-    course = way.course(dt)
-    wanted = course.poses(world.start, dt)
-    truth, index, velocity, fix = true_start(world, draws), 0, np.zeros(2), None
-    yield Entry(0, None, truth, t=0.0)
-    for tick in range(len(course.speed)):
-        drawn, t = 1 + tick * (2 + len(told)), (tick + 1) * dt
-        speed, turn_rate = _steered(course, tick, wanted[tick], truth)
-        moved = _moved(truth, speed * dt, turn_rate * dt, velocity, dt)
-        ideal, disturbances = robot.ideal(moved), draws.normals(drawn)
-        truth, velocity = _disturbed(moved.after, motion.Q(ideal), disturbances), moved.velocity_after
-        u = ideal + _noise(motion.M(ideal), draws.normals(drawn + 1))
-        if isinstance(robot, PylonCart) and _due(1 / GPS_PERIOD, tick, dt):
-            fix = truth[..., :2] + GPS_SIGMA * np.stack(disturbances[:2], axis=-1)
-        index += 1
-        yield Entry(index, Control(told_motion, u), truth, t=t, fix=fix)
-        for number, (instrument, target) in enumerate(told):
-            if not _due(instrument.rate, tick, dt) or not np.any(instrument.sees(target, truth)):
-                continue
-            x, normals = world.layout.state(truth), draws.normals(drawn + 2 + number)
-            z = _read(instrument, true[number][1], truth, x, u, normals)
-            if not np.isnan(z).all():
+    told, motion, course = robot.motion(scene.reading), robot.motion("corrected"), way.course(1 / robot.rate)
+    start, wanted = true_start(world, draws), course.poses(world.start, 1 / robot.rate)
+    driver = Driver(course, wanted, start, robot.rate, _process(motion, world.layout), draws.stream(DISTURBANCE))
+    inputs, gps, watches = draws.stream(INPUT), _Gps(draws.stream(FIX)), list(_watches(scene, draws))
+    yield Entry(0, None, start, t=0.0)
+    index = 0
+    for ticks in _blocks(len(course.speed), start.size // 3):
+        moved, truth = driver.advance(ticks)
+        ideal = robot.ideal(moved)
+        u = ideal + _noise(motion.M(ideal), inputs)
+        fixes = gps.fixes(ticks, truth, robot.rate) if isinstance(robot, PylonCart) else None
+        readings = _readings(watches, ticks, truth, u, robot.rate, world.layout)
+        for i, tick in enumerate(ticks.tolist()):
+            index, t = index + 1, (tick + 1) / robot.rate
+            yield Entry(index, Control(told, u[i]), truth[i], t=t, fix=None if fixes is None else fixes[i])
+            for reading in readings[i]:
                 index += 1
-                yield Entry(index, Reading(target.sensor, z, target.name), truth, t=t)
+                yield Entry(index, reading, truth[i], t=t)
 
 
-def _steered(course: Course, tick: int, wanted: Array, truth: Array) -> tuple[Array, Array]:
-    """Speed and turn rate : (…) each; where the driver holds the robot to its way, back towards the wanted pose."""
-    speed, turn_rate = course.speed[tick], course.turn_rate[tick]
-    if not course.held:
-        return speed, turn_rate
-    dx, dy = wanted[0] - truth[..., 0], wanted[1] - truth[..., 1]
-    c, s = np.cos(truth[..., 2]), np.sin(truth[..., 2])
-    ahead, aside, turn = c * dx + s * dy, c * dy - s * dx, wrap(wanted[2] - truth[..., 2])
-    return speed + ALONG * ahead, turn_rate + np.sign(speed) * ACROSS * aside + AROUND * turn
+class _Watch(NamedTuple):
+    """One target of one instrument, and the noise of its readings."""
+
+    instrument: Instrument
+    told: Target  # as the filter knows it
+    true: Target
+    stream: Stream
+
+    def read(self, truth: Array, x: Array, u: Array) -> Array:
+        """Its readings from true poses (D, …, 3) and their states x : (D, …, k), nan where it is not in view."""
+        h, _, R = self.true.sensor.linearize(x)
+        if isinstance(self.instrument, Pylon):  # the lidar's own noise, then turned by the yaw as it was measured
+            turn = wrap(u[..., 2] - truth[..., 2])
+            c, s = np.cos(turn), np.sin(turn)
+            h = np.stack([c * h[..., 0] - s * h[..., 1], s * h[..., 0] + c * h[..., 1]], axis=-1)
+            R = np.broadcast_to(np.eye(2) * self.instrument.sigma**2, (*h.shape, 2))
+        z = h + _noise(np.nan_to_num(R), self.stream)
+        for i in angles(self.true.sensor.outputs):
+            z[..., i] = wrap(z[..., i])
+        return np.where(self.instrument.sees(self.true, truth)[..., None], z, np.nan)
 
 
-def _moved(pose: Array, distance: Array, turn: Array, velocity: Array, dt: float) -> Tick:
-    """Drive along an arc, by the mid-point rule."""
-    middle = pose[..., 2] + turn / 2
-    step = distance[..., None] * np.stack([np.cos(middle), np.sin(middle)], axis=-1)
-    after = np.concatenate([pose[..., :2] + step, wrap(pose[..., 2] + turn)[..., None]], axis=-1)
-    return Tick(pose, after, distance, turn, velocity, step / dt, dt)
+def _watches(scene: Scene, draws: Draws) -> Iterator[_Watch]:
+    """All that the instruments may read, and draw for, seen or not."""
+    world = scene.world
+    told, true = world.targets(scene.reading, world.told.map), world.targets("corrected", world.map)
+    for number, ((instrument, known), (_, real)) in enumerate(zip(told, true, strict=True)):
+        yield _Watch(instrument, known, real, draws.stream(READING, number))
 
 
-def _disturbed(pose: Array, Q: Array | float, normals: Sequence[Array]) -> Array:
-    """The pose after the process noise, where the motion has any."""
-    if not np.any(Q):
-        return pose
-    disturbed: Array = pose + _noise(np.asarray(Q), normals)
-    disturbed[..., 2] = wrap(disturbed[..., 2])
-    return disturbed
+def _readings(
+    watches: list[_Watch], ticks: Integers, truth: Array, u: Array, rate: float, layout: Layout
+) -> list[list[Reading]]:
+    """What is read at the end of each tick, of what at least one run has in view."""
+    read: list[list[Reading]] = [[] for _ in ticks]
+    for watch in watches:
+        due = np.flatnonzero(_due(watch.instrument.rate, ticks, rate))
+        if len(due) == 0:
+            continue
+        z = watch.read(truth[due], layout.state(truth[due]), u[due])
+        met = np.any(~np.isnan(z.reshape(len(due), -1)), axis=-1)
+        for i in np.flatnonzero(met).tolist():
+            read[due[i]].append(Reading(watch.told.sensor, z[i], watch.told.name))
+    return read
 
 
-def _noise(covariance: Array, normals: Sequence[Array]) -> Array:
-    """Noise of a covariance (…, m, m) : (…, m). Only four numbers are drawn at a time: no model has more noisy ones."""
-    n = np.zeros((*np.shape(normals[0]), covariance.shape[-1]))
-    drawn = min(len(normals), n.shape[-1])
-    n[..., :drawn] = np.stack(normals[:drawn], axis=-1)
-    noise: Array = np.matvec(square_root(covariance), n)
+class _Gps:
+    """Fixes of the pylon cart's GPS, each held until the next."""
+
+    def __init__(self, stream: Stream) -> None:
+        self._stream = stream
+        self._held: Array | None = None
+
+    def fixes(self, ticks: Integers, truth: Array, rate: float) -> Array:
+        """The newest fix at the end of each tick : (T, …, 2) m"""
+        fresh = _due(1 / GPS_PERIOD, ticks - 1, rate)
+        n = self._stream.normals(int(np.count_nonzero(fresh)), 2)
+        taken = truth[fresh][..., :2] + GPS_SIGMA * n
+        known = taken if self._held is None else np.concatenate([self._held[None], taken])
+        fixes: Array = known[np.cumsum(fresh) - (self._held is None)]
+        self._held = fixes[-1]
+        return fixes
+
+
+def _due(often: float, ticks: Integers, rate: float) -> Booleans:
+    """Whether an instrument that is read so often is read at the end of a tick. often, rate : Hz"""
+    due: Booleans = np.floor((ticks + 1) / rate * often + SOON) > np.floor(ticks / rate * often + SOON)
+    return due
+
+
+def _noise(covariance: Array, stream: Stream) -> Array:
+    """Noise of covariances (T, …, m, m) : (T, …, m)"""
+    noise: Array = np.matvec(square_root(covariance), stream.normals(len(covariance), covariance.shape[-1]))
     return noise
 
 
-def _due(rate: float, tick: int, dt: float) -> bool:
-    """Whether an instrument is read at the end of a tick."""
-    return math.floor((tick + 1) * dt * rate + SOON) > math.floor(tick * dt * rate + SOON)
+def _process(motion: Motion, layout: Layout) -> Array:
+    """Q of the pose, for a tick : (3, 3). None of the right motions has one that depends on its input."""
+    Q = motion.Q(np.zeros(len(motion.inputs)))
+    return np.zeros((3, 3)) if np.ndim(Q) == 0 else layout.pose_covariance(np.asarray(Q))
 
 
-def _read(instrument: Instrument, target: Target, truth: Array, x: Array, u: Array, normals: Sequence[Array]) -> Array:
-    """The reading of a target from a true pose and its state x : (…, k), nan where the target is not in view."""
-    h, _, R = target.sensor.linearize(x)
-    if isinstance(instrument, Pylon):  # the lidar's own noise, then turned by the yaw as it was measured
-        turn = wrap(u[..., 2] - truth[..., 2])
-        c, s = np.cos(turn), np.sin(turn)
-        h = np.stack([c * h[..., 0] - s * h[..., 1], s * h[..., 0] + c * h[..., 1]], axis=-1)
-        R = np.eye(2) * instrument.sigma**2
-    z = np.where(instrument.sees(target, truth)[..., None], h + _noise(np.nan_to_num(R), normals), np.nan)
-    for i in angles(target.sensor.outputs):
-        z[..., i] = wrap(z[..., i])
-    return z
+def _blocks(ticks: int, runs: int) -> Iterator[Integers]:
+    """The numbers of all ticks from 0, some at a time."""
+    many = max(AT_ONCE // runs, 1)
+    for first in range(0, ticks, many):
+        yield np.arange(first, min(first + many, ticks))

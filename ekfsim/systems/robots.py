@@ -29,8 +29,8 @@ class Tick(NamedTuple):
     after: Array  # (…, 3)
     distance: Array  # (…) m along the way
     turn: Array  # (…) rad
-    velocity_before: Array  # (…, 2) m/s in the world's frame
-    velocity_after: Array  # (…, 2)
+    velocity_before: Array  # (…, 2) m/s in the world's frame, during this tick
+    velocity_after: Array  # (…, 2) and in the next
     dt: float  # s
 
 
