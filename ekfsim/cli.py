@@ -14,6 +14,7 @@ from ekfsim.version import VERSION
 
 if TYPE_CHECKING:
     from ekfsim.scene import Scene
+    from ekfsim.systems.document import DocumentReading
 
 
 def main() -> NoReturn:
@@ -205,11 +206,13 @@ def figures(
 
 
 def _scene(
-    commands: str, world: str | None, seed: int | None, run_number: int, filter_name: str | None,
-    gate: float | None, guard: str | None,
+    commands: str, world: str | None = None, seed: int | None = None, run_number: int = 0,
+    filter_name: str | None = None, gate: float | None = None, guard: str | None = None, log: str | None = None,
+    reading: str = "corrected",
 ) -> "Scene":  # fmt: skip
     """The scene of a commands file, overruled by the options that were given."""
     from dataclasses import replace
+    from typing import cast
 
     from ekfsim.files.load import read_scene
     from ekfsim.files.packaged import resolve
@@ -217,11 +220,13 @@ def _scene(
 
     if filter_name is not None and filter_name not in FILTERS:
         raise UsageError(f"--filter {filter_name}: there is no such filter; known: {', '.join(FILTERS)}")
-    found = read_scene(resolve(commands, "commands"), None if world is None else resolve(world, "worlds"))
+    world_file = None if world is None else resolve(world, "worlds")
+    found = read_scene(resolve(commands, "commands"), world_file, log, cast("DocumentReading", reading))
     for warning in found.warnings:
         say(warning)
     scene = found.get()
     chosen: dict[str, Any] = {"seed": seed, "run": run_number, "filter": filter_name, "gate": gate, "guard": guard}
-    for name in ("world_source", "commands_source"):  # every output holds them, in a line
-        chosen[name] = shown(getattr(scene, name)).replace("\n", "\\x0a")
+    for name in ("world_source", "commands_source", "log_source"):  # every output holds them, in a line
+        source = getattr(scene, name)
+        chosen[name] = None if source is None else shown(source).replace("\n", "\\x0a")
     return replace(scene, **{name: value for name, value in chosen.items() if value is not None})

@@ -8,6 +8,9 @@ from typing import Any
 import click
 
 MOST = 2**63 - 1
+READINGS = ("printed", "coded", "corrected")  # of a document; told here again, so that --help need not load them
+READING = click.option("--reading", type=click.Choice(READINGS), default="corrected", show_default=True,
+                       help="Which to follow where a document's print, its code and the truth differ.")  # fmt: skip
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
 
 
@@ -47,7 +50,9 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
         click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names."),
         click.option("--seed", type=click.IntRange(min=0), help="In place of the file's seed."),
         click.option("--run", "run_number", type=click.IntRange(0, MOST), default=0, help="Which run of the seed."),
-        click.option("--filter", "filter_name", help="In place of the file's filter: ekf."),
+        click.option("--log", metavar="PATH", help="A recorded log in place of the one that COMMANDS names."),
+        READING,
+        click.option("--filter", "filter_name", help="In place of the file's filter: kf, ekf, iekf, ukf or pf."),
         click.option("--gate", type=Probability(), metavar="P",
                      help="Refuse readings whose NIS lies beyond this χ² quantile."),
         click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams."),

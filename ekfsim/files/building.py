@@ -1,24 +1,32 @@
 """Models → the objects a run is made of: degrees become radians, lists arrays, and belief what the filter is told."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from ekfsim.files.commands_file import CommandKeys, CommandsKeys, ExpectKeys
+from ekfsim.files.drive_file import PathKeys, StretchKeys
 from ekfsim.files.fields import Pose
+from ekfsim.files.sensor_file import SENSORS, SensorKeys
 from ekfsim.files.world_file import BeliefKeys, ObstacleKeys, SigmaKeys, WorldKeys
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.records import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.scene import Expect, Scene
+from ekfsim.systems import SYSTEMS
+from ekfsim.systems.drives import DRIVES, Drive, Stretch, Stretches
+from ekfsim.systems.instruments import Instrument
+from ekfsim.systems.robots import Robot
 from ekfsim.world import Faults, Landmark, Map, Noise, Obstacle, Told, World
+
+NO_NOISE = Noise(0.0, 0.0, 0.0, 0.0, 0.0)  # of the classroom's robot, where another one drives
 
 
 def world_of(keys: WorldKeys) -> World:
     """The world that a file describes."""
     floor_plan = Map(array(keys.boundary), obstacles_of(keys.obstacles))
-    start, noise = pose(keys.start), Noise(**keys.noise.model_dump())
+    start, noise = pose(keys.start), Noise(**keys.noise.model_dump()) if keys.noise else NO_NOISE
     return World(
         name=keys.name,
         map=floor_plan,
@@ -29,7 +37,36 @@ def world_of(keys: WorldKeys) -> World:
         faults=Faults(**keys.faults.model_dump()) if keys.faults else Faults(),
         landmarks=tuple(Landmark(mark.id, mark.x, mark.y) for mark in keys.landmarks),
         description=keys.description,
+        system=keys.system,
+        robot=robot_of(keys),
+        instruments=instruments_of(keys),
+        expected_path=ring(keys.expected_path),
     )
+
+
+def robot_of(keys: WorldKeys) -> Robot | None:
+    """The robot of a system, each number the document's where the file tells no other; None in the classroom."""
+    if keys.system == "classroom":
+        return None
+    robot = SYSTEMS[keys.system].robot
+    if keys.robot is None:
+        return robot
+    made: Callable[..., Robot] = type(robot)
+    return made(**keys.robot.given())
+
+
+def instruments_of(keys: WorldKeys) -> tuple[Instrument, ...]:
+    """The sensors of a file, or those of its system."""
+    if keys.system == "classroom":
+        return ()
+    return SYSTEMS[keys.system].instruments if keys.sensors is None else tuple(map(instrument_of, keys.sensors))
+
+
+def instrument_of(item: SensorKeys) -> Instrument:
+    """A sensor, each number the document's where the file tells no other."""
+    keys = item.part()
+    made: Callable[..., Instrument] = SENSORS[type(keys)]
+    return made(**keys.given())
 
 
 def told(keys: WorldKeys, floor_plan: Map, start: Array, noise: Noise) -> Told:
@@ -66,6 +103,13 @@ def array(points: list[list[float]] | None) -> Array | None:
     return None if points is None else np.array(points, dtype=float)
 
 
+def ring(points: list[list[float]] | None) -> Array | None:
+    """The corners of an outline : (n, 2) m, the first not repeated at its end"""
+    if points and len(points) > 2 and points[0] == points[-1]:
+        return array(points[:-1])
+    return array(points)
+
+
 def pose(keys: Pose) -> Array:
     """x, y, θ : (3,) m, m, rad in (−π, π]"""
     return np.array([keys.x, keys.y, float(wrap(np.radians(keys.theta)))])
@@ -84,7 +128,8 @@ def scene_of(keys: CommandsKeys, world: World, world_source: str, commands_sourc
     """The scene that a commands file plays in a world."""
     return Scene(
         world=world,
-        commands=tuple(commands_of(keys.commands)),
+        commands=tuple(commands_of(keys.commands or ())),
+        drive=None if keys.drive is None else drive_of(keys.drive),
         seed=keys.seed,
         filter=keys.filter,
         gate=keys.gate,
@@ -94,6 +139,17 @@ def scene_of(keys: CommandsKeys, world: World, world_source: str, commands_sourc
         world_source=world_source,
         commands_source=commands_source,
     )
+
+
+def drive_of(keys: PathKeys | list[StretchKeys]) -> Drive:
+    """The way that a robot is driven, each number the document's where the file tells no other."""
+    if isinstance(keys, PathKeys):
+        given = keys.given()
+        made: Callable[..., Drive] = DRIVES[given.pop("path")]
+        if keys.path == "square" and keys.laps is not None:
+            given["laps"] = int(keys.laps)
+        return made(**given)
+    return Stretches(tuple(Stretch(item.speed, float(np.radians(item.turn_rate)), item.duration) for item in keys))
 
 
 def expect(keys: ExpectKeys) -> Expect:

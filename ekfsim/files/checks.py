@@ -153,7 +153,7 @@ def in_the_way(boundary: Points | None, obstacles: Iterable[tuple[str, Points]],
 
 def check_commands(file: Sound) -> Iterator[Mistake]:
     """Mistakes of a commands file that lie between its keys."""
-    yield from check_items(file, ("commands",))
+    yield from check_items(file, ("commands",), COMMANDS, "command")
     count = expanded(file, ("commands",))
     if count > MAX_COMMANDS:
         number = f"{count:,}".replace(",", " ") if count < 10**12 else f"about {float(min(count, 10**300)):.0e}"
@@ -161,19 +161,19 @@ def check_commands(file: Sound) -> Iterator[Mistake]:
         yield file.mistake(("commands",), wrong, "repeat fewer times")
 
 
-def check_items(file: Sound, path: Path) -> Iterator[Mistake]:
-    """Items that hold no command, or two."""
+def check_items(file: Sound, path: Path, known: list[str], what: str) -> Iterator[Mistake]:
+    """Items that hold none of the known keys, or two."""
     for index in range(file.count(*path)):
         item = file.root.at((*path, index))
         if item is None or not isinstance(item.value, dict):
             continue
-        held = [key for key in item.keys if key in COMMANDS]
+        held = [key for key in item.keys if key in known]
         if len(held) > 1:
             wrong = f"{' and '.join(repr(key) for key in held)} stand in one item"
-            yield file.mistake((*path, index), wrong, "begin each command with '- ' on a line of its own")
+            yield file.mistake((*path, index), wrong, f"begin each {what} with '- ' on a line of its own")
         elif not item.keys:
-            yield file.mistake((*path, index), "the command is missing", f"write one of {', '.join(COMMANDS)}")
-        yield from check_items(file, (*path, index, "repeat", "commands"))
+            yield file.mistake((*path, index), f"the {what} is missing", f"write one of {', '.join(known)}")
+        yield from check_items(file, (*path, index, "repeat", "commands"), known, what)
 
 
 def expanded(file: Sound, path: Path) -> int:
@@ -192,14 +192,15 @@ def expanded(file: Sound, path: Path) -> int:
 def angle_warnings(file: Sound) -> Iterator[str]:
     """Angles that are hardly meant as degrees."""
     for path, node in file.root.walk():
-        angle = file.value(*path) if path[-1:] in (("theta",), ("angle",)) else None
-        if not isinstance(angle, int | float):
+        is_angle, is_rate = path[-1:] in (("theta",), ("angle",)), path[-1:] in (("omega",), ("turnRate",))
+        number = file.value(*path) if is_angle or is_rate else None
+        if not isinstance(number, int | float):
             continue
-        if abs(angle) > 360:
+        if abs(number) > 360 and is_angle:
             wrong, right = f"{node.written} is more than a full turn", "angles are in degrees: 90 is a quarter turn"
-        elif is_radians(angle, node.written):
-            degrees = f"{math.degrees(angle):.0f}"
-            wrong, right = f"{node.written} looks like radians", f"angles are in degrees: write {degrees}"
+        elif is_radians(number, node.written):
+            what = "angles are in degrees" if is_angle else "turn rates are in degrees per second"
+            wrong, right = f"{node.written} looks like radians", f"{what}: write {math.degrees(number):.0f}"
         else:
             continue
         yield str(at(file.file, node.mark, path, wrong, right))

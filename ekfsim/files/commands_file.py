@@ -6,10 +6,23 @@ from pydantic import ConfigDict, Field, field_validator
 from pydantic.config import JsonDict
 from pydantic_core import PydanticCustomError
 
+from ekfsim.files.drive_file import SPIRAL, WayKeys
 from ekfsim.files.fields import Degrees, Metres, Name, Pose, Probability, Share, Strict, Text
+from ekfsim.files.system_file import SystemName
 
 MAX_COMMANDS = 1_000_000
 MOVE: JsonDict = {"distance": 1.75, "angle": 90}
+LogFormat = Literal["pylon", "gnss", "mower", "mrclam", "ranges", "pioneer"]
+SYSTEM_OF: dict[str, SystemName] = {  # the system that each format of a log records
+    "pylon": "pylon",
+    "gnss": "gnss",
+    "mower": "mower",
+    "mrclam": "landmarks",
+    "ranges": "ranges",
+    "pioneer": "pioneer",
+}
+WAYS = ("commands", "drive", "recording")  # exactly one of them makes a file a commands file
+ONE_WAY: JsonDict = {"oneOf": [{"required": [way]} for way in WAYS]}
 ONE_COMMAND: JsonDict = {"minProperties": 1, "maxProperties": 1, "examples": [{"move": MOVE}]}
 
 
@@ -98,10 +111,21 @@ class ExpectKeys(Strict):
     runs: int = Field(300, description="Number of runs of the study.", ge=1, le=10_000_000, examples=[300])
 
 
-class CommandsKeys(Strict):
-    """A world, the commands given in it, and the settings of the filter that watches. Metres and degrees."""
+class RecordingKeys(Strict):
+    """A recorded log."""
 
-    model_config = ConfigDict(title="ekfsim commands")
+    format: LogFormat = Field(description="Who wrote the log.", examples=["pylon"])
+    path: Name | None = Field(
+        None,
+        description="The log, a file or a folder as its format has it, relative to this file; --log wins.",
+        examples=["../logs/square.csv"],
+    )
+
+
+class CommandsKeys(Strict):
+    """A world, what is done in it or was recorded of it, and the settings of the filter. Metres and degrees."""
+
+    model_config = ConfigDict(title="ekfsim commands", json_schema_extra=ONE_WAY)
 
     world: Name | None = Field(
         None,
@@ -130,7 +154,20 @@ class CommandsKeys(Strict):
     expect: ExpectKeys | None = Field(
         None, description="What a study of this scene must find.", examples=[{"lost": [0.05, 0.3], "nis": "silent"}]
     )
-    commands: list[CommandKeys] = Field(description="What the robot does, in order.", examples=[[{"move": MOVE}]])
+    commands: list[CommandKeys] | None = Field(
+        None, description="What the robot does, in order. Only in the classroom.", examples=[[{"move": MOVE}]]
+    )
+    drive: WayKeys | None = Field(
+        None,
+        title="a drive",
+        description="The way that the robot is driven, by its path or as a list of speeds. Not in the classroom.",
+        examples=[SPIRAL],
+    )
+    recording: RecordingKeys | None = Field(
+        None,
+        description="A recorded log, in place of a simulation. Not in the classroom.",
+        examples=[{"format": "pylon", "path": "../logs/square.csv"}],
+    )
 
     @field_validator("filter")
     @classmethod

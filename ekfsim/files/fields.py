@@ -1,6 +1,7 @@
 """The kinds of value that world and commands files are made of; messages and editors read the same bounds."""
 
-from typing import Annotated
+import math
+from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
@@ -20,10 +21,31 @@ class Strict(BaseModel):
     )
 
 
+class PartKeys(Strict):
+    """Keys of a robot, a sensor or a drive: each that is left out has the document's number."""
+
+    angles: ClassVar[frozenset[str]] = frozenset()  # the keys whose numbers are degrees
+
+    def given(self) -> dict[str, Any]:
+        """What was written, by the names that the program has for it; angles in radians."""
+        written = self.model_dump(exclude_unset=True)
+        return {name: _inside(value, name in self.angles) for name, value in written.items()}
+
+
+def _inside(value: Any, is_angle: bool) -> Any:
+    """A value as the program holds it: whole numbers and words as they are, lists as tuples, degrees as radians."""
+    if isinstance(value, list):
+        return tuple(_inside(one, is_angle) for one in value)
+    return math.radians(value) if is_angle else value
+
+
 Metres = Annotated[float, Field(ge=-FAR, le=FAR, examples=[1.5])]
 Degrees = Annotated[float, Field(ge=-FAR, le=FAR, examples=[90])]
 Spread = Annotated[float, Field(ge=0, le=FAR, examples=[0.1])]
 Ratio = Annotated[float, Field(ge=0, le=FAR, examples=[0.05])]
+Turn = Annotated[float, Field(ge=0, le=FAR, examples=[2.5])]  # degrees or degrees per second: how far it spreads
+Positive = Annotated[float, Field(gt=0, le=FAR, examples=[1.5])]
+Rate = Annotated[float, Field(gt=0, le=FAR, examples=[10])]
 Scale = Annotated[float, Field(ge=-FAR, le=FAR, examples=[1.05])]
 Probability = Annotated[float, Field(ge=0, le=1, examples=[0.1])]
 Name = Annotated[str, Field(pattern=r"^[^\r\n]*\S[^\r\n]*$", examples=["desk"])]
@@ -32,7 +54,8 @@ Text = Annotated[str, Field(examples=["One room, two desks."])]
 Point = Annotated[
     list[Metres], Field(title="a point [x, y]", min_length=2, max_length=2, examples=[[4, 3]], description="x, y in m")
 ]
-Polygon = Annotated[list[Point], Field(min_length=3, examples=[[[4, 3], [5, 3], [5, 4]]])]
+Polygon = Annotated[list[Point], Field(title="a polygon", min_length=3, examples=[[[4, 3], [5, 3], [5, 4]]])]
+Way = Annotated[list[Point], Field(title="a way", min_length=2, examples=[[[0, 0], [10, 0], [10, -10]]])]
 
 
 def in_order(share: list[float]) -> list[float]:

@@ -1,7 +1,7 @@
 """World and commands files → World and Scene; all mistakes of a file at once."""
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -10,20 +10,21 @@ from pydantic import BaseModel, ValidationError
 from ekfsim.errors import InputError, Mistake, UsageError
 from ekfsim.files.building import scene_of, world_of
 from ekfsim.files.checks import Sound, angle_warnings, check_commands, check_world, kidnap_warnings
-from ekfsim.files.commands_file import CommandsKeys
+from ekfsim.files.commands_file import WAYS, CommandsKeys, RecordingKeys
 from ekfsim.files.marked import Mark, Node, parse
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import resolve, source_name
 from ekfsim.files.schema import MODELS, Kind
 from ekfsim.files.source import bytes_of, text_of
-from ekfsim.files.telling import at, tell
+from ekfsim.files.system_checks import aliases, check_fit, check_system, check_ways, system_warnings
+from ekfsim.files.telling import at, details_of, tell
 from ekfsim.files.world_file import WorldKeys
 from ekfsim.scene import Scene
+from ekfsim.systems.document import DocumentReading
 from ekfsim.world import World
 
 T = TypeVar("T")
-LATER = {"recording": "recorded logs", "drive": "driven paths"}  # keys of commands files that are not read yet
-ONLY_IN_WORLDS = {"name", "boundary", "obstacles", "landmarks", "start", "noise", "belief", "faults"}
+ONLY_IN_WORLDS = {*aliases(WorldKeys).values()} - {"description"}
 
 
 @dataclass
@@ -49,44 +50,101 @@ def load_world(path: str | Path) -> World:
     return read_world(resolve(path, "worlds")).get()
 
 
-def load_scene(path: str | Path, world: str | Path | None = None) -> Scene:
+def load_scene(
+    path: str | Path,
+    world: str | Path | None = None,
+    log: str | Path | None = None,
+    reading: DocumentReading = "corrected",
+) -> Scene:
     """The scene that a commands file describes, in its own world or in the one given; also packaged ones by name.
 
+    `log` stands in place of the one that the file's recording names; `reading` is that of the system's document.
     Raises UsageError where a file is missing, InputError with all mistakes of both files.
     """
-    return read_scene(resolve(path, "commands"), None if world is None else resolve(world, "worlds")).get()
+    world = None if world is None else resolve(world, "worlds")
+    return read_scene(resolve(path, "commands"), world, log, reading).get()
 
 
-def read_world(path: str | Path, shown: str | None = None) -> Loaded[World]:
+def read_world(path: str | Path, shown: str | None = None, recorded: bool = False) -> Loaded[World]:
     """A world file, with its mistakes and warnings; `shown` is how messages name it.
 
     Raises UsageError where there is no such file.
     """
-    return world_in(read(Path(path), shown or str(path), "world"))
+    return world_in(read(Path(path), shown or str(path), "world"), recorded)
 
 
-def world_in(file: "File") -> Loaded[World]:
-    """The world that was found in a file."""
+def world_in(file: "File", recorded: bool = False) -> Loaded[World]:
+    """The world that was found in a file; one that a log was recorded in may lack what the log brings."""
     loaded = Loaded[World](mistakes=file.mistakes, warnings=file.warnings)
-    if isinstance(file.keys, WorldKeys) and not file.mistakes:
+    if isinstance(file.keys, WorldKeys) and file.sound is not None and not file.mistakes:
         loaded.value = world_of(file.keys)
+        loaded.warnings += system_warnings(file.sound, loaded.value, recorded)
     return loaded
 
 
-def read_scene(path: str | Path, world: str | Path | None = None) -> Loaded[Scene]:
-    """A commands file and its world, with the mistakes and warnings of both.
+def read_scene(
+    path: str | Path,
+    world: str | Path | None = None,
+    log: str | Path | None = None,
+    reading: DocumentReading = "corrected",
+) -> Loaded[Scene]:
+    """A commands file, its world and its log, with the mistakes and warnings of all.
 
     Raises UsageError where there is no such file.
     """
-    return scene_in(read(Path(path), str(path), "commands"), Path(path), world)
+    file = read(Path(path), str(path), "commands")
+    loaded = scene_in(file, Path(path), world)
+    keys = file.keys if isinstance(file.keys, CommandsKeys) else None
+    if loaded.value is not None:
+        loaded.value = replace(loaded.value, reading=reading)
+    if keys is not None and keys.recording is not None:
+        recorded(loaded, file, keys.recording, Path(path), log)
+    elif keys is not None and log is not None and file.sound is not None:
+        way = next(way for way in WAYS if way in file.sound.root.keys)
+        wrong = f"the file has '{way}', not a recording"
+        loaded.mistakes.append(file.sound.mistake((way,), wrong, "--log has nothing to replace"))
+    return loaded
+
+
+def recorded(loaded: Loaded[Scene], file: "File", recording: RecordingKeys, path: Path, log: str | Path | None) -> None:
+    """Read the log of a scene: its entries, the landmarks where it tells any, its mistakes and its warnings."""
+    sound, scene = file.sound, loaded.value
+    assert sound is not None
+    if log is None and recording.path is None:
+        wrong = "the recording names no path"
+        loaded.mistakes.append(sound.mistake(("recording",), wrong, "give one with --log"))
+    if scene is None or loaded.mistakes:
+        return
+    from ekfsim.files.logs import read_log
+
+    source = os.path.normpath(log if log is not None else path.parent / (recording.path or ""))
+    try:
+        found = read_log(recording.format, Path(source), scene.world, scene.reading)
+    except InputError as error:
+        loaded.mistakes += error.mistakes
+        return
+    except UsageError as error:
+        if log is not None:
+            raise
+        wrong, _, right = str(error).partition("; ")
+        right = right or "write its path relative to this file, or give one with --log"
+        loaded.mistakes.append(sound.mistake(("recording", "path"), wrong, right))
+        return
+    world = scene.world if found.landmarks is None else replace(scene.world, landmarks=found.landmarks)
+    loaded.value = replace(scene, world=world, log=found.log, log_source=source_name(source))
+    loaded.warnings += found.warnings
 
 
 def scene_in(file: "File", path: Path, world: str | Path | None = None) -> Loaded[Scene]:
-    """The scene that was found in a file, in the world that it names or in the one given."""
+    """The scene that was found in a file, in the world that it names or in the one given, its log not yet read."""
     if file.sound is None:  # nothing can be read in it, not even its world
         return Loaded(mistakes=file.mistakes)
     source = Path(world) if world is not None else path.parent / (file.sound.value("world") or "")
-    found = read_world(source) if world is not None else own_world(file, source)
+    is_recorded = file.sound.root.at(("recording",)) is not None
+    found = read_world(source, recorded=is_recorded) if world is not None else own_world(file, source, is_recorded)
+    if isinstance(file.keys, CommandsKeys) and found.value is not None:
+        file.mistakes += check_fit(file.sound, file.keys, found.value)
+        file.mistakes.sort(key=in_order_of_place)
     kidnaps = kidnap_warnings(file.sound, found.value.map) if found.value is not None else ()
     warnings = [*file.warnings, *kidnaps, *found.warnings]
     loaded = Loaded[Scene](mistakes=[*file.mistakes, *found.mistakes], warnings=warnings)
@@ -95,7 +153,7 @@ def scene_in(file: "File", path: Path, world: str | Path | None = None) -> Loade
     return loaded
 
 
-def own_world(file: "File", source: Path) -> Loaded[World]:
+def own_world(file: "File", source: Path, recorded: bool) -> Loaded[World]:
     """The world that a commands file names. A missing one is a mistake in that file."""
     sound = file.sound
     assert sound is not None
@@ -112,7 +170,7 @@ def own_world(file: "File", source: Path) -> Loaded[World]:
         file.mistakes.append(sound.mistake(("world",), wrong, right or "write its path relative to this file"))
         file.mistakes.sort(key=in_order_of_place)
         return Loaded()
-    return read_world(source, os.path.normpath(source))
+    return read_world(source, os.path.normpath(source), recorded)
 
 
 def kind_of(path: str | Path) -> Kind:
@@ -122,12 +180,17 @@ def kind_of(path: str | Path) -> Kind:
 
 
 def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
-    """All mistakes and warnings of a file of either kind, a scene's world included.
+    """All mistakes and warnings of a file of either kind, a scene's world and log included where it names them.
 
     Raises UsageError where there is no such file.
     """
     file = read(Path(path), str(path), None)
-    return scene_in(file, Path(path)) if file.kind == "commands" else world_in(file)
+    if file.kind == "world":
+        return world_in(file)
+    loaded = scene_in(file, Path(path))
+    if isinstance(file.keys, CommandsKeys) and file.keys.recording is not None and file.keys.recording.path is not None:
+        recorded(loaded, file, file.keys.recording, Path(path), None)
+    return loaded
 
 
 @dataclass
@@ -155,9 +218,11 @@ def read(path: Path, shown: str, kind: Kind | None) -> File:
         keys = MODELS[kind].model_validate(root.plain())
     except ValidationError as error:
         mistakes += tell(error, kind, root, shown)
-        wrong = {detail["loc"] for detail in error.errors(include_url=False)}
+        wrong = {detail["loc"] for detail in details_of(error)}
     sound = Sound(shown, root, wrong)
-    mistakes += check_world(sound) if kind == "world" else check_commands(sound)
+    mistakes += (
+        (*check_world(sound), *check_system(sound)) if kind == "world" else (*check_commands(sound), *check_ways(sound))
+    )
     return File(kind, sorted(mistakes, key=in_order_of_place), sound, keys, list(angle_warnings(sound)))
 
 
@@ -166,9 +231,6 @@ def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
     if not isinstance(root.value, dict):
         held = "a list" if isinstance(root.value, list) else "no 'key: value'"
         return root.mark, (), f"the file holds {held}", "see `ekfsim new` for one to start from"
-    for key, what in LATER.items():
-        if key in root.keys:
-            return root.keys[key], (), f"'{key}' ({what}) is not read by this version", "write 'commands' instead"
     if kind == "world" and kind_of_tree(root) == "commands":
         return root.mark, (), "this is a commands file", "name a world file here"
     if kind == "commands" and kind_of_tree(root) == "world" and root.keys.keys() & ONLY_IN_WORLDS:
@@ -178,7 +240,7 @@ def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
 
 def kind_of_tree(root: Node) -> Kind:
     """The kind of a file, by its keys."""
-    return "world" if root.keys.keys().isdisjoint(("commands", *LATER)) else "commands"
+    return "world" if root.keys.keys().isdisjoint(WAYS) else "commands"
 
 
 def in_order_of_place(mistake: Mistake) -> tuple[int, int]:

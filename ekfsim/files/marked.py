@@ -6,7 +6,9 @@ PyYAML only cuts the text into events. What they mean is decided here: scalars a
 
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
+from typing import Any
 
 import yaml
 
@@ -16,6 +18,7 @@ from ekfsim.files.syntax import syntax_mistake
 
 MAX_VALUES = 1_000_000
 MAX_DEPTH = 64
+TOO_DEEP = "maximum nesting depth"
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 Path = tuple[str | int, ...]  # keys and indices from the top of a file to a value
@@ -136,11 +139,12 @@ def parse(text: str, file: str) -> tuple[Node, list[Mistake]]:
     """
     tree = Tree(file)
     try:
-        for event in yaml.parse(text, Loader=LOADER):
-            if tree.is_second_document(event):
-                break
-            tree.take(event)
+        tree.grow(text, LOADER)
     except yaml.YAMLError as error:
+        if TOO_DEEP in str(error):  # libyaml's own limit, met before it tells of the level that is too deep here
+            tree = Tree(file)
+            with suppress(yaml.YAMLError):
+                tree.grow(text, yaml.SafeLoader)
         raise InputError([*tree.mistakes, syntax_mistake(error, text, file)]) from None
     if tree.root is None:
         raise InputError([Mistake(Place(file), "", "the file is empty", "see `ekfsim new` for one to start from")])
@@ -156,6 +160,13 @@ class Tree:
         self.mistakes: list[Mistake] = []
         self.open: list[Open] = []
         self.anchors: dict[str, Node] = {}
+
+    def grow(self, text: str, loader: Any) -> None:
+        """Grow by the first document of a text. Raises YAMLError where it is none."""
+        for event in yaml.parse(text, Loader=loader):
+            if self.is_second_document(event):
+                break
+            self.take(event)
 
     def is_second_document(self, event: yaml.Event) -> bool:
         """Whether another document begins, which is a mistake."""

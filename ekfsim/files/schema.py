@@ -41,7 +41,7 @@ def json_schema(kind: Kind) -> Schema:
     """The schema of a kind of file, for an editor.
 
     >>> json_schema("world")["required"]
-    ['name', 'start', 'noise']
+    ['name', 'start']
     """
     schema = MODELS[kind].model_json_schema(schema_generator=WithoutNull)
     return {"$schema": WithoutNull.schema_dialect, **schema}
@@ -52,7 +52,14 @@ def schema_at(kind: Kind, path: tuple[str | int, ...]) -> Schema:
     whole = json_schema(kind)
     found = whole
     for part in path:
+        if "oneOf" in found and "properties" not in found:  # a drive: a list or a mapping
+            found = next(one for one in found["oneOf"] if ("items" in one) == isinstance(part, int))
+            found = resolved(found, whole)
         found = found.get("items", {}) if isinstance(part, int) else found.get("properties", {}).get(part, {})
-        if "$ref" in found:
-            found = {**whole["$defs"][found["$ref"].rpartition("/")[2]], **found}
+        found = resolved(found, whole)
     return found
+
+
+def resolved(found: Schema, whole: Schema) -> Schema:
+    """A part of a schema, with what it refers to."""
+    return {**whole["$defs"][found["$ref"].rpartition("/")[2]], **found} if "$ref" in found else found

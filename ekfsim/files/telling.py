@@ -16,6 +16,7 @@ NOUNS = {
     "number": "a number",
     "integer": "a whole number",
     "string": "text",
+    "boolean": "true or false",
     "array": "a list",
     "object": "a mapping 'key: value'",
 }
@@ -26,7 +27,7 @@ def tell(error: ValidationError, kind: Kind, root: Node, file: str) -> list[Mist
 
     Nothing more is told of a value that a mistake was told of already, nor of a missing key that was only misspelt.
     """
-    details = error.errors(include_url=False)
+    details = details_of(error)
     unknown = [detail["loc"] for detail in details if detail["type"] == "extra_forbidden"]
     misspelt = {(*path[:-1], meant(str(path[-1]), kind, path[:-1])) for path in unknown}
     return [
@@ -34,6 +35,15 @@ def tell(error: ValidationError, kind: Kind, root: Node, file: str) -> list[Mist
         for detail in details
         if not root.nearest(detail["loc"]).faulty and not (detail["type"] == "missing" and detail["loc"] in misspelt)
     ]
+
+
+def details_of(error: ValidationError) -> list[ErrorDetails]:
+    """All that a model found, each at the path of the file: a drive's way begins with which of the two kinds it is."""
+    details = error.errors(include_url=False)
+    for detail in details:
+        if detail["loc"][:1] == ("drive",):
+            detail["loc"] = (*detail["loc"][:1], *detail["loc"][2:])
+    return details
 
 
 def tell_one(detail: ErrorDetails, kind: Kind, root: Node, file: str) -> Mistake:
@@ -70,8 +80,8 @@ def at(file: str, mark: Mark, path: Path, wrong: str, right: str) -> Mistake:
 def unknown_key(key: str, mapping: Node, kind: Kind, path: Path) -> tuple[str, str]:
     """A key that nothing reads."""
     schema = schema_at(kind, path)
-    is_command = schema.get("title") == "a command"
-    wrong = f"{quoted(key)} is not a command" if is_command else f"unknown key {quoted(key)}"
+    what = {"a command": "command", "a sensor": "sensor"}.get(schema.get("title", ""))
+    wrong = f"{quoted(key)} is not a {what}" if what else f"unknown key {quoted(key)}"
     for other in mapping.keys:
         if key in schema_at(kind, (*path, other)).get("properties", {}):
             return wrong, f"indent it further than '{other}' to put it under it"
@@ -79,7 +89,7 @@ def unknown_key(key: str, mapping: Node, kind: Kind, path: Path) -> tuple[str, s
         name, colon, value = key.partition(":")
         spaced_out = f"write a space after the colon: '{known}: {short(value)}'"
         return wrong, spaced_out if colon and name == known else f"did you mean '{known}'?"
-    return wrong, f"known {'commands' if is_command else 'keys'} here: {', '.join(schema['properties'])}"
+    return wrong, f"known {what or 'key'}s here: {', '.join(schema['properties'])}"
 
 
 def meant(key: str, kind: Kind, path: Path) -> str:
@@ -105,8 +115,10 @@ def one_of(words: list[str]) -> str:
 
 
 def wrong_length(node: Node, schema: Schema) -> tuple[str, str]:
-    """Too few points, or no pair."""
+    """Too few points, no pair, or nothing in a list."""
     count = len(node.value) if isinstance(node.value, list) else 0
+    if count == 0 and "a list" in noun(schema):
+        return "an empty list stands here", f"write e.g. {example(schema)}"
     values = f"{count} value{'' if count == 1 else 's'}"
     if "maxItems" in schema:
         return (
@@ -114,14 +126,16 @@ def wrong_length(node: Node, schema: Schema) -> tuple[str, str]:
             f"write e.g. {example(schema)}",
         )
     points = values.replace("value", "point")
-    return f"{points} make{'s' if count == 1 else ''} no polygon", f"write at least three, e.g. {example(schema)}"
+    least = {2: "two", 3: "three"}[schema["minItems"]]
+    what = noun(schema).removeprefix("a ")
+    return f"{points} make{'s' if count == 1 else ''} no {what}", f"write at least {least}, e.g. {example(schema)}"
 
 
 def wrong_kind(node: Node, schema: Schema) -> tuple[str, str]:
     """Text for a number, a number for text, a list for a mapping, …"""
     if "enum" in schema:
         return unknown_word(node, schema)
-    wanted, value = schema["type"], node.value
+    wanted, value = schema.get("type"), node.value
     right = f"write e.g. {example(schema)}"
     if wanted == "integer" and isinstance(value, float):
         if not math.isfinite(value) or abs(value) >= 2**63:
@@ -164,15 +178,17 @@ def what_stands(node: Node) -> str:
 
 def out_of_range(node: Node, schema: Schema) -> tuple[str, str]:
     """A number that is too small, too large or none."""
-    value = node.value
-    low, high = schema.get("minimum"), schema.get("maximum")
+    value, right = node.value, f"write e.g. {example(schema)}"
     if isinstance(value, float) and not math.isfinite(value):
         huge = node.written.strip("+-")[:1].isdigit()
-        return f"{shown(node)} is {'too large' if huge else 'not a finite number'}", f"write e.g. {example(schema)}"
-    if low is None or high is None:
+        return f"{shown(node)} is {'too large' if huge else 'not a finite number'}", right
+    if "exclusiveMaximum" in schema:
         low, high = schema["exclusiveMinimum"], schema["exclusiveMaximum"]
-        return f"{shown(node)} is not strictly between {low} and {high}", f"write e.g. {example(schema)}"
-    small = isinstance(value, int | float) and value < low
+        return f"{shown(node)} is not strictly between {low} and {high}", right
+    low, high = schema["minimum" if "minimum" in schema else "exclusiveMinimum"], schema["maximum"]
+    small = isinstance(value, int | float) and value <= low
+    if small and "exclusiveMinimum" in schema:
+        return f"{shown(node)} is {'negative' if value != low else f'not more than {spaced(low)}'}", right
     if high == 1:
         right = f"write {noun(schema)} from 0 to 1"
     else:
@@ -206,7 +222,7 @@ def flow(value: Any) -> str:
         return "{" + ", ".join(f"{key}: {flow(inner)}" for key, inner in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(map(flow, value)) + "]"
-    return str(value)
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def shown(node: Node) -> str:

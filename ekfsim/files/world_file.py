@@ -3,13 +3,34 @@
 from pydantic import ConfigDict, Field
 from pydantic.config import JsonDict
 
-from ekfsim.files.fields import Degrees, Metres, Name, Polygon, Pose, Probability, Ratio, Scale, Spread, Strict, Text
+from ekfsim.files.fields import (
+    Degrees,
+    Metres,
+    Name,
+    Polygon,
+    Pose,
+    Probability,
+    Ratio,
+    Scale,
+    Spread,
+    Strict,
+    Text,
+    Way,
+)
+from ekfsim.files.sensor_file import MARKERS, SensorKeys
+from ekfsim.files.system_file import RobotKeys, SystemName
 
 POSE = {"x": 1.0, "y": 1.0, "theta": 90}
 SIGMA = {"x": 0.1, "y": 0.1, "theta": 5}
 DESK: JsonDict = {"name": "desk", "points": [[4, 3], [5, 3], [5, 4], [4, 4]]}
 LANDMARK: JsonDict = {"id": 3, "x": 5.0, "y": -5.0}
 ROOM = [[0, 0], [10, 0], [10, 8], [0, 8]]
+SQUARE = [[0, 0], [10, 0], [10, -10], [0, -10]]
+CLASSROOM: JsonDict = {  # what belongs to the classroom's robot, and what to the others
+    "if": {"properties": {"system": {"const": "classroom"}}},
+    "then": {"required": ["noise"], "properties": {"robot": False, "sensors": False}},
+    "else": {"properties": {"noise": False, "faults": False, "belief": {"properties": {"noise": False}}}},
+}
 
 
 class SigmaKeys(Strict):
@@ -95,7 +116,9 @@ class BeliefKeys(Strict):
         examples=[SIGMA],
     )
     noise: ToldNoiseKeys | None = Field(
-        None, description="Noise ratios that the filter is told.", examples=[{"odometryDstSigmaRatio": 0.001}]
+        None,
+        description="Noise ratios that the filter is told. Only in the classroom.",
+        examples=[{"odometryDstSigmaRatio": 0.001}],
     )
     missing: list[Name] | None = Field(
         None, description="Names of the obstacles that the filter's map lacks.", examples=[["desk"]]
@@ -127,10 +150,16 @@ class FaultKeys(Strict):
 class WorldKeys(Strict):
     """What stands where, how noisy the robot is, and what the filter is told of both. Metres and degrees."""
 
-    model_config = ConfigDict(title="ekfsim world")
+    model_config = ConfigDict(title="ekfsim world", json_schema_extra=CLASSROOM)
 
     name: Name = Field(description="What pictures and reports call this world.", examples=["classroom"])
     description: Text = Field("", description="What this world is for; its first line is shown by `ekfsim list`.")
+    system: SystemName = Field(
+        "classroom",
+        description="Whose robot this is: the classroom's, which obeys commands, or that of a document or a recorded "
+        "log, which is driven along a way.",
+        examples=["mower"],
+    )
     boundary: Polygon | None = Field(
         None,
         description="The room: corners in order, [x, y] in m. Its ring is a wall. Unbounded without.",
@@ -145,8 +174,10 @@ class WorldKeys(Strict):
         [], description="Points for the sensors that see landmarks.", examples=[[LANDMARK]]
     )
     start: StartKeys = Field(description="Where the robot truly starts.", examples=[POSE])
-    noise: NoiseKeys = Field(
-        description="The five noise ratios, all required.",
+    noise: NoiseKeys | None = Field(
+        None,
+        description="The five noise ratios, all required in the classroom; the other systems have theirs in robot and "
+        "sensors.",
         examples=[
             {
                 "executionDstSigmaRatio": 0.05,
@@ -157,11 +188,30 @@ class WorldKeys(Strict):
             }
         ],
     )
+    robot: RobotKeys | None = Field(
+        None,
+        description="What the robot measures of its motion; what is left out is the document's. Not in the classroom.",
+        examples=[{"rate": 100, "width": 1.41}],
+    )
+    sensors: list[SensorKeys] | None = Field(
+        None,
+        description="All sensors, in place of the system's own. Not in the classroom, whose robot has a laser.",
+        examples=[[{"markers": MARKERS}]],
+    )
+    expected_path: Way | None = Field(
+        None,
+        alias="expectedPath",
+        description="The way that was meant to be driven: an outline that closes by itself, [x, y] in m. It is drawn, "
+        "and the summary's path_rmse is measured to it.",
+        examples=[SQUARE],
+    )
     belief: BeliefKeys | None = Field(
         None,
         description="What the filter is told, where that differs from the truth.",
         examples=[{"start": {"x": 1.2, "y": 1.0, "theta": 80}}],
     )
     faults: FaultKeys | None = Field(
-        None, description="What is wrong with the robot, and no one knows.", examples=[{"rangeBias": 0.1}]
+        None,
+        description="What is wrong with the robot, and no one knows. Only in the classroom.",
+        examples=[{"rangeBias": 0.1}],
     )

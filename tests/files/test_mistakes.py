@@ -256,8 +256,8 @@ WORLDS = {
             "5:8: start: the robot starts at [4.5, 3.5], inside the obstacle 'desk' or on its wall; "
             "start it where it can move",
             "5:32: start.theta: 'x' is text where a number belongs; write e.g. 90",
-            "7:1: unknown key 'size'; known keys here: name, description, boundary, obstacles, landmarks, start, "
-            "noise, belief, faults",
+            "7:1: unknown key 'size'; known keys here: name, description, system, boundary, obstacles, landmarks, start, "
+            "noise, robot, sensors, expectedPath, belief, faults",
             "9:1: the key 'name' is given twice, first on line 8; delete one",
         ],
     ),
@@ -343,7 +343,7 @@ SCENES = {
         "seed: 7.5\nfilter: 5\ngate: 0\nguard: false\ncommands: 5\n",
         [
             "2:7: seed: 7.5 is not written as a whole number; write e.g. 7",
-            "3:9: filter: 5 is a number where a word belongs; write ekf",
+            "3:9: filter: 5 is a number where a word belongs; write kf, ekf, iekf, ukf or pf",
             "4:7: gate: 0 is not strictly between 0 and 1; write e.g. 0.99",
             "5:8: guard: false is a yes-or-no value where a word belongs; write off, warn or skip",
             "6:11: commands: 5 is a number where a list belongs; write e.g. [{move: {distance: 1.75, angle: 90}}]",
@@ -372,11 +372,6 @@ SCENES = {
             "2:53: expect: unknown key 'times'; known keys here: lost, nis, nees, coverage, runs",
         ],
     ),
-    "later": (
-        "recording: log.txt\n",
-        ["2:1: 'recording' (recorded logs) is not read by this version; write 'commands' instead"],
-    ),
-    "driven": ("drive: x\n", ["2:1: 'drive' (driven paths) is not read by this version; write 'commands' instead"]),
 }
 
 
@@ -406,8 +401,8 @@ def test_mistakes_of_the_world_follow_those_of_the_scene(tmp_path):
     (tmp_path / "room.yaml").write_text(HEAD + "size: 5\n")
     assert lines_of(tmp_path, "seed: x\ncommands: []\nworld: ./room.yaml\n") == [
         "f.yaml:1:7: seed: 'x' is text where a whole number belongs; write e.g. 7",
-        "room.yaml:4:1: unknown key 'size'; known keys here: name, description, boundary, obstacles, landmarks, "
-        "start, noise, belief, faults",
+        "room.yaml:4:1: unknown key 'size'; known keys here: name, description, system, boundary, obstacles, landmarks, "
+        "start, noise, robot, sensors, expectedPath, belief, faults",
     ]
 
 

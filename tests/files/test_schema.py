@@ -13,6 +13,7 @@ from ekfsim.files.load import check, load_scene, load_world
 from ekfsim.files.packaged import description_of, packaged, resolve, source_name
 from ekfsim.files.schema import json_schema, schema_at
 from ekfsim.files.template import template
+from ekfsim.filters import FILTERS
 
 KINDS = ["world", "commands"]
 
@@ -62,7 +63,7 @@ def test_a_command_is_one_of_five():
     assert list(command["properties"]) == ["move", "sense", "repeat", "kidnap", "say"]
     assert (command["minProperties"], command["maxProperties"]) == (1, 1)
     assert schema_at("commands", ("commands", 3, "repeat", "commands", 1)) == command
-    assert schema_at("commands", ("filter",))["enum"][0] == "ekf"
+    assert schema_at("commands", ("filter",))["enum"] == list(FILTERS)
 
 
 def written(kind, folder, text):
@@ -93,14 +94,33 @@ def test_a_template_names_every_key(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_template_loads_with_each_of_its_examples_switched_on(tmp_path, kind):
     """A commented block begins with `# key:` of the top level and ends before a line that is no comment."""
-    for block in re.findall(r"^# [a-z]+:(?! drive).*\n(?:^#  .*\n)*", template(kind), re.MULTILINE):
+    for block in re.findall(r"^# [a-zA-Z]+:(?! drive).*\n(?:^#  .*\n)*", template(kind), re.MULTILINE):
         key = block[2:].partition(":")[0]
         if key not in json_schema(kind)["properties"]:
             continue
         switched_on = re.sub("^# ", "", block, flags=re.MULTILINE)
         rest = re.sub(rf"^{key}:.*\n", "", template(kind).replace(block, ""), flags=re.MULTILINE)
+        if key in ("system", "robot", "sensors"):  # as the template says of them
+            rest = re.sub(r"^noise:\n(?:  .*\n)*", "", rest, flags=re.MULTILINE)
+            switched_on += "" if key == "system" else "system: mower\n"
+            switched_on += "landmarks: [{id: 1, x: 2, y: 2}]\n"
         mistakes = [mistake.wrong for mistake in check(written(kind, tmp_path, rest + switched_on)).mistakes]
         assert mistakes in ([], ["belief.obstacles lists all that the filter's map holds"]), block
+
+
+def test_a_template_loads_with_each_way_to_drive(tmp_path):
+    """Its examples of `drive` and `recording` stand behind three spaces, in place of `commands`."""
+    (tmp_path / "mower.yaml").write_text("name: a\nsystem: mower\nstart: {x: 0, y: 0, theta: 0}\n")
+    (tmp_path / "pylon.yaml").write_text("name: a\nsystem: pylon\nstart: {x: 0, y: 0, theta: 0}\n")
+    text = template("commands")
+    before = text[: text.index("\ncommands:")]
+    ways = re.findall(r"^#   ((?:drive|recording): .*)\n", text, re.MULTILINE)
+    assert len(ways) == 5
+    for way in ways:
+        world = "pylon" if "pylon" in way else "mower"
+        scene = written("commands", tmp_path, before.replace("world.yaml", f"{world}.yaml") + f"\n{way}\n")
+        mistakes = [str(mistake) for mistake in check(scene).mistakes]
+        assert mistakes == [] or (way.startswith("recording") and "square.csv: no such file" in mistakes[0]), way
 
 
 @pytest.mark.parametrize("path", [*packaged("worlds").values(), *packaged("commands").values()], ids=str)

@@ -1,0 +1,187 @@
+"""What of a system, its robot and its drive no single key can tell."""
+
+import math
+from collections.abc import Iterator
+
+from pydantic import BaseModel
+
+from ekfsim.errors import Mistake
+from ekfsim.files.building import drive_of
+from ekfsim.files.checks import Sound, check_items
+from ekfsim.files.commands_file import SYSTEM_OF, WAYS, CommandsKeys
+from ekfsim.files.drive_file import MAX_ROUNDS, MAX_STEPS, PathKeys
+from ekfsim.files.marked import Path
+from ekfsim.files.schema import schema_at
+from ekfsim.files.sensor_file import SensorKeys
+from ekfsim.files.system_file import RobotKeys, fields_of, robot_fields
+from ekfsim.files.telling import at, example, meant
+from ekfsim.systems.drives import DRIVES, Circle, Drive, Spiral, Square, Stretches
+from ekfsim.systems.instruments import Infrared, Instrument, Ultrasonic
+from ekfsim.world import World
+
+BEAMS: dict[str, type[Ultrasonic] | type[Infrared]] = {"ultrasonic": Ultrasonic, "infrared": Infrared}
+OF_LANDMARKS = ("markers", "rangeBearing", "bearing", "range", "pylon")
+
+
+def aliases(model: type[BaseModel]) -> dict[str, str]:
+    """The keys of a file by the names that the program has for them."""
+    return {name: field.alias or name for name, field in model.model_fields.items()}
+
+
+def check_system(file: Sound) -> Iterator[Mistake]:
+    """Keys of a world file that its system does not read, or lacks."""
+    system = system_of(file)
+    if system == "classroom":
+        yield from check_classroom(file)
+    elif system is not None:
+        for path in (("noise",), ("belief", "noise"), ("faults",)):
+            if file.root.at(path):
+                wrong = f"{path[-1]} belong{'s' * (path[-1] == 'noise')} to the classroom's robot"
+                yield file.mistake(path, wrong, f"'robot' and 'sensors' hold the noise of the system '{system}'")
+        yield from check_robot(file, system)
+    yield from check_sensors(file)
+
+
+def system_of(file: Sound) -> str | None:
+    """The system of a world file, None where it is told wrongly."""
+    told = file.value("system")
+    return "classroom" if file.root.at(("system",)) is None else told if isinstance(told, str) else None
+
+
+def check_classroom(file: Sound) -> Iterator[Mistake]:
+    """The classroom needs its noise, and has no other robot."""
+    if file.root.at(("noise",)) is None and not any(meant(key, "world", ()) == "noise" for key in file.root.keys):
+        right = f"write noise: {example(schema_at('world', ('noise',)))}"
+        yield file.mistake(("noise",), "the key is missing", right)
+    for key, what in (("robot", "is told by 'noise'"), ("sensors", "carries a laser")):
+        if file.root.at((key,)):
+            right = f"delete '{key}', or write e.g. system: mower"
+            yield file.mistake((key,), f"the classroom's robot {what}", right)
+
+
+def check_robot(file: Sound, system: str) -> Iterator[Mistake]:
+    """Keys that the robot of a system does not have, and a skid-steer matrix that tells nothing."""
+    names = aliases(RobotKeys)
+    known = [names[name] for name in robot_fields(system)]
+    robot = file.root.at(("robot",))
+    for key in robot.keys if robot else ():
+        if key in names.values() and key not in known:
+            wrong = f"the robot of the system '{system}' has no key '{key}'"
+            yield file.mistake(("robot", key), wrong, f"it has: {', '.join(known)}")
+    skid = file.value("robot", "skid")
+    if skid is not None and "skid" in known:
+        (forward, _, turning) = skid
+        if abs(forward[0] * turning[1] - forward[1] * turning[0]) < 1e-9:
+            wrong = "by its rows 1 and 3, other speeds of the two sides make the same motion"
+            yield file.mistake(("robot", "skid"), wrong, "write e.g. [[0.5, 0.5], [0, 0], [2.5, -2.5]]")
+
+
+def check_sensors(file: Sound) -> Iterator[Mistake]:
+    """Items that hold no sensor or two, and beams that can measure nothing."""
+    yield from check_items(file, ("sensors",), list(aliases(SensorKeys).values()), "sensor")
+    for index in range(file.count("sensors")):
+        for kind, document in BEAMS.items():
+            path = ("sensors", index, kind)
+            if (beams := file.value(*path)) is not None:
+                near, far = beams.get("nearest", document.nearest), beams.get("range", document.farthest)
+                if near >= far:
+                    wrong = f"nothing lies between its nearest {near:g} m and its range of {far:g} m"
+                    yield file.mistake(path, wrong, "write a range that is more than the nearest")
+
+
+def system_warnings(file: Sound, world: World, recorded: bool) -> Iterator[str]:
+    """Sensors that have nothing to see, or are read less often than they say; a recording brings what it needs."""
+    for index, instrument in enumerate(world.instruments):
+        item = file.root.at(("sensors", index))
+        path: Path = ("sensors", index, *item.keys) if item else ("system",)
+        for wrong, right in [] if recorded else doubts(instrument, world):
+            yield str(at(file.file, file.root.nearest(path).mark, path, wrong, right))
+
+
+def doubts(instrument: Instrument, world: World) -> Iterator[tuple[str, str]]:
+    """Why a sensor hardly does what is meant, and the way out."""
+    name, robot = instrument.name, world.robot
+    if name in OF_LANDMARKS and not world.landmarks:
+        yield f"the sensor '{name}' sees landmarks, and the world has none", "list them under 'landmarks'"
+    if name in BEAMS and not any(world.map.rings()):
+        yield f"the sensor '{name}' sees walls, and the world has none", "write a 'boundary' or 'obstacles'"
+    if robot is not None and instrument.rate > robot.rate:
+        wrong = f"the sensor '{name}' is to be read at {instrument.rate:g} Hz, the robot moves at {robot.rate:g} Hz"
+        yield wrong, "it is read once at each motion"
+
+
+def check_ways(file: Sound) -> Iterator[Mistake]:
+    """A commands file without anything to do, or with two; a path with keys of another."""
+    held = [way for way in file.root.keys if way in WAYS]
+    if not held and not any(meant(key, "commands", ()) in WAYS for key in file.root.keys):
+        wrong, right = "the file says nothing to do", f"write one of {', '.join(WAYS)}"
+        yield file.mistake((), wrong, right)
+    for second in held[1:]:
+        wrong = f"'{held[0]}' on line {file.root.keys[held[0]][0]} says already what happens"
+        yield file.mistake((second,), wrong, "keep one of them")
+    yield from check_path(file)
+
+
+def check_path(file: Sound) -> Iterator[Mistake]:
+    """A path with keys of another, with a broken lap, or with more rounds than fit."""
+    path, drive = file.value("drive", "path"), file.root.at(("drive",))
+    if path is None or drive is None:
+        return
+    names = aliases(PathKeys)
+    known = ["path", *(names[name] for name in fields_of(DRIVES[path]))]
+    for key in drive.keys:
+        if key in names.values() and key not in known:
+            yield file.mistake(("drive", key), f"a {path} has no key '{key}'", f"it has: {', '.join(known)}")
+    laps = file.value("drive", "laps")
+    if path == "square" and laps is not None and laps != int(laps):
+        yield file.mistake(("drive", "laps"), f"{laps} is no whole number of squares", f"write {max(int(laps), 1)}")
+    if path == "spiral" and (way := file.value("drive")) is not None:
+        width, length = way.get("width", Spiral.width), way.get("length", Spiral.length)
+        spacing = way.get("spacing", Spiral.spacing)
+        rounds = 0.4 * min(width, length) / spacing
+        if rounds > MAX_ROUNDS:
+            wrong = f"so near to each other, there are {rounds:.0f} rounds, more than {MAX_ROUNDS}"
+            yield file.mistake(("drive", "spacing"), wrong, f"write at least {0.4 * min(width, length) / MAX_ROUNDS:g}")
+
+
+def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake]:
+    """A commands file whose robot the world does not have, and drives too long or too short for it."""
+    system = world.system
+    if keys.commands is not None and world.robot is not None:
+        wrong = f"the robot of the system '{system}' obeys no commands"
+        yield file.mistake(("commands",), wrong, "write 'drive' or 'recording', or name a world of the classroom")
+    if keys.drive is not None:
+        if world.robot is None:
+            wrong = "the classroom's robot is not driven, it obeys commands"
+            yield file.mistake(("drive",), wrong, "write 'commands', or name a world of another system")
+        else:
+            yield from check_length(file, drive_of(keys.drive), world.robot.rate)
+    if keys.recording is not None and system != (wanted := SYSTEM_OF[keys.recording.format]):
+        wrong = f"a '{keys.recording.format}' log is of the system '{wanted}', the world of the system '{system}'"
+        yield file.mistake(("recording", "format"), wrong, f"name a world of the system '{wanted}'")
+
+
+def check_length(file: Sound, drive: Drive, rate: float) -> Iterator[Mistake]:
+    """Drives of no step at all, and those that never end."""
+    steps = duration_of(drive) * rate
+    if steps > MAX_STEPS:
+        number = f"{steps:,.0f}".replace(",", " ") if steps < 1e12 else f"about {steps:.0e}"
+        wrong = f"the drive takes {number} steps at the robot's {rate:g} Hz, more than 1 000 000"
+        yield file.mistake(("drive",), wrong, "drive a shorter while, or lower the robot's rate")
+    elif round(steps) < 1:
+        wrong = f"the drive ends before the robot's first step, at {rate:g} Hz"
+        yield file.mistake(("drive",), wrong, f"drive at least {1 / rate:g} s")
+
+
+def duration_of(drive: Drive) -> float:
+    """How long a drive takes, in s."""
+    match drive:
+        case Spiral():
+            return drive.duration
+        case Square():
+            return 4 * drive.laps * (drive.side / drive.speed + math.pi / 2 / drive.turn_rate)
+        case Circle():
+            return 2 * math.pi * drive.radius * drive.laps / drive.speed
+        case Stretches():
+            return math.fsum(stretch.duration for stretch in drive.stretches)
+    raise AssertionError(drive)
