@@ -1,0 +1,40 @@
+"""Recorded logs: text files of other programs, or of `ekfsim record`, ↔ Entries."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from ekfsim.errors import UsageError
+from ekfsim.files.logs.gnss import read_gnss
+from ekfsim.files.logs.mower import read_mower
+from ekfsim.files.logs.mrclam import read_mrclam
+from ekfsim.files.logs.pioneer import read_pioneer
+from ekfsim.files.logs.pylon import read_pylon
+from ekfsim.files.logs.ranges import read_ranges
+from ekfsim.files.logs.recorded import Recorded
+from ekfsim.systems.document import DocumentReading
+from ekfsim.world import World
+
+__all__ = ["FORMATS", "SYSTEM_OF", "Recorded", "read_log"]
+
+Reader = Callable[[Path, World, DocumentReading], Recorded]
+FORMATS: dict[str, Reader] = {
+    "pylon": read_pylon,
+    "gnss": read_gnss,
+    "mower": read_mower,
+    "mrclam": read_mrclam,
+    "ranges": read_ranges,
+    "pioneer": read_pioneer,
+}
+SYSTEM_OF = {**{name: name for name in FORMATS}, "mrclam": "landmarks"}  # whose logs they are
+
+
+def read_log(format: str, path: Path, world: World, reading: DocumentReading) -> Recorded:
+    """The log that a file or a folder holds, for the robot and the instruments of a world.
+
+    Raises UsageError where a file is missing or the world is another system's, InputError with what is wrong in a file.
+    """
+    system = SYSTEM_OF[format]
+    if world.system != system:
+        wrong = f"a log of the format {format} belongs to a world with system: {system}"
+        raise UsageError(f"{path}: {wrong}; {world.name!r} has system: {world.system}")
+    return FORMATS[format](path, world, reading)

@@ -1,0 +1,138 @@
+"""A log of document 000, as its MATLAB listing reads it: poselog, angles and map, text files of bare numbers."""
+
+import math
+from itertools import groupby
+from pathlib import Path
+
+import numpy as np
+
+from ekfsim.errors import InputError, Mistake, Place
+from ekfsim.files.logs.folder import find, folder_of
+from ekfsim.files.logs.ordering import tell_gaps, tell_repeated
+from ekfsim.files.logs.recorded import Recorded
+from ekfsim.files.logs.table import Rows, Wanted, bare_table, some
+from ekfsim.files.logs.targets import of_landmarks
+from ekfsim.files.logs.timeline import beginning
+from ekfsim.geometry import Array, Integers
+from ekfsim.geometry.angles import wrap
+from ekfsim.records import Control, Entry, Log, Reading
+from ekfsim.systems.document import DocumentReading
+from ekfsim.systems.instruments import Landmark, Markers
+from ekfsim.world import World
+
+HOLDS = "marker-001-poselog.txt, marker-001-003-angles.txt and marker-001-map.txt"
+POSELOG = Wanted(("t", "ΔD_L", "ΔD_R", "ω", "x", "y", "heading"), (2, 3, 4, 8, 18, 19, 20), range(21, 1000))
+ANGLES = Wanted(("t", "marker", "azimuth", "elevation"), (0, 1, 2, 3), range(4, 1000))
+MAP = Wanted(("marker", "x", "y"), (0, 1, 2), range(3, 1000))
+
+
+def read_mower(path: Path, world: World, reading: DocumentReading) -> Recorded:
+    """Every row of the poselog, the first too, is one time update of dT; then the markers of its window are taken.
+
+    Raises UsageError where a file is missing, InputError with what is wrong in one.
+    """
+    warnings, folder = list[str](), folder_of(path, HOLDS)
+    files = (
+        find(folder, "the positions", "marker-001-poselog.txt", "*poselog.txt"),
+        find(folder, "the angles of the markers", "marker-001-003-angles.txt", "*angles.txt"),
+        find(folder, "the map of the markers", "marker-001-map.txt", "*map.txt"),
+    )
+    poses = some(bare_table(files[0], POSELOG, warnings, mixed=True), "positions")
+    _refuse_going_back(poses)
+    tell_repeated(poses, warnings)
+    tell_gaps(poses, warnings)
+    angles = bare_table(files[1], ANGLES, warnings, mixed=True)
+    landmarks = _landmarks(bare_table(files[2], MAP, warnings, mixed=True), warnings)
+    assert world.robot is not None
+    dT = 1 / world.robot.rate
+    readings = _by_row(poses, angles, dT, _readings(angles, landmarks, world, reading, warnings), warnings)
+    u = np.column_stack([poses.values[:, 1:4], np.full(len(poses), dT)])
+    truth = poses.values[:, 4:7].copy()
+    truth[:, 2] = wrap(truth[:, 2])
+    motion = world.robot.motion(reading)
+    entries = [Entry(0, None, truth[0], t=float(poses.t[0]))]
+    for row, t in enumerate(poses.t.tolist()):
+        for given in (Control(motion, u[row]), *readings.get(row, ())):
+            entries.append(Entry(len(entries), given, truth[row], t=t))
+    first = beginning(world, reading, _first_pose(poses, reading))
+    return Recorded(Log(tuple(entries), first), landmarks, warnings)
+
+
+def _first_pose(poses: Rows, reading: DocumentReading) -> Array:
+    """Row 1's pose; the listing begins with the mean heading of the rows 2 to 100, each brought into (−2π, 2π)."""
+    pose = poses.values[0, 4:7].copy()
+    if reading == "coded" and len(poses) > 1:
+        pose[2] = np.mean(np.fmod(poses.values[1:100, 6], 2 * math.pi))
+    pose[2] = wrap(pose[2])
+    return pose
+
+
+def _refuse_going_back(poses: Rows) -> None:
+    """Raise InputError where a stamp lies before the one above: every row is a time update, so none can be moved."""
+    back = np.flatnonzero(np.diff(poses.t) < 0) + 1
+    mistakes = [
+        Mistake(
+            Place(poses.file, int(poses.lines[row])),
+            "column 3",
+            f"the stamp {poses.t[row]:.12g} lies before that of the row above, {poses.t[row - 1]:.12g}",
+            "every row is a time update: put the rows in their order",
+        )
+        for row in back[:20].tolist()
+    ]
+    if len(back) > 20:
+        place = Place(poses.file, int(poses.lines[back[20]]))
+        mistakes.append(Mistake(place, "", f"and {len(back) - 20} more such rows"))
+    if mistakes:
+        raise InputError(mistakes)
+
+
+def _landmarks(table: Rows, warnings: list[str]) -> tuple[Landmark, ...]:
+    """The markers in the order of the map, by whose rows the angles name them."""
+    ids = table.values[:, 0]
+    if len(table) and np.array_equal(ids, np.rint(ids)) and len(np.unique(ids)) == len(ids):
+        if not np.array_equal(ids, np.arange(len(ids))):
+            warnings.append(f"{table.file}: its ids are not 0, 1, 2, …: the angles name a marker by its row, from 0")
+    elif len(table):
+        warnings.append(f"{table.file}: its ids are no names: the markers go by their rows, from 0")
+        ids = np.arange(len(table), dtype=float)
+    return tuple(Landmark(int(n), x, y) for n, (x, y) in zip(ids, table.values[:, 1:].tolist(), strict=True))
+
+
+def _readings(
+    angles: Rows, landmarks: tuple[Landmark, ...], world: World, reading: DocumentReading, warnings: list[str]
+) -> list[Reading | None]:
+    """What each row of the angles tells; None where the map has no such marker."""
+    _, targets = of_landmarks(world, reading, landmarks, (Markers,))[0]
+    marker = angles.values[:, 1]
+    unknown = np.flatnonzero((marker < 0) | (marker >= len(landmarks)) | (marker != np.rint(marker)))
+    if len(unknown):
+        row = int(unknown[0])
+        more = f", nor those of {len(unknown) - 1} more rows" if len(unknown) > 1 else ""
+        warnings.append(f"{angles.at(row)}: the map has no row {marker[row]:g}{more}: left out")
+    left_out = set(unknown.tolist())
+    found = list[Reading | None]()
+    for row, z in enumerate(angles.values[:, 2:4]):
+        target = None if row in left_out else targets[landmarks[int(marker[row])].id]
+        found.append(None if target is None else Reading(target.sensor, z, target.name))
+    return found
+
+
+def _by_row(
+    poses: Rows, angles: Rows, dT: float, readings: list[Reading | None], warnings: list[str]
+) -> dict[int, list[Reading]]:
+    """The readings by the row of the poselog at which they are used: the first whose stamp is not before theirs.
+
+    It must not be later than dT after it, or the listing's window t − dT ≤ t_m ≤ t would not hold.
+    """
+    row: Integers = np.searchsorted(poses.t, angles.t, side="left")
+    last = len(poses) - 1
+    used = (row <= last) & (angles.t >= poses.t[np.minimum(row, last)] - dT)
+    if missed := np.flatnonzero(~used).tolist():
+        more = f", nor do {len(missed) - 1} more" if len(missed) > 1 else ""
+        told = f"{angles.at(missed[0])}: the stamp {angles.t[missed[0]]:.12g} lies in no row's last {dT:g} s{more}"
+        warnings.append(f"{told}: left out")
+    order = sorted(np.flatnonzero(used).tolist(), key=lambda i: int(row[i]))  # stable: in a row as in the file
+    return {
+        at: [one for i in group if (one := readings[i]) is not None]
+        for at, group in groupby(order, key=lambda i: int(row[i]))
+    }

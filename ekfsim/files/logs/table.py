@@ -1,0 +1,214 @@
+"""Lines → numbers: quickly where all is well, and line by line where something is wrong.
+
+What no person would use is left out, and told: a last line that was cut short, numbers that are none (nan, inf), or
+cannot be meant (denormals, a million metres). Whatever else is wrong is refused with its place.
+"""
+
+import math
+import re
+import sys
+import warnings as library
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ekfsim.errors import InputError, Mistake, Place
+from ekfsim.files.logs.header import places_of, separator_of
+from ekfsim.files.logs.text import Lines, lines_of
+from ekfsim.files.source import mistake
+from ekfsim.files.telling import quoted
+from ekfsim.geometry import Array, Booleans, Integers
+
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?(nan|inf|infinity)", re.IGNORECASE | re.ASCII)
+MOST_TOLD = 20  # mistakes
+MOST_WARNED = 3  # rows of one kind
+ENORMOUS = 1e6  # m, rad, s-1, …
+FAR_FUTURE = 1e12  # s
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """The columns of a table that are read: how messages call them, and where they stand, from 0."""
+
+    names: tuple[str, ...]
+    places: tuple[int, ...]
+    widths: range  # how many columns a row may have
+    maybe: frozenset[str] = frozenset()  # columns that may say nan
+
+    def limits(self) -> Array:
+        """The magnitude beyond which a number cannot be meant."""
+        return np.array([FAR_FUTURE if name in ("t", "time") else ENORMOUS for name in self.names])
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The numbers of a table, and the line that each row comes from."""
+
+    file: str
+    lines: Integers  # (n,)
+    values: Array  # (n, k), a column for each that was wanted
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+    def __getitem__(self, part: Booleans | Integers | slice) -> "Rows":
+        return replace(self, lines=self.lines[part], values=self.values[part])
+
+    @property
+    def t(self) -> Array:
+        """The first column, the time in s : (n,)"""
+        return self.values[:, 0]
+
+    def at(self, row: int) -> str:
+        """How warnings name a row."""
+        return f"{self.file}:{self.lines[row]}"
+
+
+def named_table(path: Path, columns: Sequence[tuple[str, ...]], warnings: list[str]) -> Rows:
+    """A table whose first line names its columns; each wanted one may go by several names.
+
+    Raises UsageError where there is no such file, InputError with what is wrong in it.
+    """
+    lines = lines_of(path)
+    width, places = places_of(lines, columns)
+    wanted = Wanted(tuple(names[0] for names in columns), tuple(places), range(width, width + 1))
+    body = replace(lines[1:], ended=lines.ended or len(lines) == 1)
+    return numbers_of(body, wanted, separator_of(lines.texts[0]), warnings)
+
+
+def bare_table(path: Path, wanted: Wanted, warnings: list[str], mixed: bool = False) -> Rows:
+    """A table without a header; with `mixed`, commas and white space both separate its columns.
+
+    Raises UsageError where there is no such file, InputError with what is wrong in it.
+    """
+    lines = lines_of(path)
+    if mixed:
+        lines = replace(lines, texts=[text.replace(",", " ") for text in lines.texts])
+    return numbers_of(lines, wanted, None, warnings)
+
+
+def numbers_of(lines: Lines, wanted: Wanted, separator: str | None, warnings: list[str]) -> Rows:
+    """The wanted columns of all rows that can be used. Raises InputError with the mistakes in the others."""
+    if separator:
+        lines = replace(lines, texts=[text.rstrip().removesuffix(separator) for text in lines.texts])
+    lines = _whole(lines, separator, warnings)
+    values = _quickly(lines, wanted, separator)
+    if values is None:
+        values = _carefully(lines, wanted, separator)
+    return _sane(Rows(lines.file, np.array(lines.numbers, np.int64), values), wanted, warnings)
+
+
+def _whole(lines: Lines, separator: str | None, warnings: list[str]) -> Lines:
+    """The lines without a last one that was cut short."""
+    if not len(lines):
+        return lines
+    last, above = lines.texts[-1].split(separator), [text.split(separator) for text in lines.texts[-20:-1]]
+    place = f"{lines.file}:{lines.numbers[-1]}"
+    if above and len(last) < len(above[-1]):
+        why = "in the middle of a row"
+    elif above and not lines.ended and (not _is_number(last[-1]) or _is_cut(last[-1], [row[-1] for row in above])):
+        why = "in the middle of a number"
+    else:
+        if not lines.ended:
+            warnings.append(f"{place}: the file ends without a line break; its last number may be cut short")
+        return lines
+    warnings.append(f"{place}: the file ends {why}: this line is left out")
+    return replace(lines[:-1], ended=True)
+
+
+def _is_cut(number: str, above: list[str]) -> bool:
+    """Whether a number has fewer decimals than the others, which all have the same."""
+    decimals = {len(text.strip().partition(".")[2]) for text in above}
+    return len(above) > 2 and len(decimals) == 1 and len(number.strip().partition(".")[2]) < decimals.pop()
+
+
+def _is_number(text: str) -> bool:
+    return NUMBER.fullmatch(text.strip()) is not None
+
+
+def _quickly(lines: Lines, wanted: Wanted, separator: str | None) -> Array | None:
+    """The wanted columns as numpy reads them; None where it stumbles, or might be more lenient than we are."""
+    if not len(lines):
+        return np.empty((0, len(wanted.places)))
+    try:
+        with library.catch_warnings():
+            library.simplefilter("error")
+            values: Array = np.loadtxt(lines.texts, delimiter=separator, ndmin=2, comments=None)
+    except (ValueError, UserWarning, OverflowError):
+        return None
+    return values[:, list(wanted.places)] if values.shape[1] in wanted.widths else None
+
+
+def _carefully(lines: Lines, wanted: Wanted, separator: str | None) -> Array:
+    """The same in as long as it takes. Raises InputError with the mistakes, each at its place."""
+    mistakes, rows, more = list[Mistake](), list[list[float]](), 0
+    widths = [len(text.split(separator)) for text in lines.texts]
+    usual = next((width for width in widths if width in wanted.widths), None)
+    if usual is None and len(set(widths)) == 1:
+        raise InputError([_width_mistake(lines, 0, widths[0], wanted.widths)])
+    for row, text in enumerate(lines.texts):
+        found = _row_mistakes(lines, row, text, separator, wanted, usual)
+        mistakes, more = (mistakes + found, more) if len(mistakes) < MOST_TOLD else (mistakes, more + len(found))
+        if not mistakes:
+            fields = text.split(separator)
+            rows.append([float(fields[place]) for place in wanted.places])
+    if more:
+        place = Place(lines.file, mistakes[-1].place.line, 1)
+        mistakes.append(Mistake(place, "", f"and {more} more mistakes below"))
+    if mistakes:
+        raise InputError(mistakes)
+    return np.array(rows).reshape(len(rows), len(wanted.places))
+
+
+def _row_mistakes(
+    lines: Lines, row: int, text: str, separator: str | None, wanted: Wanted, usual: int | None
+) -> list[Mistake]:
+    """What is wrong with one row."""
+    fields = text.split(separator)
+    if len(fields) not in wanted.widths or (usual is not None and len(fields) != usual):
+        return [_width_mistake(lines, row, len(fields), wanted.widths if usual is None else range(usual, usual + 1))]
+    found, column = [], 0
+    for place, field in enumerate(fields):
+        column = text.index(field, column) if field else column
+        if not _is_number(field):
+            start = column + len(field) - len(field.lstrip())
+            name = wanted.names[wanted.places.index(place)] if place in wanted.places else f"column {place + 1}"
+            wrong = f"{quoted(field)} is not a number" if field.strip() else "nothing stands where a number belongs"
+            found.append(Mistake(Place(lines.file, lines.numbers[row], start + 1), name, wrong, "write e.g. 1.5"))
+        column += len(field) + (separator is not None)
+    return found
+
+
+def _width_mistake(lines: Lines, row: int, width: int, widths: range) -> Mistake:
+    columns = "1 column stands" if width == 1 else f"{width} columns stand"
+    right = f"{widths.start}" + (" or more" if len(widths) > 2 else f" or {widths[-1]}" if len(widths) == 2 else "")
+    return Mistake(Place(lines.file, lines.numbers[row], 1), "", f"{columns} in this row", f"it must have {right}")
+
+
+def _sane(rows: Rows, wanted: Wanted, warnings: list[str]) -> Rows:
+    """The rows whose numbers can be meant."""
+    size = np.abs(rows.values)
+    allowed = np.isnan(rows.values) & np.array([name in wanted.maybe for name in wanted.names])
+    odd = ~allowed & (~(size <= wanted.limits()) | ((size > 0) & (size < sys.float_info.min)))
+    bad = np.flatnonzero(odd.any(axis=1))
+    for row in bad[:MOST_WARNED]:
+        column = int(np.argmax(odd[row]))
+        value = float(rows.values[row, column])
+        what = "no number" if not math.isfinite(value) else "a denormal" if abs(value) < 1 else "absurdly large"
+        warnings.append(f"{rows.at(row)}: {wanted.names[column]}: {value:g} is {what}: this row is left out")
+    if len(bad) > MOST_WARNED:
+        warnings.append(f"{rows.at(bad[MOST_WARNED])}: so {_are_rows(len(bad) - MOST_WARNED)} from here on")
+    return rows[~odd.any(axis=1)] if len(bad) else rows
+
+
+def _are_rows(count: int) -> str:
+    return "is 1 more row" if count == 1 else f"are {count} more rows"
+
+
+def some(rows: Rows, what: str) -> Rows:
+    """The rows, of which there must be one. Raises InputError where there is none."""
+    if not len(rows):
+        raise mistake(rows.file, 1, 1, "the file holds no rows", f"without {what} there is nothing to localize")
+    return rows

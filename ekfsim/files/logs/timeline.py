@@ -1,0 +1,128 @@
+"""Motions and readings, each with its time → Entries, in order."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ekfsim.errors import UsageError
+from ekfsim.files.logs.recorded import Recorded
+from ekfsim.files.logs.truth import Truth
+from ekfsim.filters.belief import Gaussian
+from ekfsim.geometry import Array, Booleans
+from ekfsim.models.protocols import Motion
+from ekfsim.records import Control, Entry, Log, Reading
+from ekfsim.systems.document import DocumentReading
+from ekfsim.systems.instruments import Landmark
+from ekfsim.world import World
+
+
+@dataclass(frozen=True)
+class Motions:
+    """Motion inputs, one after another, each over a time that a reading may cut in two."""
+
+    motion: Motion
+    begin: Array  # (n,) s
+    end: Array  # (n,) s
+    u: Array  # (n, m)
+    amounts: Booleans  # (m,) which entries of u grow with the time: ways, turns, dt; the others are rates
+
+    def part(self, k: int, begin: float, end: float) -> Control:
+        """What is held from `begin` to `end` of the k-th motion."""
+        if begin == self.begin[k] and end == self.end[k]:
+            return Control(self.motion, self.u[k])
+        share = (end - begin) / (self.end[k] - self.begin[k])
+        return Control(self.motion, np.where(self.amounts, self.u[k] * share, self.u[k]))
+
+    def since(self, t: float) -> "Motions":
+        """What is left of them from an instant on."""
+        left = self.end > t
+        begin, end, u = self.begin[left], self.end[left], self.u[left].copy()
+        if len(begin) and begin[0] < t:
+            u[0] = np.where(self.amounts, u[0] * ((end[0] - t) / (end[0] - begin[0])), u[0])
+            begin = np.concatenate([[t], begin[1:]])
+        return Motions(self.motion, begin, end, u, self.amounts)
+
+
+class Sample(NamedTuple):
+    """A reading and its time."""
+
+    t: float  # s
+    reading: Reading
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """All that was recorded."""
+
+    name: str  # of the log, as messages call it
+    start: float  # s
+    motions: Motions
+    samples: Sequence[Sample]  # in any order; those of one instant as they are to be used
+    truth: Truth | None = None
+    landmarks: tuple[Landmark, ...] | None = None
+    between: bool = True  # whether errors are counted at readings between two motions
+
+    def recorded(self, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
+        """The log. It starts at the truth's first instant where that comes later, and at the true pose."""
+        start, motions = self.start, self.motions
+        if self.truth is not None and not self.truth.t[0] <= start <= self.truth.t[-1]:
+            if start > self.truth.t[-1] or not np.any(motions.end > self.truth.t[0]):
+                raise UsageError(f"{self.name}: the truth and the motion have no instant in common")
+            start = float(self.truth.t[0])
+            told = f"{self.name}: starts at {start:.12g} s, where the truth begins"
+            warnings.append(f"{told}: what was before is left out")
+            motions = motions.since(start)
+        happened = [(start, None, True), *_merged(motions, self._within(start, motions, warnings), self.between)]
+        truths = _truths(self.truth, np.array([t for t, _, _ in happened]))
+        entries = tuple(
+            Entry(index, given, truth, t=t, judged=judged)
+            for index, ((t, given, judged), truth) in enumerate(zip(happened, truths, strict=True))
+        )
+        return Recorded(Log(entries, beginning(world, reading, truths[0])), self.landmarks, warnings)
+
+    def _within(self, start: float, motions: Motions, warnings: list[str]) -> list[Sample]:
+        """The readings that the motions reach, by time."""
+        end = float(motions.end[-1]) if len(motions.end) else start
+        kept = sorted((s for s in self.samples if start <= s.t <= end), key=lambda sample: sample.t)
+        if missed := len(self.samples) - len(kept):
+            readings = "1 reading lies" if missed == 1 else f"{missed} readings lie"
+            warnings.append(f"{self.name}: {readings} before or after the motion: left out")
+        return kept
+
+
+def beginning(world: World, reading: DocumentReading, pose: Array | None) -> Gaussian:
+    """The first belief: at the true pose, or where the world file says, as uncertain as the robot's document has it."""
+    assert world.robot is not None
+    pose = world.told.start if pose is None else pose
+    return Gaussian(world.layout.state(pose), world.robot.first_covariance(reading))
+
+
+Happened = tuple[float, Control | Reading | None, bool]  # t, what the filter is given, whether errors are counted
+
+
+def _merged(motions: Motions, samples: Sequence[Sample], between: bool) -> list[Happened]:
+    """Predict up to each reading, take it, predict the rest."""
+    happened, i = list[Happened](), 0
+    for k, (begin, end) in enumerate(zip(motions.begin.tolist(), motions.end.tolist(), strict=True)):
+        now = begin
+        while i < len(samples) and samples[i].t < end:
+            if samples[i].t > now:
+                happened.append((samples[i].t, motions.part(k, now, samples[i].t), between))
+                now = samples[i].t
+            happened.append((now, samples[i].reading, between or now == motions.begin[0]))
+            i += 1
+        happened.append((end, motions.part(k, now, end), True))
+        while i < len(samples) and samples[i].t == end:
+            happened.append((end, samples[i].reading, True))
+            i += 1
+    return happened
+
+
+def _truths(truth: Truth | None, t: Array) -> list[Array | None]:
+    """The true pose at each instant, None where it is unknown."""
+    if truth is None:
+        return [None] * len(t)
+    poses = truth.at(t)
+    return [pose if known else None for pose, known in zip(poses, np.isfinite(poses[:, 0]).tolist(), strict=True)]
