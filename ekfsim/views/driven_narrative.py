@@ -5,7 +5,7 @@ import math
 from ekfsim.filters.belief import Correction, Refused
 from ekfsim.geometry import Array
 from ekfsim.models.protocols import Quantity
-from ekfsim.records import Control, Entry, Reading
+from ekfsim.records import Control, Reading
 from ekfsim.views.numbers import MANY, fill, instant, matrix, number, pose, quantities, quantity, state
 from ekfsim.views.playback import View
 from ekfsim.views.told_beams import doubts, expected_wall
@@ -52,7 +52,8 @@ def read(view: View, guarded: bool) -> str:
     assert isinstance(given, Reading)
     nothing = all(map(math.isnan, given.z.tolist()))
     told = "nothing came back" if nothing else quantities(given.sensor.outputs, given.z, directions=True)
-    return f"==>{_at(view.step.entry)}{given.name} was read: {told}\n{doubts(view.step, guarded)}"
+    at = "" if view.step.entry.t is None else f"At t = {instant(view.step.entry.t)} s "
+    return f"==>{at}{given.name} was read: {told}\n{doubts(view.step, guarded)}"
 
 
 def revised(view: View, probability: float) -> str:
@@ -74,7 +75,7 @@ def revised(view: View, probability: float) -> str:
 
 def _expected(view: View, outputs: tuple[Quantity, ...], c: Correction) -> str:
     if all(map(math.isnan, c.predicted.tolist())):
-        return "No reading was predicted: nothing of the filter's map is in view there\n"
+        return "No reading was predicted: nothing of the filter's map is within reach there\n"
     return (
         f"The predicted reading was {quantities(outputs, c.predicted, directions=True)}\n{expected_wall(view.step)}"
         f"The derivatives are (rows {_names(outputs)}; columns {', '.join(view.layout.names)}):\n{matrix(c.H)}"
@@ -114,16 +115,12 @@ def _beside_truth(view: View, probability: float) -> str:
 
 def _span(view: View) -> str:
     """When the inputs of a view came, and how many there were."""
+    first, last = view.since, view.step.entry.t
+    if first is None or last is None:
+        return "The motion input was" if view.inputs == 1 else f"{view.inputs} motion inputs; the last"
     if view.inputs == 1:
-        return f"{_at(view.step.entry)}the motion input was"
-    if view.since is None or view.step.entry.t is None:
-        return f"{view.inputs} motion inputs; the last"
-    span = f"From t = {instant(view.since)} s to {instant(view.step.entry.t)} s"
-    return f"{span}: {view.inputs} motion inputs; the last"
-
-
-def _at(entry: Entry) -> str:
-    return "" if entry.t is None else f"At t = {instant(entry.t)} s "
+        return f"At t = {instant(last)} s the motion input was"
+    return f"From t = {instant(first)} s to {instant(last)} s: {view.inputs} motion inputs; the last"
 
 
 def _names(outputs: tuple[Quantity, ...]) -> str:
