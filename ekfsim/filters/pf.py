@@ -17,10 +17,13 @@ from ekfsim.models.protocols import Motion, Sensor, angles
 if TYPE_CHECKING:
     from numpy.random import Generator
 
+KEPT = 10  # particles that even the sharpest reading leaves, or so
+
 
 @dataclass(frozen=True)
 class PF:
-    """Bootstrap particle filter: Gordon, Salmond & Smith, 1993; Thrun, Burgard & Fox, 2005, Tables 4.3 and 4.4.
+    """Bootstrap particle filter: Gordon, Salmond & Smith, 1993; Thrun, Burgard & Fox, 2005, Tables 4.3 and 4.4; the
+    particles that are drawn anew are parted by a kernel (regularised).
 
     The one filter that is not pure: it draws, and each draw advances the generator of its run. Each run has its own,
     and draws as many numbers whatever they are, so that a run is the same alone as among others.
@@ -60,7 +63,7 @@ class PF:
         """wᵢ ∝ wᵢ⁻ exp(−½ νᵢᵀ Rᵢ⁻¹ νᵢ) / √|Rᵢ|      νᵢ = z − h(xᵢ)          z : (…, k)
 
         A particle that predicts no reading explains none: its weight becomes 0. If all do so, the reading is refused.
-        Where fewer than half of the particles count, 1/Σ wᵢ² < p/2, they are drawn anew by their weights.
+        Where fewer than half of the particles count, 1/Σ wᵢ² < p/2, they are drawn anew by their weights, and parted.
 
         What is told are the moments of the prior's readings: ẑ = Σ wᵢ h(xᵢ), S = their spread + Σ wᵢ Rᵢ, K = P_xz S⁻¹,
         and P_zx P⁺ for H. They judge the reading; they do not move the particles.
@@ -69,7 +72,8 @@ class PF:
         h, _, R = sensor.linearize(crowd.states)
         R = np.broadcast_to(R, (*h.shape, h.shape[-1]))
         told, spread = self._told(crowd, sensor, z, h, R, skip)
-        log = _log_likelihood(sensor.residual(z[..., None, :], h), R, spread / self.count**2)
+        grain = spread * (KEPT / self.count) ** (2 / min(h.shape[-1], crowd.mean.shape[-1]))
+        log = _log_likelihood(sensor.residual(z[..., None, :], h), R, grain)
         seen = np.where(crowd.weights > 0, log, -np.inf)
         best = seen.max(axis=-1, keepdims=True)
         weights = crowd.weights * np.exp(seen - np.where(np.isfinite(best), best, 0.0))  # the best of them is not 0
@@ -77,8 +81,8 @@ class PF:
         weights = np.where(used, weights, crowd.weights)
         weights = weights / weights.sum(axis=-1, keepdims=True)
         few = used & (1 / np.sum(weights**2, axis=-1, keepdims=True) < self.count / 2)
-        drawn = np.take_along_axis(crowd.states, systematic(weights, self._uniforms(crowd.mean))[..., None], axis=-2)
-        states = np.where(few[..., None], drawn, crowd.states)
+        weighted = self._summed(crowd.states, weights)
+        states = np.where(few[..., None], self._drawn_anew(weighted), crowd.states)
         posterior = self._summed(states, np.where(few, 1 / self.count, weights))
         return Particles(
             np.where(used, posterior.mean, crowd.mean),
@@ -115,6 +119,23 @@ class PF:
         x, P = belief
         states = wrapped(x[..., None, :] + self._normals(P, x), self.headings)
         return Particles(x, P, states, np.full(states.shape[:-1], 1 / self.count))
+
+    def _drawn_anew(self, crowd: Particles) -> Array:
+        """Particles of equal weight in place of a weighted crowd : (…, p, n), no two of them the same.
+
+        x' = x̄ + √(1 − b²) (x − x̄) + b e      e ~ N(0, P)      b = (4/((n + 2) p))^(1/(n + 4)), Silverman's rule
+
+        Copies alone would leave few different particles after a sharp reading. A kernel of the crowd's own shape parts
+        them; moved towards the mean by as much, they keep mean and covariance: Musso, Oudjane & Le Gland, 2001, and
+        Liu & West, 2001, in: Doucet et al., Sequential Monte Carlo Methods in Practice, chapters 12 and 10.
+        """
+        p, n = crowd.states.shape[-2:]
+        b = (4 / ((n + 2) * p)) ** (1 / (n + 4))
+        hit = systematic(crowd.weights, self._uniforms(crowd.mean))
+        x_mean = crowd.mean[..., None, :]
+        away = wrapped(np.take_along_axis(crowd.states, hit[..., None], axis=-2) - x_mean, self.headings)
+        kernel = self._normals(crowd.covariance, crowd.mean)
+        return wrapped(x_mean + math.sqrt(1 - b * b) * away + b * kernel, self.headings)
 
     def _summed(self, states: Array, weights: Array) -> Particles:
         """A crowd with its mean, circular where it is a heading, and its covariance."""
@@ -157,8 +178,9 @@ def systematic(weights: Array, u: Array) -> Integers:
 def _log_likelihood(ν: Array, R: Array, grain: Array) -> Array:
     """log N(ν; 0, R) but for a constant : (…, p), −∞ where nothing was predicted. ν : (…, p, k), grain : (…, k, k)
 
-    p particles cannot tell readings apart that differ by less than their own spread divided by p, the grain. It is
-    added to R, and a sensor without noise leaves the nearest particles in place of none.
+    The grain is the covariance of what holds some ten of p particles, in d dimensions their spread by (10/p)^(2/d). It
+    is added to R: a sensor that is sharper than the crowd is dense leaves the ten nearest in place of one, from which
+    no crowd could recover.
     """
     R = R + np.nan_to_num(grain)[..., None, :, :]
     if R.shape[-1] == 1:

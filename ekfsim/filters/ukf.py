@@ -54,7 +54,7 @@ class UKF:
         _, _, G, M, Q = motion.linearize(x, u)
         moved = unscented_transform(x, P, lambda X: motion.f(X, u[..., None, :]), self._weights(x), self.headings)
         P_new = symmetric(moved.covariance + G @ M @ G.mT + Q)
-        return Gaussian(moved.mean, self._definite(P_new)), Prediction(statistical_slope(moved.slope, moved.root), G)
+        return Gaussian(moved.mean, self._definite(x, P_new)), Prediction(statistical_slope(moved.slope, moved.root), G)
 
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
@@ -71,12 +71,12 @@ class UKF:
         x, P = prior
         R = sensor.linearize(x)[2]
         seen = unscented_transform(x, P, sensor.h, self._weights(x), angles(sensor.outputs), sensor.residual)
-        L, D, noise = seen.root, seen.slope, seen.bend + R
-        innovation, S = sensor.residual(z, seen.mean), seen.covariance + R
+        L, D, noise = seen.root, seen.slope, self._definite(x, seen.bend + R)
+        innovation, S = sensor.residual(z, seen.mean), symmetric(D @ D.mT + noise)
         nis, refused = judged(z, seen.mean, innovation, S, skip, self.gate)
         K = gain(seen.cross, S)
         left = L - K @ D
-        P_new = self._definite(settled(symmetric(left @ left.mT + K @ noise @ K.mT), P))
+        P_new = self._definite(x, settled(symmetric(left @ left.mT + K @ noise @ K.mT), P))
         posterior = Gaussian(wrapped(x + np.matvec(K, innovation), self.headings), P_new)
         return where_used(refused, posterior, Gaussian(x, P)), Correction(
             seen.mean, innovation, R, S, statistical_slope(D, L), K, nis, refused
@@ -85,6 +85,6 @@ class UKF:
     def _weights(self, x: Array) -> Weights:
         return _weights(x.shape[-1], self.alpha, self.beta, self.kappa)
 
-    def _definite(self, P: Array) -> Array:
-        """P, which with a negative weight for the first point need not be a covariance."""
-        return nearest_definite(P) if self._weights(P).covariance[0] < 0 else P
+    def _definite(self, x: Array, P: Array) -> Array:
+        """P, which need not be a covariance where the first point counts negatively."""
+        return nearest_definite(P) if self._weights(x).covariance[0] < 0 else P

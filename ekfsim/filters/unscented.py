@@ -10,7 +10,7 @@ from ekfsim.filters.algebra import symmetric
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 
-NO_PIVOT = 1e-13  # a pivot below this share of its variance is what rounding leaves of 0
+NO_PIVOT = 1e-12  # a pivot below this share of its variance is what rounding leaves of 0
 
 
 class Weights(NamedTuple):
@@ -136,6 +136,7 @@ def statistical_slope(D: Array, L: Array) -> Array:
 
 
 def nearest_definite(P: Array) -> Array:
-    """P with its negative eigenvalues at 0 : (…, n, n). Only negative weights can make a covariance need it."""
-    λ, V = np.linalg.eigh(P)
-    return symmetric((V * np.maximum(λ, 0.0)[..., None, :]) @ V.mT)
+    """P with its negative eigenvalues at 0 : (…, n, n), which only negative weights can make necessary."""
+    known = np.isfinite(P).all(axis=(-2, -1), keepdims=True)
+    λ, V = np.linalg.eigh(np.where(known, P, 0.0))
+    return np.where(known, symmetric((V * np.maximum(λ, 0.0)[..., None, :]) @ V.mT), np.nan)

@@ -1,0 +1,117 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numerics import covariance, definite
+from problems import ROOM, classroom, landmark, problem
+from scipy.optimize import least_squares
+
+from ekfsim.filters.belief import Gaussian, Refused
+from ekfsim.filters.ekf import EKF
+from ekfsim.filters.iekf import IEKF
+from ekfsim.geometry.walls import Walls
+from ekfsim.models.laser import Laser
+from ekfsim.models.protocols import Quantity
+
+seeds = st.integers(0, 2**32 - 1)
+
+
+@pytest.mark.parametrize(("n", "k"), [(3, 1), (3, 2), (4, 3), (7, 2)])
+@given(seeds)
+def test_a_linear_problem_is_left_as_it_is(n, k, seed):
+    random = np.random.default_rng(seed)
+    model = replace(problem(random, n, 2, k), noise=0.1 * np.eye(k))
+    prior = Gaussian(random.normal(size=n), covariance(random, n) / n)
+    z = model.C @ prior.mean + random.normal(size=k)
+    mean, P = EKF(headings=()).update(prior, model, z)[0]
+    posterior, _ = IEKF(headings=()).update(prior, model, z)
+    assert posterior.mean == pytest.approx(mean, rel=1e-12, abs=1e-12 * max(1, np.abs(mean).max()))
+    assert posterior.covariance == pytest.approx(P, rel=1e-12, abs=1e-12 * max(1, np.abs(P).max()))
+
+
+class Square:
+    """z = x², the textbook's example."""
+
+    outputs = (Quantity("z", "m"),)
+
+    def linearize(self, x):
+        return x * x, 2 * x[..., None], np.array([[0.01]])
+
+    def residual(self, z, h):
+        return z - h
+
+
+def test_one_number_and_its_square():
+    """Gauss–Newton by hand: xᵢ₊₁ = x⁻ + Kᵢ (z − xᵢ² − 2xᵢ (x⁻ − xᵢ)), and the most probable x is a root of a cubic."""
+    x0, P, R, z = 2.0, 0.5, 0.01, 6.0
+    x = x0
+    for n in range(60):
+        posterior, correction = IEKF(headings=(), iterations=n).update(
+            Gaussian(np.array([x0]), np.array([[P]])), Square(), np.array([z])
+        )
+        H = 2 * x
+        K = P * H / (H * P * H + R)
+        x = x0 + K * (z - x * x - H * (x0 - x))
+        assert posterior.mean[0] == pytest.approx(x, rel=1e-9)
+        assert correction.innovation == z - x0 * x0
+        assert pytest.approx(4 * x0 * x0 * P + R) == correction.S
+    roots = np.roots([2 / R, 0, 1 / P - 2 * z / R, -x0 / P])
+    assert x == pytest.approx(min(roots.real, key=lambda root: abs(root - x)), rel=1e-12)
+    assert correction.H[0, 0] == pytest.approx(2 * x, rel=1e-6)
+
+
+@given(seeds)
+def test_it_finds_the_most_probable_place(seed):
+    """As scipy's least squares do: (x − x⁻)ᵀ P⁻¹ (x − x⁻) + νᵀ R⁻¹ ν is least."""
+    random = np.random.default_rng(seed)
+    prior = Gaussian(np.array([0.0, 0.0, random.uniform(-3, 3)]), 0.01 * covariance(random, 3) + 0.02 * np.eye(3))
+    mark = landmark(2.0, 1.5, 0.1, 0.05)
+    z = mark.h(random.multivariate_normal(*prior)) + random.normal(size=2) * (0.1, 0.05)
+    posterior, correction = IEKF(iterations=50).update(prior, mark, z)
+    root_P, root_R = (np.linalg.inv(np.linalg.cholesky(C)) for C in (prior.covariance, correction.R))
+    best = least_squares(
+        lambda x: np.concatenate([root_P @ (x - prior.mean), root_R @ mark.residual(z, mark.h(x))]),
+        prior.mean, xtol=1e-14, ftol=1e-14, gtol=1e-14,
+    ).x  # fmt: skip
+    off = posterior.mean - best
+    assert [*off[:2], math.remainder(off[2], 2 * math.pi)] == pytest.approx([0, 0, 0], abs=1e-6)
+    K, H = correction.K, correction.H
+    assert posterior.covariance == pytest.approx((np.eye(3) - K @ H) @ prior.covariance, abs=1e-10)
+    assert definite(posterior.covariance)
+
+
+def test_no_iteration_is_the_ekf():
+    for seed in range(20):
+        prior, laser, _ = classroom(np.random.default_rng(seed))
+        z = laser.h(prior.mean) * 1.03
+        mean, P = EKF().update(prior, laser, z)[0]
+        posterior, _ = IEKF(iterations=0).update(prior, laser, z)
+        assert posterior.mean == pytest.approx(mean, abs=1e-12)
+        assert posterior.covariance == pytest.approx(P, abs=1e-12)
+
+
+def test_where_the_next_point_sees_nothing_the_last_one_that_did_stands():
+    """The reading says 2 m less: from there the beam passes the post."""
+    post = Walls.of({"post": np.array([[5, -0.2], [5.4, -0.2], [5.4, 0.2], [5, 0.2]])})
+    P = np.array([[1.0, 0.3, 0], [0.3, 0.2, 0], [0, 0, 1e-4]])
+    prior, laser = Gaussian(np.zeros(3), P), Laser(post, 0.0, 0.01)
+    posterior, correction = IEKF().update(prior, laser, np.array([3.0]))
+    assert np.isnan(laser.h(posterior.mean)).all()
+    assert correction.refused == Refused.NOT
+    once = EKF().update(prior, laser, np.array([3.0]))[0]
+    assert posterior.mean == pytest.approx(once.mean, abs=1e-12)
+    assert np.isfinite(posterior.covariance).all()
+
+
+def test_what_a_reading_is_judged_by_is_the_prediction():
+    prior, laser, _ = classroom(np.random.default_rng(1))
+    z = laser.h(prior.mean) * 1.1
+    _, first = EKF().update(prior, laser, z)
+    _, told = IEKF().update(prior, laser, z)
+    assert told.nis == pytest.approx(first.nis, rel=1e-12)
+    assert pytest.approx(first.S, rel=1e-12) == told.S
+    gate = 0.5
+    assert IEKF(gate).update(prior, Laser(ROOM, 0.1, 0.0), z + 3)[1].refused == Refused.GATE

@@ -1,0 +1,125 @@
+import math
+
+import numpy as np
+import pytest
+from filterpy.kalman import JulierSigmaPoints, MerweScaledSigmaPoints, UnscentedKalmanFilter
+from numerics import covariance, definite
+from problems import close, landmark, problem
+
+from ekfsim.filters.belief import Gaussian, Refused
+from ekfsim.filters.ukf import UKF
+from ekfsim.geometry.walls import Walls
+from ekfsim.models.laser import Laser
+from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.protocols import Quantity
+
+
+class Bent:
+    """A motion and a sensor without a straight line in them, of any size."""
+
+    outputs = (Quantity("z0", "m"), Quantity("z1", "m"))
+
+    def __init__(self, random, n):
+        self.line = problem(random, n, 2, 2)
+
+    def f(self, x, u):
+        return np.sin(self.line.f(x, u)) + 0.1 * self.line.f(x, u) ** 2
+
+    def linearize(self, x, *u):
+        if u:
+            return self.f(x, *u), None, self.line.B, self.line.input_noise, self.line.process_noise
+        return self.h(x), None, self.line.noise
+
+    def h(self, x):
+        z = self.line.h(x)
+        return np.cos(z) + z
+
+    def residual(self, z, h):
+        return z - h
+
+
+def settings(n):
+    yield JulierSigmaPoints(n, 0.7), {"kappa": 0.7}
+    yield MerweScaledSigmaPoints(n, 0.6, 2.0, 1.0), {"alpha": 0.6, "beta": 2.0, "kappa": 1.0}
+    yield MerweScaledSigmaPoints(n, 1.2, 0.0, 0.0), {"alpha": 1.2, "kappa": 0.0}
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 7])
+def test_it_is_that_of_filterpy(n):
+    """Which updates with the points that it has moved: so they are drawn afresh before."""
+    for seed in range(10):
+        random = np.random.default_rng(seed)
+        model = Bent(random, n)
+        x, P = random.normal(size=n), 0.1 * covariance(random, n) + 0.01 * np.eye(n)
+        u, z = random.normal(size=2), random.normal(size=2)
+        for points, chosen in settings(n):
+            filter, other = UKF(headings=(), **chosen), UnscentedKalmanFilter(n, 2, 1.0, model.h, None, points)
+            other.x, other.P, other.R = x.copy(), P.copy(), model.line.noise
+            other.Q = model.line.B @ model.line.input_noise @ model.line.B.T + model.line.process_noise
+            other.predict(fx=lambda x, dt: model.f(x, u))  # noqa: B023
+            belief, _ = filter.predict(Gaussian(x, P), model, u)
+            assert belief.mean == pytest.approx(other.x, rel=1e-10, abs=1e-10)
+            assert belief.covariance == pytest.approx(other.P, rel=1e-10, abs=1e-10)
+            other.sigmas_f = points.sigma_points(other.x, other.P)
+            other.update(z)
+            belief, correction = filter.update(belief, model, z)
+            assert pytest.approx(other.S, rel=1e-9, abs=1e-9) == correction.S
+            assert pytest.approx(other.K, rel=1e-8, abs=1e-9) == correction.K
+            assert correction.innovation == pytest.approx(other.y, rel=1e-9, abs=1e-9)
+            assert belief.mean == pytest.approx(other.x, rel=1e-8, abs=1e-8)
+            assert belief.covariance == pytest.approx(other.P, rel=1e-8, abs=1e-8)
+
+
+def test_equation_28():
+    """P = P⁻ − K S Kᵀ, and H told is P_zx P⁺."""
+    random = np.random.default_rng(0)
+    prior = Gaussian(random.normal(size=3), covariance(random, 3))
+    posterior, c = UKF().update(prior, landmark(), np.array([2.0, 0.1]))
+    assert posterior.covariance == pytest.approx(prior.covariance - c.K @ c.S @ c.K.T, abs=1e-12)
+    assert pytest.approx((c.H @ prior.covariance).T, abs=1e-12) == c.K @ c.S
+    assert np.linalg.eigvalsh(c.S - c.R - c.H @ prior.covariance @ c.H.T).min() > 0  # what the bend of h adds
+
+
+def test_a_wide_prior_knows_that_a_landmark_may_be_on_either_side():
+    """The mean of bearings near ±180° lies there, not at 0."""
+    prior = Gaussian(np.zeros(3), np.diag([0.01, 0.5, 0.1]))
+    _, correction = UKF().update(prior, landmark(-3.0, 0.0), np.array([3.0, -3.1]))
+    assert abs(correction.predicted[1]) == pytest.approx(math.pi, abs=1e-6)
+    assert abs(correction.innovation[1]) == pytest.approx(math.pi - 3.1, abs=1e-6)
+    assert correction.S[1, 1] < 0.3
+
+
+def test_one_point_without_a_wall_refuses_the_reading():
+    """The mean meets a wall; a point of its uncertainty looks past the post."""
+    post = Walls.of({"post": np.array([[5, -0.2], [5.4, -0.2], [5.4, 0.2], [5, 0.2]])})
+    prior, laser = Gaussian(np.zeros(3), np.diag([0.01, 0.01, 0.04])), Laser(post, 0.0, 0.01)
+    assert laser.h(prior.mean) == 5
+    posterior, correction = UKF().update(prior, laser, np.array([5.0]))
+    assert correction.refused == Refused.NO_WALL
+    assert (posterior.mean == prior.mean).all()
+    assert np.isnan(correction.predicted).all()
+    assert np.isfinite(correction.H).all()
+    sure = Gaussian(np.zeros(3), np.diag([1e-4, 1e-4, 1e-6]))
+    assert UKF().update(sure, laser, np.array([5.0]))[1].refused == Refused.NOT
+
+
+@pytest.mark.parametrize("chosen", [{"kappa": -0.5}, {"alpha": 1e-3, "beta": 2.0, "kappa": 0.0}, {"alpha": 0.3}])
+def test_negative_weights_keep_a_covariance(chosen):
+    filter = UKF(**chosen)
+    random = np.random.default_rng(5)
+    belief = Gaussian(np.array([[5.0, 4.0, 0.3]] * 20), np.tile(np.diag([0.04, 0.04, 0.3]), (20, 1, 1)))
+    for step in range(50):
+        belief, _ = filter.predict(belief, MoveTurn(0.1, 0.1), random.uniform(-0.3, 0.3, (20, 2)))
+        if step % 5 == 4:
+            belief, _ = filter.update(belief, landmark(6.0, 5.0, 0.3, 0.1), np.array([[1.0, 0.3]]))
+        assert definite(belief.covariance, 1e-9)
+
+
+def test_where_nothing_bends_the_points_do_not_matter():
+    random = np.random.default_rng(6)
+    model = problem(random, 3, 2, 2)
+    prior, z = Gaussian(random.normal(size=3), covariance(random, 3)), random.normal(size=2)
+    results = [UKF(headings=(), alpha=a, kappa=k).update(prior, model, z)[0] for a, k in ((1, 0), (1, 2), (0.3, 0))]
+    for other in results[1:]:
+        assert other.mean == pytest.approx(results[0].mean, abs=1e-10)
+        assert close(np.round(other.covariance, 10), np.round(results[0].covariance, 10))
