@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import shapely
 from recomputation import Edges, believed, disagreements, true_course
+from recordings import MOWER, recording, speeds
 from scenes import ROOM, rich, scene, told, unbounded
 
 from ekfsim.files.load import load_scene
@@ -17,7 +18,7 @@ from ekfsim.records import Kidnap, Move, Say, Sense
 from ekfsim.world import Noise
 
 CONFIDENCE = 0.954
-PACKAGED = packaged("commands")
+PACKAGED = {name: path for name, path in packaged("commands").items() if "\ncommands:" in path.read_text()}
 SCENES = {
     "rich": rich(),
     "guarded": rich(seed=8, gate=None, guard="skip"),
@@ -146,3 +147,63 @@ def test_what_is_undefined_is_null():
 def test_an_edge_is_counted_in_the_order_of_the_file():
     lines = trace_of(scene(*(Sense(math.radians(a)) for a in (-90, 0, 90, 180)), start=(5, 4, 0), boundary=ROOM))
     assert [line["wall"] for line in lines[1:]] == [{"name": "boundary", "edge": k} for k in range(4)]
+
+
+EVERY = ["type", "index", "t", "sensor", "z", "predicted", "innovation", "S", "H", "gain", "nis", "updated", "refused",
+         "state", "prior", "posterior", "truth", "nees", "nees_dof", "impossible"]  # fmt: skip
+
+
+@pytest.mark.parametrize("made", [recording(), speeds(9, 3)])
+def test_a_line_of_a_recorded_run_holds_the_numbers_of_its_step(made):
+    lines, steps = trace_of(made), list(play(made))
+    assert lines[0]["t"] == steps[0].entry.t
+    assert lines[0]["log"] == "log.csv" if made.log_source else "log" not in lines[0]
+    assert lines[0]["state"] == list(made.world.layout.names)
+    for line, step in zip(lines[1:], steps[1:], strict=True):
+        known = set(EVERY) | ({"fix"} if step.entry.fix is not None else set())
+        assert set(line) == known | ({"F", "G"} if step.prediction is not None else set())
+        assert line["type"] == ("predict" if step.correction is None else "update")
+        assert (line["index"], line["t"]) == (step.entry.index, step.entry.t)
+        assert line["state"] == list(made.world.layout.names)
+        for name, belief in (("prior", step.prior), ("posterior", step.posterior)):
+            assert line[name] == {"mean": belief.mean.tolist(), "covariance": belief.covariance.tolist()}
+        assert line["truth"] == (None if step.entry.truth is None else step.entry.truth.tolist())
+        assert line["nees"] == (None if step.nees is None else float(step.nees.value))
+
+
+def test_a_motion_input_is_a_reading_of_the_odometry_of_which_none_was_predicted():
+    line, step = trace_of(recording())[5], list(play(recording()))[5]
+    assert (line["sensor"], line["z"]) == ("odometry", step.entry.given.u.tolist())
+    assert [line[name] for name in ("predicted", "innovation", "S", "H", "gain", "nis", "refused")] == [None] * 7
+    assert line["updated"] is True
+    assert line["F"] == step.prediction.F.tolist()
+    assert line["G"] == step.prediction.G.tolist()
+    assert line["fix"] == [2.0, 2.5]
+
+
+def test_a_reading_has_all_that_the_filter_made_of_it():
+    line, c = trace_of(recording())[3], list(play(recording()))[3].correction
+    assert line["sensor"] == "marker 3"
+    assert line["z"] == MOWER[3].given.z.tolist()
+    assert line["predicted"] == c.predicted.tolist()
+    assert line["innovation"] == c.innovation.tolist()
+    assert (line["S"], line["H"], line["gain"]) == (c.S.tolist(), c.H.tolist(), c.K.tolist())
+    assert line["nis"] == float(c.nis)
+    assert (line["updated"], line["refused"]) == (True, None)
+
+
+def test_what_a_recorded_run_leaves_undefined_is_null():
+    *_, gated, silent, _ = trace_of(recording())
+    assert (gated["sensor"], gated["updated"], gated["refused"]) == ("gnss", False, "gate")
+    assert gated["nis"] > 50
+    assert (silent["sensor"], silent["updated"], silent["refused"]) == ("ultrasonic 2", False, "no echo")
+    assert silent["z"] == silent["predicted"] == silent["innovation"] == [None]
+    assert silent["S"] is silent["H"] is silent["gain"] is silent["nis"] is None
+    assert {line["nees"] for line in trace_of(speeds(6, 3))[1:]} == {None}
+
+
+@pytest.mark.parametrize("filter", ["kf", "iekf", "ukf", "pf"])
+def test_every_filter_can_be_traced(filter):
+    for made in (rich(), recording(), speeds(9, 3)):
+        steps = len(list(play(made)))
+        assert len(trace_of(dataclasses.replace(made, filter=filter))) == steps

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from recordings import recording, speeds
 from scenes import rich, scene
 
-from ekfsim.files.trajectories import COLUMNS, Table, Tum
+from ekfsim.files.trajectories import COLUMNS, DRIVEN_COLUMNS, Table, Tum
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry.ellipse import ellipse
 from ekfsim.localization import play
@@ -19,6 +20,7 @@ def tum_of(scene):
     tum = Tum(truth, estimate, scene)
     for step in play(scene):
         tum.write(step)
+    tum.finish()
     return truth.getvalue(), estimate.getvalue()
 
 
@@ -90,3 +92,53 @@ def test_a_move_has_no_reading():
     row = rows_of(scene(Move(1.0, 0.5)))[1]
     reading = ("range", "predicted_range", "innovation", "innovation_variance", "nis", "refused")
     assert {row[name] for name in reading} == {""}
+
+
+def test_a_clock_has_a_line_for_each_instant_after_its_last_reading():
+    truth, estimate = (np.loadtxt(io.StringIO(text)) for text in tum_of(recording()))
+    steps = list(play(recording()))
+    last = [0, 1, 4, 5, 6, 7, 8]
+    assert truth[:, 0].tolist() == estimate[:, 0].tolist() == [10, 10.5, 11, 11.5, 11.6, 12, 12.5]
+    assert estimate[:, 1:3].tolist() == [steps[k].posterior.mean[:2].tolist() for k in last]
+    assert truth[:, 1:3].tolist() == [steps[k].entry.truth[:2].tolist() for k in last]
+
+
+def test_instants_keep_all_their_digits():
+    made = speeds(3, 10, dt=1 / 3)
+    _, estimate = tum_of(made)
+    told = [float(line.split()[0]) for line in estimate.splitlines()[2:]]
+    assert told == [step.entry.t for step in play(made)]
+
+
+def test_a_run_without_truth_has_an_empty_one():
+    truth, estimate = tum_of(speeds(6, 3))
+    assert [line[0] for line in truth.splitlines()] == ["#", "#"]
+    assert len(estimate.splitlines()) == 2 + 7
+
+
+@pytest.mark.parametrize("made", [recording(), speeds(9, 3)])
+def test_a_row_of_a_recorded_run_holds_the_pose_and_the_numbers_of_its_reading(made):
+    layout = made.world.layout
+    for row, step in zip(rows_of(made), play(made), strict=True):
+        assert list(row) == [*DRIVEN_COLUMNS, *provenance(made), "confidence"]
+        pose, P = layout.pose(step.posterior.mean), layout.pose_covariance(step.posterior.covariance)
+        assert [float(row[name]) for name in ("x", "y", "theta")] == pose.tolist()
+        assert float(row["P_ytheta"]) == P[1, 2]
+        assert float(row["t"]) == step.entry.t
+        if step.correction is not None:
+            assert (row["type"], row["sensor"]) == ("update", step.entry.given.name)
+            for name, numbers in (("z", step.entry.given.z), ("predicted", step.correction.predicted)):
+                assert [float(number) for number in row[name].split()] == [n for n in numbers.tolist() if n == n]
+        elif step.prediction is not None:
+            assert (row["type"], row["sensor"]) == ("predict", "odometry")
+            assert [float(number) for number in row["z"].split()] == step.entry.given.u.tolist()
+        else:
+            assert (row["type"], row["sensor"], row["z"]) == ("start", "", "")
+
+
+def test_what_a_recorded_run_leaves_undefined_is_empty():
+    gated, silent = rows_of(recording())[6:8]
+    assert gated["refused"] == "gate"
+    assert [silent[name] for name in ("z", "predicted", "innovation", "nis", "refused")] == ["", "", "", "", "no echo"]
+    blind = rows_of(speeds(6, 3))[3]
+    assert [blind[name] for name in ("true_x", "true_theta", "nees", "impossible")] == [""] * 4

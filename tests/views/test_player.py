@@ -1,6 +1,7 @@
 import io
 
 import pytest
+from recordings import recording, speeds
 from scenes import scene
 
 from ekfsim.localization import play
@@ -124,3 +125,15 @@ def test_a_scene_without_commands_is_over_when_it_begins():
     assert shown == [0]
     assert "Verdict: no evidence" in told
     assert told.endswith(OVER)
+
+
+@pytest.mark.parametrize("place", [recording(), speeds(450, 60), speeds(7, 100)])
+def test_a_recorded_run_is_stepped_through_and_summed_up_whole(place):
+    seen, summary = list(views(play(place), place.world.layout)), Summary.of(place)
+    for step in play(place):
+        summary.add(step)
+    shown, told = played(*[NEXT] * (len(seen) - 1), place=place)
+    assert shown == list(range(len(seen)))
+    assert told == "".join(narrate(view, place) for view in seen) + conclude(summary)
+    assert summary.steps == len(place.log.entries) - 1
+    assert played(*[NEXT] * (len(seen) - 1), BACK, NEXT, place=place)[1].endswith(conclude(summary))
