@@ -113,6 +113,21 @@ def run(
 
 
 @ekfsim.command()
+@scene_options
+@click.option("--out", "-o", type=Result(), required=True, help="A folder for the files of the log.")
+@FORCE
+def record(out: Path, force: bool, confidence: float, **chosen: Any) -> None:
+    """Write the simulated run of COMMANDS, a drive, as the files of a recorded log."""
+    from ekfsim.files.logs import write_log
+    from ekfsim.simulation import simulate
+
+    scene = _scene(**chosen)
+    for remark in write_log(scene, simulate(scene), out, force):
+        say(f"{shown(out)}: {remark}")
+    click.echo(f"{shown(out)}: a {scene.world.system} log; run the filter on it with --log")
+
+
+@ekfsim.command()
 @click.argument("files", nargs=-1, required=True)
 def check(files: tuple[str, ...]) -> None:
     """Validate world and command FILES: every mistake with its place, or `ok`."""

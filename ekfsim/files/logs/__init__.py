@@ -11,10 +11,11 @@ from ekfsim.files.logs.pioneer import read_pioneer
 from ekfsim.files.logs.pylon import read_pylon
 from ekfsim.files.logs.ranges import read_ranges
 from ekfsim.files.logs.recorded import Recorded
+from ekfsim.files.logs.written import WRITERS, write_log
 from ekfsim.systems.document import DocumentReading
 from ekfsim.world import World
 
-__all__ = ["FORMATS", "SYSTEM_OF", "Recorded", "read_log"]
+__all__ = ["FORMATS", "SYSTEM_OF", "WRITERS", "Recorded", "read_log", "write_log"]
 
 Reader = Callable[[Path, World, DocumentReading], Recorded]
 FORMATS: dict[str, Reader] = {

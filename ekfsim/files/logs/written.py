@@ -1,0 +1,152 @@
+"""A simulated run → the files of a recorded log, from which the filter makes the same numbers again."""
+
+import math
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+
+from ekfsim.errors import UsageError
+from ekfsim.files.logs.pylon import CLOCK, EARTH_RADIUS
+from ekfsim.files.logs.ticks import Run, numbered, text_of
+from ekfsim.files.writing import whole_folder
+from ekfsim.provenance import told_in_a_line
+from ekfsim.records import Entry
+from ekfsim.scene import Scene
+
+ALL_FILES = ("*.csv", "*.txt")  # what `--force` may replace
+BEGINNING = 1_600_000_000  # s, Unix, at which a simulated pylon log begins
+GPS_ORIGIN = (47.0, 8.0)  # degrees, of latitude and longitude: where its GPS takes (0, 0) to lie
+
+Files = dict[str, str]  # the text of each file, by its name
+Writer = Callable[[Scene, Run, Path], Files]
+
+
+def write_log(scene: Scene, entries: Iterable[Entry], out: Path, force: bool) -> list[str]:
+    """Write a simulated run into a folder, and return the sentences that its reader should know.
+
+    Raises UsageError where the scene is no simulation of a driven robot, or the folder may not be written.
+    """
+    writer = _writer_of(scene)
+    with whole_folder(out, *ALL_FILES, force=force) as folder:
+        run = Run.of(entries)
+        files = {**writer(scene, run, out), "about.txt": f"A recorded log: {told_in_a_line(scene)}\n"}
+        for name, text in files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+    return _differences(scene, run)
+
+
+def _writer_of(scene: Scene) -> Writer:
+    """How the log of a scene's robot is written. Raises UsageError where it cannot be."""
+    known = ", ".join(WRITERS)
+    if scene.log is not None:
+        raise UsageError(f"{scene.commands_source}: is a recorded log already; name a simulated drive")
+    if scene.world.robot is None or scene.drive is None:
+        raise UsageError(f"{scene.commands_source}: only driven systems are recorded: {known}; this is a classroom")
+    if scene.world.system not in WRITERS:
+        raise UsageError(f"{scene.commands_source}: no log of system: {scene.world.system} is written; known: {known}")
+    return WRITERS[scene.world.system]
+
+
+def _differences(scene: Scene, run: Run) -> list[str]:
+    """What the log cannot hold of the run."""
+    told, system = scene.world.told, scene.world.system
+    if system == "mower" and scene.reading == "coded":
+        return ["the listing begins with the mean heading of the first second: the log's numbers differ from the run's"]
+    starts_elsewhere = system in ("gnss", "pioneer") and not np.array_equal(told.start, run.truth)
+    if not starts_elsewhere and not np.any(told.sigma):
+        return []
+    belief = "with the covariance of its document" + (", at the true pose" if starts_elsewhere else "")
+    return [f"the filter of a recorded log begins {belief}: this run began otherwise, and its numbers will differ"]
+
+
+def _mower(scene: Scene, run: Run, out: Path) -> Files:
+    """Poselog, angles and map.
+
+    The listing's filter starts at the pose of row 1 and then makes row 1's time update, so that row holds the pose at
+    which the filter of the run started, and every other the true pose after its own motion. Cameras look half a step
+    before the stamp of the row at which they are used.
+    """
+    poses, angles = list[list[float | int]](), list[list[float | int]]()
+    row_of = {mark.id: row for row, mark in enumerate(scene.world.landmarks)}
+    for n, tick in enumerate(run.ticks):
+        left, right, ω, dt = tick.u.tolist()
+        pose = (tick.truth if n else scene.world.told.start).tolist()
+        poses.append([n + 1, 0, tick.t, left, right, 0, 0, 0, ω, *[0] * 9, *pose])
+        for reading in tick.readings:
+            _, id = numbered(reading, ("marker",), out)
+            angles.append([tick.t - dt / 2, row_of[id], *reading.z.tolist()])
+    return {
+        "marker-001-poselog.txt": text_of(poses, " "),
+        "marker-001-003-angles.txt": text_of(angles, " "),
+        "marker-001-map.txt": text_of(scene.world.landmarks, " "),
+    }
+
+
+def _gnss(scene: Scene, run: Run, out: Path) -> Files:
+    """Wheel speeds, each row's since the row before it; fixes and true poses at the stamps of the wheels."""
+    wheels, fixes = list[list[float]](), list[list[float]]()
+    for tick in run.ticks:
+        left, right, _ = tick.u.tolist()
+        if not wheels:
+            wheels.append([run.t, right, left])
+        wheels.append([tick.t, right, left])
+        for reading in tick.readings:
+            numbered(reading, ("gnss",), out)
+            fixes.append([tick.t, *reading.z.tolist()])
+    return {
+        "wheelspeeds.csv": text_of(wheels, ",", "t,vr,vl"),
+        "gnss.csv": text_of(fixes, ",", "t,x,y"),
+        "groundtruth.csv": _truth(run, "phi"),
+    }
+
+
+def _pylon(scene: Scene, run: Run, out: Path) -> Files:
+    """One row a tick: the pylon in the lidar's frame, or nan; stamps in whole microseconds, in plain digits."""
+    rows = list[list[float | int]]()
+    for tick in run.ticks:
+        ahead, left, θ, _ = tick.u.tolist()
+        x = y = math.nan
+        for reading in tick.readings:
+            numbered(reading, ("pylon",), out)
+            east, north = reading.z.tolist()
+            x, y = east * math.sin(θ) - north * math.cos(θ), east * math.cos(θ) + north * math.sin(θ)
+        stamp = (BEGINNING + int(tick.t)) * CLOCK + round(tick.t * 1e6) % CLOCK
+        latitude, longitude = _degrees(*((0.0, 0.0) if tick.fix is None else tick.fix.tolist()))
+        yaw = math.degrees(-θ) % 360
+        rows.append([x, y, 0.0, stamp, latitude, longitude, yaw, 0.0, 0.0, ahead, left, 0.0])
+    return {"pylon.csv": text_of(rows, ",", ending=",")}
+
+
+def _degrees(x: float, y: float) -> tuple[float, float]:
+    """Latitude and longitude of a place x m east and y m north of the GPS's origin."""
+    latitude, longitude = GPS_ORIGIN
+    metre = math.degrees(1 / EARTH_RADIUS)
+    return latitude + y * metre, longitude + x * metre / math.cos(math.radians(latitude))
+
+
+def _pioneer(scene: Scene, run: Run, out: Path) -> Files:
+    """The ways of the wheels since the row before, which the first row, the start, has not; and the beams."""
+    ways, beams = [[run.t, 0.0, 0.0]], dict[str, list[list[float | int]]](ultrasonic=[], infrared=[])
+    for tick in run.ticks:
+        left, right, *dt = tick.u.tolist()  # a skid-steered robot is given speeds and dt
+        span = dt[0] if dt else 1.0
+        ways.append([tick.t, left * span, right * span])
+        for reading in tick.readings:
+            kind, beam = numbered(reading, tuple(beams), out)
+            beams[kind].append([tick.t, beam, *reading.z.tolist()])
+    return {
+        "odometry.csv": text_of(ways, ",", "t,left,right"),
+        "ultrasonic.csv": text_of(beams["ultrasonic"], ",", "t,beam,range"),
+        "infrared.csv": text_of(beams["infrared"], ",", "t,pair,intensity"),
+        "groundtruth.csv": _truth(run, "heading"),
+    }
+
+
+def _truth(run: Run, heading: str) -> str:
+    """The true poses, from the start on."""
+    rows = [[run.t, *run.truth.tolist()], *([tick.t, *tick.truth.tolist()] for tick in run.ticks)]
+    return text_of(rows, ",", f"t,x,y,{heading}")
+
+
+WRITERS: dict[str, Writer] = {"mower": _mower, "gnss": _gnss, "pylon": _pylon, "pioneer": _pioneer}
