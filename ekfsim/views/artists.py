@@ -24,7 +24,7 @@ from ekfsim.world import World
 
 BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = "#0072B2", "#56B4E9", "#009E73", "#D55E00", "#CC79A7", "#E69F00"
 OUTSIDE, FLOOR, OBSTACLE, EDGE, TRUTH = "#E4E4E4", "white", "#C8C8C8", "#555555", "black"
-MEANT = "#777777"
+MEANT, CROWD = "#777777", "#882255"
 
 CONE = 5.0  # body radii from the estimate to the end of its cone
 NOSE = 1.7  # body radii from the reference point to the tip of the robot
@@ -102,7 +102,7 @@ class BeliefArtists:
                 line = Line2D([], [], color=color, lw=1.8, ls=(0, dashes), zorder=2.4, gid=gid, label=label)
                 self.conditioned[sign] = axes.add_line(line)
         self.particles = axes.scatter(
-            [], [], s=[GRAIN], c=PURPLE, alpha=0.45, linewidths=0, zorder=2.2, gid="particles", label="particles"
+            [], [], s=[GRAIN], c=CROWD, alpha=0.45, linewidths=0, zorder=2.2, gid="particles", label="particles"
         )
         self.path = axes.add_line(
             Line2D([], [], color=BLUE, lw=1.2, marker=".", ms=5, zorder=3, gid="path", label="path of the estimates")

@@ -97,12 +97,12 @@ def _warnings(beam: Beam) -> list[str]:
 
 
 def told_of(step: Step) -> str:
-    """What was measured and what was expected: "measured azimuth 12.3°; expected azimuth 12.8°"."""
+    """What was measured and what was expected: "measured azimuth 12.3°; expected 12.8°"."""
     reading, correction = step.entry.given, step.correction
     assert isinstance(reading, Reading)
     assert correction is not None
     outputs = reading.sensor.outputs
-    return f"measured {told(reading.z, outputs)}; expected {told(correction.predicted, outputs)}"
+    return f"measured {told(reading.z, outputs)}; expected {told(correction.predicted, outputs, named=False)}"
 
 
 def spread(view: View, probability: float) -> str:

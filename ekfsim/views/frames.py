@@ -32,6 +32,7 @@ from ekfsim.views.png import Pixels, encode
 INCHES, DPI = (9.0, 7.0), 100  # 900 × 700 pixels
 MAIN = (0.085, 0.08, 0.58, 0.76)  # left, bottom, width, height as shares of the figure
 CLOSE = (0.7, 0.08, 0.28, 0.36)
+ROOMY = 15  # entries of the legend that stand in its place at ease
 COLUMNS, LINES = 118, 3  # of the notes: characters in a line, and lines
 
 
@@ -48,7 +49,7 @@ def draw(view: View | Step, scene: Scene, ax: Axes, look: Look = STANDARD, limit
     )
     main.show(view, reading(view, scene))
     handles, words = _legend(main.handles())
-    ax.legend(handles, words, fontsize=8, handler_map={tuple: HandlerTuple(ndivide=1)})
+    ax.legend(handles, words, fontsize=8, handler_map={tuple: HandlerTuple(ndivide=1)}, scatterpoints=5)
     return main
 
 
@@ -68,9 +69,11 @@ class Picture:
         made = figure.text(0.98, 0.012, drawable(source(scene)), fontsize=7, ha="right", color="#555555", gid="source")
         made.set(family=families(), parse_math=False)
         handles, words = _legend(self.main.handles())
+        crowded = len(handles) > ROOMY
         self.legend = figure.legend(
-            handles, words, loc="upper left", bbox_to_anchor=(CLOSE[0] - 0.015, 0.845), borderaxespad=0.0, fontsize=8,
-            frameon=False, labelspacing=0.45, handlelength=2.4, handler_map={tuple: HandlerTuple(ndivide=1)},
+            handles, words, loc="upper left", bbox_to_anchor=(CLOSE[0] - 0.015, 0.845), borderaxespad=0.0,
+            fontsize=7 if crowded else 8, labelspacing=0.2 if crowded else 0.45, handlelength=2.4, frameon=False,
+            handler_map={tuple: HandlerTuple(ndivide=1)}, scatterpoints=5,
         )  # fmt: skip
         self.names: list[Text] = []
 

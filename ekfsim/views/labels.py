@@ -61,7 +61,7 @@ def label_landmarks(axes: Axes, landmarks: Sequence[Landmark], names: Sequence[T
     for mark, shape in zip(landmarks, marks, strict=True):
         number = axes.text(0, 0, str(mark.id), fontsize=6.5, color="#444444", ha="center", va="center", zorder=1.5)
         number.set(gid="number", clip_on=True)
-        size = np.array(number.get_window_extent().size)
+        size = np.array(number.get_window_extent().size) + GAP / 2
         place = _beside(shape, taken, window, size)
         if place is None:
             number.remove()

@@ -93,7 +93,7 @@ class CloseUp:
         self.sight = SightArtists(axes)
         self.fixes = FixArtists(axes, scene)
         axes.set_aspect("equal", adjustable="box")
-        axes.set(xticks=[], yticks=[])
+        axes.set(xticks=[], yticks=[], xlim=(0, 1), ylim=(0, 1))  # square from the first, whatever stands in the world
         axes.set_title("close-up of the estimate", fontsize=9, pad=4)
         self.bar = axes.add_line(
             Line2D(

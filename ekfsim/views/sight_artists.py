@@ -44,7 +44,7 @@ class SightArtists:
         self.way.set_label("as it was expected")
         self.line = axes.add_line(Line2D([], [], color=VERMILLION, lw=2, zorder=3.4, gid="sight"))
         self.line.set_label(words.pop() if len(words) == 1 else SEVERAL)
-        self.place = axes.add_line(_hollow(VERMILLION, "o", 13, 3.5, "sight-place"))
+        self.place = axes.add_line(_hollow(VERMILLION, "o", 11, 3.5, "sight-place"))
         self.place.set_label("landmark that it is of")
         self.expected = axes.add_line(_hollow(BLUE, "D", 6, 4.6, "sight-expected"))
         self.expected.set_label("where it was expected")

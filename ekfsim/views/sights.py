@@ -98,16 +98,18 @@ def kinds(scene: Scene) -> set[type[Sensor]]:
     return {type(bare(target.sensor)) for _, target in scene.world.targets(scene.reading, scene.world.told.map)}
 
 
-def told(values: Iterable[float], outputs: tuple[Quantity, ...]) -> str:
-    """A reading as people say it.
+def told(values: Iterable[float], outputs: tuple[Quantity, ...], named: bool = True) -> str:
+    """A reading as people say it, with or without the names of its numbers.
 
     >>> told([0.5, -0.02], (Quantity("azimuth", "rad"), Quantity("elevation", "rad")))
     'azimuth 28.6°, elevation −1.15°'
-    >>> told([1.25], (Quantity("range", "m"),)), told([math.nan], (Quantity("range", "m"),))
-    ('range 1.25 m', 'range nothing')
+    >>> told([1.25], (Quantity("range", "m"),)), told([math.nan], (Quantity("range", "m"),), named=False)
+    ('range 1.25 m', 'nothing')
     """
-    pairs = zip(values, outputs, strict=True)
-    return ", ".join(f"{output.name} {in_units(value, output.unit)}" for value, output in pairs)
+    numbers = [in_units(value, output.unit) for value, output in zip(values, outputs, strict=True)]
+    if named:
+        numbers = [f"{output.name} {number}" for output, number in zip(outputs, numbers, strict=True)]
+    return ", ".join(numbers)
 
 
 def seconds(t: float) -> str:

@@ -27,6 +27,7 @@ TRUTH = Pen("1", "~")  # bright, on a light terminal as on a dark one
 
 ROBOT = np.array([[2.5, 0.0], [-1.5, 1.75], [-1.5, -1.75]])  # cells' widths ahead and to the left
 HEADING = 3.5  # cells' widths from the true position to the end of its heading
+PLAIN = str.maketrans({"°": " deg", "−": "-", "–": "-"})  # for an output that knows ASCII alone
 CROWDED = 300  # landmarks, above which none shows its number
 CONE_LENGTH = 0.25  # of the shorter side of the picture
 
@@ -50,8 +51,8 @@ def draw(
     step, (mean, P) = view.step, view.pose
     legend = _draw_world(canvas, scene.world)
     canvas.polyline(view.path(), PATH)
-    legend += draw_particles(canvas, view) + _draw_uncertainty(canvas, mean, P, probability)
-    legend += draw_fix(canvas, step.entry)
+    belief = draw_particles(canvas, view) + _draw_uncertainty(canvas, mean, P, probability)
+    legend += draw_fix(canvas, step.entry) + belief
     if view.beam:
         legend = draw_reading(canvas, view) + legend
     legend = _draw_robots(canvas, mean, step.entry.truth) + legend
@@ -183,7 +184,7 @@ def _scale(limits: Bounds) -> str:
 def _title_line(title: str, scale: str, columns: int, ascii: bool) -> str:
     """The title, and the scale at the right where there is room for both."""
     if ascii:
-        title, scale = title.replace("°", " deg"), scale.replace("…", "..")
+        title, scale = title.translate(PLAIN), scale.replace("…", "..")
     title = printable(title, ascii)
     gap = columns - cells(title) - cells(scale)
     return title + " " * gap + scale if gap >= 2 else shorten(title, columns, ascii)

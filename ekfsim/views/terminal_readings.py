@@ -75,8 +75,8 @@ def outcome(step: Step, beam: bool) -> str:
     if not beam:
         return "the estimate is revised" if word is None else f"not used ({word})"
     if not isinstance(reading.sensor, Laser):
-        outputs, refused = reading.sensor.outputs, "" if word is None else f", refused ({word})"
-        return f"{told(reading.z, outputs)}; predicted {told(correction.predicted, outputs)}{refused}"
+        outputs, refused = reading.sensor.outputs, "" if word is None else f"refused ({word}): "
+        return f"{refused}{told(reading.z, outputs)}; predicted {told(correction.predicted, outputs, named=False)}"
     measured, predicted = (
         f"{value[0]:.3f} m" if math.isfinite(value[0]) else "nothing" for value in (reading.z, correction.predicted)
     )
