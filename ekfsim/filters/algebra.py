@@ -20,7 +20,9 @@ def symmetric(P: Array) -> Array:
 
 def innovation_covariance(P: Array, H: Array, R: Array) -> Array:
     """S = H P Hᵀ + R : (…, k, k), exactly R where the rest is rounding."""
-    HPHt = H @ P @ H.mT
+    HPHt: Array = H @ P @ H.mT
+    if P.ndim == H.ndim == 2 and np.abs(HPHt).min() > 2 * ROUNDING * float(np.vdot(H, H)) * float(P.trace()):
+        return HPHt + R  # all of it is larger than what may be rounding
     sin_π = CERTAIN * np.sum(H * H, axis=(-2, -1)) * np.trace(P, axis1=-2, axis2=-1)
     rounding = ROUNDING * (np.abs(H) @ np.abs(P) @ np.abs(H.mT)) + sin_π[..., None, None]
     return np.where(np.abs(HPHt) <= rounding, 0.0, HPHt) + R
@@ -30,6 +32,8 @@ def settled(P: Array, prior: Array) -> Array:
     """P after an update, without what rounding leaves of a variance that a perfect sensor has made 0. Both (…, n, n)"""
     variances, before = (np.diagonal(M, axis1=-2, axis2=-1) for M in (P, prior))
     left = variances > ROUNDING * before
+    if left.all():
+        return P
     return P * (left[..., :, None] & left[..., None, :])
 
 
@@ -38,7 +42,12 @@ def inverse(S: Array) -> Array:
 
     Metres and radians must not decide what is singular: the correlations do.
     """
-    if S.shape[-1] == 2:
+    if S.shape == (2, 2):
+        (a, b), (_, d) = S.tolist()
+        det = a * d - b * b
+        if det > ROUNDING * a * d:
+            return np.array([[d / det, -b / det], [-b / det, a / det]])
+    elif S.shape[-1] == 2:
         a, b, d = S[..., 0, 0], S[..., 0, 1], S[..., 1, 1]
         det = a * d - b * b
         if np.all(det > ROUNDING * a * d):
@@ -58,7 +67,8 @@ def gain(cross: Array, S: Array) -> Array:
     """
     if S.shape[-1] == 1:
         return np.divide(cross, S, out=np.zeros(np.broadcast_shapes(cross.shape, S.shape)), where=S > 0)
-    return np.nan_to_num(cross) @ inverse(S)
+    K = cross @ inverse(S)
+    return np.where(np.isnan(K), 0.0, K)
 
 
 def normalized_square(innovation: Array, S: Array) -> Array:

@@ -1,5 +1,6 @@
 import math
 from dataclasses import replace
+from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
@@ -10,6 +11,14 @@ from numerics import covariance, definite
 from problems import close, problem, theirs
 from scenes import rich, scene
 from scipy.stats import chi2
+from stonesoup.base import Property
+from stonesoup.models.measurement.linear import LinearGaussian
+from stonesoup.models.transition.linear import LinearGaussianTimeInvariantTransitionModel
+from stonesoup.predictor.kalman import ExtendedKalmanPredictor
+from stonesoup.types.detection import Detection
+from stonesoup.types.hypothesis import SingleHypothesis
+from stonesoup.types.state import GaussianState
+from stonesoup.updater.kalman import ExtendedKalmanUpdater
 
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian, Refused
@@ -347,3 +356,78 @@ def test_a_perfect_laser_settles_what_it_measures_once_and_for_all():
             belief = alone
         assert belief.mean == pytest.approx(truth, abs=1e-9)
         assert (belief.covariance == 0).all()
+
+
+class Matrix(LinearGaussian):
+    """Stone Soup's linear sensor with any H."""
+
+    matrix_: np.ndarray = Property()
+
+    def matrix(self, **kwargs):
+        return self.matrix_
+
+
+SIZES = [(3, 1), (3, 2), (3, 3), (4, 1), (4, 2), (4, 3), (7, 2), (7, 3)]
+
+
+def random_problem(seed, n, k):
+    random = np.random.default_rng(seed)
+    model = problem(random, n, 2, k)
+    prior = Gaussian(random.normal(size=n), covariance(random, n) / n + 0.1 * np.eye(n))
+    return model, prior, random.normal(size=2), random.normal(size=k)
+
+
+@pytest.mark.parametrize(("n", "k"), SIZES)
+def test_states_and_readings_of_any_size_are_filtered_as_filterpy_does(n, k):
+    for seed in range(20):
+        model, belief, u, z = random_problem(seed, n, k)
+        other = theirs(ExtendedKalmanFilter, model, *belief)
+        other.predict_x = lambda _, other=other, model=model, u=u: setattr(other, "x", model.f(other.x, u))
+        other.predict()
+        belief, _ = LINEAR.predict(belief, model, u)
+        assert close(belief.mean, other.x)
+        assert close(belief.covariance, other.P)
+        other.x, other.P = belief.mean.copy(), belief.covariance.copy()
+        other.update(z, lambda x, model=model: model.C, model.h)
+        belief, correction = LINEAR.update(belief, model, z)
+        assert close(correction.S, other.S)
+        assert close(correction.K, other.K)
+        assert close(belief.mean, other.x)
+        assert close(belief.covariance, other.P)
+
+
+@pytest.mark.parametrize(("n", "k"), SIZES)
+def test_states_and_readings_of_any_size_are_filtered_as_stone_soup_does(n, k):
+    now = datetime(2025, 1, 1)
+    for seed in range(5):
+        model, belief, _, z = random_problem(seed, n, k)
+        W = model.B @ model.input_noise @ model.B.T + model.process_noise
+        transition = LinearGaussianTimeInvariantTransitionModel(transition_matrix=model.A, covariance_matrix=W)
+        state = GaussianState(belief.mean[:, None], belief.covariance, timestamp=now)
+        prediction = ExtendedKalmanPredictor(transition).predict(state, timestamp=now + timedelta(seconds=1))
+        belief, _ = LINEAR.predict(belief, model, np.zeros(2))
+        assert close(belief.mean, np.asarray(prediction.mean)[:, 0])
+        assert close(belief.covariance, np.asarray(prediction.covar))
+        updater = ExtendedKalmanUpdater(Matrix(n, np.arange(k), model.noise, matrix_=model.C), use_joseph_cov=True)
+        updated = updater.update(SingleHypothesis(prediction, Detection(z[:, None], timestamp=now)))
+        belief, correction = LINEAR.update(belief, model, z)
+        assert close(correction.S, np.asarray(updated.hypothesis.measurement_prediction.covar))
+        assert close(belief.mean, np.asarray(updated.mean)[:, 0])
+        assert close(belief.covariance, np.asarray(updated.covar))
+
+
+@pytest.mark.parametrize(("n", "k"), SIZES)
+def test_a_sensor_of_a_micrometre(n, k):
+    """R = 10⁻¹²: what was measured is known so well, and the rest as the prior has it."""
+    for seed in range(20):
+        model, prior, _, z = random_problem(seed, n, k)
+        C = np.linalg.qr(model.C.T)[0].T
+        sharp = replace(model, C=C, noise=1e-12 * np.eye(k))
+        posterior, correction = LINEAR.update(prior, sharp, z)
+        assert np.matvec(C, posterior.mean) == pytest.approx(z, abs=1e-9)
+        assert C @ posterior.covariance @ C.T == pytest.approx(sharp.noise, abs=1e-14)
+        assert definite(posterior.covariance)
+        certain = Gaussian(prior.mean, np.zeros((n, n)))
+        same_mean, correction = LINEAR.update(certain, sharp, np.matvec(C, prior.mean) + 1e-6)
+        assert correction.nis == pytest.approx(k, rel=1e-6)
+        assert (same_mean.mean == prior.mean).all()
