@@ -1,6 +1,7 @@
 import json
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from recordings import MOWER, entry, recording, speeds, wheels
 from scenes import rich, scene, unbounded
 from scipy.stats import chi2
 
+from ekfsim.files.load import load_scene
 from ekfsim.files.outputs import Outputs
 from ekfsim.geometry.outline import path_error
 from ekfsim.localization import play
@@ -200,3 +202,12 @@ def test_a_clock_that_stands_still_is_one_instant():
         summary.add(step)
     assert summary.position.n == 1
     assert summary.duration == 0
+
+
+def test_the_path_error_of_the_pylon_log_is_its_authors():
+    log = Path(__file__).resolve().parents[2] / "shared" / "data" / "pylon" / "2020_2_26__17_21_59_filtered.csv"
+    if not log.exists():
+        pytest.skip(f"needs the recorded log {log.name} beside the checkout")
+    table = summary_of(load_scene("pylon_log", log=log, reading="coded"))
+    assert table["path_rmse"] == pytest.approx(0.230198957, abs=1e-8)
+    assert table["updates"] == 707
