@@ -11,8 +11,9 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
-from matplotlib.legend_handler import HandlerTuple
+from matplotlib.legend_handler import HandlerPathCollection, HandlerTuple
 from matplotlib.text import Text
 
 from ekfsim.geometry.ellipse import outline
@@ -32,6 +33,7 @@ from ekfsim.views.png import Pixels, encode
 INCHES, DPI = (9.0, 7.0), 100  # 900 × 700 pixels
 MAIN = (0.085, 0.08, 0.58, 0.76)  # left, bottom, width, height as shares of the figure
 CLOSE = (0.7, 0.08, 0.28, 0.36)
+HANDLERS: dict[type, Any] = {tuple: HandlerTuple(ndivide=1), PathCollection: HandlerPathCollection(numpoints=5)}
 ROOMY = 15  # entries of the legend that stand in its place at ease
 COLUMNS, LINES = 118, 3  # of the notes: characters in a line, and lines
 
@@ -49,7 +51,7 @@ def draw(view: View | Step, scene: Scene, ax: Axes, look: Look = STANDARD, limit
     )
     main.show(view, reading(view, scene))
     handles, words = _legend(main.handles())
-    ax.legend(handles, words, fontsize=8, handler_map={tuple: HandlerTuple(ndivide=1)}, scatterpoints=5)
+    ax.legend(handles, words, fontsize=8, handler_map=HANDLERS)
     return main
 
 
@@ -73,7 +75,7 @@ class Picture:
         self.legend = figure.legend(
             handles, words, loc="upper left", bbox_to_anchor=(CLOSE[0] - 0.015, 0.845), borderaxespad=0.0,
             fontsize=7 if crowded else 8, labelspacing=0.2 if crowded else 0.45, handlelength=2.4, frameon=False,
-            handler_map={tuple: HandlerTuple(ndivide=1)}, scatterpoints=5,
+            handler_map=HANDLERS,
         )  # fmt: skip
         self.names: list[Text] = []
 
