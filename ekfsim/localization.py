@@ -15,6 +15,7 @@ from ekfsim.records import Control, Entry, Reading, Step
 from ekfsim.scene import Guard, Scene
 from ekfsim.simulation import simulate
 from ekfsim.simulation.draws import particle_generators
+from ekfsim.simulation.interpolation import interpolated
 
 
 def localize(
@@ -66,13 +67,15 @@ def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
     beginning = Beginning(
         first_belief(scene), scene.world.layout.headings, scene.gate, lambda: particle_generators(scene.seed, numbers)
     )
-    if scene.filter == "ekf" and scene.world.system == "mower" and scene.reading == "coded":
+    if scene.filter == "ekf" and scene.world.system in ("mower", "gnss") and scene.reading == "coded":
         return ListingEKF.begin(beginning)
     return FILTERS[scene.filter].begin(beginning)
 
 
 def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
     """Localize in a scene: every Step of its run, or of N runs side by side. runs : (N,)"""
-    entries = simulate(scene, runs) if scene.log is None else scene.log.entries
+    entries = simulate(scene, runs) if scene.log is None else iter(scene.log.entries)
+    if scene.world.system == "gnss" and scene.reading == "coded":
+        entries = interpolated(entries)
     belief = first_belief(scene, np.shape(scene.run if runs is None else runs))
     return localize(entries, filter_of(scene, runs), belief, scene.guard, scene.world.layout)

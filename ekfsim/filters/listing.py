@@ -1,8 +1,8 @@
-"""The filter of document 000's MATLAB listing, where it differs from the document's text."""
+"""The filter of the listings of documents 000 and 003, where they differ from the text."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 from ekfsim.filters.belief import Belief, Correction, Prediction
 from ekfsim.filters.ekf import EKF
@@ -30,9 +30,11 @@ class ListingEKF:
     """An EKF that linearises every marker where the robot stood before the time update.
 
     The listing keeps xM, yM and Phi from before the time update and never refreshes them, so the markers of one
-    instant are all held against the same stale prediction; section 3.2 linearises at the newest estimate.
+    instant are all held against the same stale prediction; section 3.2 linearises at the newest estimate. The authors
+    of document 003 take the innovation of their fixes in the same way.
     """
 
+    remark: ClassVar[str] = "it holds each reading against where the robot stood before the last motion input"
     ekf: EKF
 
     @classmethod
