@@ -50,7 +50,7 @@ def read_mower(path: Path, world: World, reading: DocumentReading) -> Recorded:
     truth = poses.values[:, 4:7].copy()
     truth[:, 2] = wrap(truth[:, 2])
     motion = world.robot.motion(reading)
-    entries = [Entry(0, None, truth[0], t=float(poses.t[0]))]
+    entries = [Entry(0, None, truth[0], t=float(poses.t[0]) - dT)]  # the listing begins before its first time update
     for row, t in enumerate(poses.t.tolist()):
         for given in (Control(motion, u[row]), *readings.get(row, ())):
             entries.append(Entry(len(entries), given, truth[row], t=t))
