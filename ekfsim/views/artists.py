@@ -89,9 +89,13 @@ class BeliefArtists:
     """The estimate with its ellipse, cone and path, and the truth."""
 
     def __init__(
-        self, axes: Axes, probability: float, conditional: bool, body: bool = True, crowd: bool = False
+        self, axes: Axes, probability: float, conditional: bool, driven: bool, body: bool = True, crowd: bool = False
     ) -> None:
-        """body : whether to draw the robot; crowd : whether the belief may be particles, for the legend"""
+        """driven : whether the path has a corner for each of many instants, rather than for each command
+
+        body : whether to draw the robot; crowd : whether the belief may be particles, for the legend
+        """
+        self._driven = driven
         self._probability, self._crowd = probability, crowd
         self.cone = _area(axes, SKY, 0.35, "--", 1.0, 2.0, "cone", cone_label(probability))
         self.ellipse = _area(axes, GREEN, 0.18, "-", 1.6, 3.1, "ellipse", ellipse_label(probability))
@@ -105,8 +109,9 @@ class BeliefArtists:
             [], [], s=[GRAIN], c=CROWD, alpha=0.45, linewidths=0, zorder=2.2, gid="particles", label="particles"
         )
         self.path = axes.add_line(
-            Line2D([], [], color=BLUE, lw=1.2, marker=".", ms=5, zorder=3, gid="path", label="path of the estimates")
+            Line2D([], [], color=BLUE, lw=1.2, marker="" if driven else ".", ms=5, zorder=3, gid="path")
         )
+        self.path.set_label("path of the estimates")
         self.body = _area(axes, BLUE, 0.55, "-", 1.0, 2.1, "body", "estimate") if body else None
         self.reference = axes.add_line(
             Line2D([], [], color=BLUE, ls="none", marker="o", ms=7, mfc="white", mew=1.5, zorder=4.5, gid="reference")
@@ -131,7 +136,8 @@ class BeliefArtists:
             self.particles.set_offsets(NOWHERE)
         path = view.path()
         self.path.set_data(*path.T)
-        self.path.set_marker("." if len(path) <= DOTS else "")
+        if not self._driven:
+            self.path.set_marker("." if len(path) <= DOTS else "")
         if self.body is not None:
             self.body.set_xy(robot(x, unit))
         self.reference.set_data(x[:1], x[1:2])

@@ -9,7 +9,7 @@ import shapely
 
 from ekfsim.filters.belief import Refused, posed
 from ekfsim.geometry import Array
-from ekfsim.models.laser import Sighting
+from ekfsim.models.laser import Laser, Sighting
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.lettering import shortened
@@ -32,6 +32,7 @@ class Beam:
     probes: tuple[tuple[Array, float], ...]  # the beams from other poses that meet another wall, or none (nan)
     solid: bool  # whether the measured end lies in, on or behind a wall rather than in the air before it
     ending: str  # the same in words: "in the air, 4 cm short of desk"
+    reaching: bool = True  # whether the sensor meets a wall however far; an ultrasonic one does not
 
 
 def beam(step: Step, scene: Scene) -> Beam | None:
@@ -59,6 +60,7 @@ def beam(step: Step, scene: Scene) -> Beam | None:
         tuple(astray(sensor, sighting)) if sighting.ambiguous else (),
         solid,
         ending,
+        reaching=isinstance(sensor, Laser),
     )
 
 

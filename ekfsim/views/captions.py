@@ -18,6 +18,7 @@ REFUSALS = {
     Refused.GUARD: "refused by the guard: the beam is ambiguous",
     Refused.GATE: "refused by the gate: too far from what was predicted",
 }
+OUT_OF_REACH = "refused: the filter's map has no wall within reach there"
 ARROWS = "→↗↑↖←↙↓↘"
 
 
@@ -79,7 +80,8 @@ def notes(view: View, scene: Scene, read: Beam | Sight | None) -> list[str]:
 
 
 def _ranges(beam: Beam) -> list[str]:
-    predicted = "no wall expected" if math.isnan(beam.predicted) else f"expected {length(beam.predicted)}"
+    no_wall = "no wall expected" if beam.reaching else "no wall expected within reach"
+    predicted = no_wall if math.isnan(beam.predicted) else f"expected {length(beam.predicted)}"
     if math.isnan(beam.measured):
         return [f"no echo; {predicted}"]
     return [f"measured {length(beam.measured)}, {predicted}: the beam ends {beam.ending}"]
@@ -92,7 +94,7 @@ def _warnings(beam: Beam) -> list[str]:
     if beam.grazing is not None:
         told.append(f"grazing: {math.degrees(beam.grazing):.2g}° between beam and wall")
     if beam.refused in (Refused.GUARD, Refused.GATE, Refused.NO_WALL):
-        told.append(REFUSALS[beam.refused])
+        told.append(REFUSALS[beam.refused] if beam.reaching or beam.refused is not Refused.NO_WALL else OUT_OF_REACH)
     return ["; ".join(told)] if told else []
 
 

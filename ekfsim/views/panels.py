@@ -45,7 +45,7 @@ class Main:
         self.axes = axes
         self.world = WorldArtists(axes, scene.world)
         static = set(axes.get_children())
-        self.belief = BeliefArtists(axes, probability, conditional, crowd=scene.filter == "pf")
+        self.belief = BeliefArtists(axes, probability, conditional, _driven(scene), crowd=scene.filter == "pf")
         self.beam = BeamArtists(axes)
         self._sensors = sensors(scene)
         self.sight = SightArtists(axes, self._sensors)
@@ -88,7 +88,7 @@ class CloseUp:
         self._probability = probability
         self.axes = axes
         self.world = WorldArtists(axes, scene.world)
-        self.belief = BeliefArtists(axes, probability, conditional, body=False)
+        self.belief = BeliefArtists(axes, probability, conditional, _driven(scene), body=False)
         self.beam = BeamArtists(axes)
         self.sight = SightArtists(axes)
         self.fixes = FixArtists(axes, scene)
@@ -147,9 +147,14 @@ def one_two_five(least: float) -> float:
 
 def sensors(scene: Scene) -> set[type[Sensor]]:
     """The kinds of sensors whose readings a run may hold; all that the classroom has where nothing is commanded yet."""
-    if scene.drive is not None or scene.log is not None:
+    if _driven(scene):
         return kinds(scene)
     return {Laser} if senses(scene.commands) or not scene.commands else set()
+
+
+def _driven(scene: Scene) -> bool:
+    """Whether the robot is driven, or was recorded, rather than commanded."""
+    return scene.drive is not None or scene.log is not None
 
 
 def senses(commands: Iterable[Command]) -> bool:

@@ -51,6 +51,7 @@ def draw(
     step, (mean, P) = view.step, view.pose
     legend = _draw_world(canvas, scene.world)
     canvas.polyline(view.path(), PATH)
+    _draw_landmarks(canvas, scene.world.landmarks)  # over the path, so that their numbers stay whole
     belief = draw_particles(canvas, view) + _draw_uncertainty(canvas, mean, P, probability)
     legend += draw_fix(canvas, step.entry) + belief
     if view.beam:
@@ -83,7 +84,6 @@ def _draw_world(canvas: Canvas, world: World) -> list[Item]:
     if world.expected_path is not None:
         canvas.polygons([world.expected_path], MEANT)
         legend.append(Item(",," if canvas.ascii else "⠂⠐", "meant way", MEANT.colour))
-    _draw_landmarks(canvas, world.landmarks)
     return legend
 
 

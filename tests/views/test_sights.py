@@ -364,3 +364,21 @@ def test_landmarks_have_their_numbers_where_there_is_room():
     text = draw(next(views(play(run), POSE)), run, 0.954, (80, 24), (-5.0, 7.0, -5.0, 5.0), colour=False)
     assert "#99" in text
     assert "#49" not in text
+
+
+def test_a_path_of_many_instants_has_no_dots():
+    assert drawn(scene(Move(1.0, 0.0)))[0].main.belief.path.get_marker() == "."
+    picture, every = drawn(systems_scenes.mower())
+    picture.show(every[-1])
+    assert picture.main.belief.path.get_marker() == ""
+    assert picture.main.belief.path.get_xydata() == pytest.approx(every[-1].path())
+
+
+def test_a_wall_out_of_reach_is_no_wall_that_is_missing():
+    run = systems_scenes.ultrasonic()
+    picture, every = drawn(run)
+    view = next(v for v in every if v.beam)
+    nothing = replace(view.step.correction, predicted=np.array([math.nan]), refused=np.array(int(Refused.NO_WALL)))
+    picture.show(replace(view, step=replace(view.step, correction=nothing)))
+    assert "no wall expected within reach: the beam ends in the air" in picture.notes.get_text()
+    assert picture.notes.get_text().endswith("refused: the filter's map has no wall within reach there")
