@@ -21,8 +21,8 @@ def symmetric(P: Array) -> Array:
 def innovation_covariance(P: Array, H: Array, R: Array) -> Array:
     """S = H P Hᵀ + R : (…, k, k), exactly R where the rest is rounding."""
     HPHt: Array = H @ P @ H.mT
-    if P.ndim == H.ndim == 2 and np.abs(HPHt).min() > 2 * ROUNDING * float(np.vdot(H, H)) * float(P.trace()):
-        return HPHt + R  # all of it is larger than what may be rounding
+    if P.ndim == H.ndim == 2 and HPHt.diagonal().min() > 2 * ROUNDING * float(np.vdot(H, H)) * float(P.trace()):
+        return HPHt + R  # every variance is larger than what may be rounding
     sin_π = CERTAIN * np.sum(H * H, axis=(-2, -1)) * np.trace(P, axis1=-2, axis2=-1)
     rounding = ROUNDING * (np.abs(H) @ np.abs(P) @ np.abs(H.mT)) + sin_π[..., None, None]
     return np.where(np.abs(HPHt) <= rounding, 0.0, HPHt) + R
@@ -67,8 +67,9 @@ def gain(cross: Array, S: Array) -> Array:
     """
     if S.shape[-1] == 1:
         return np.divide(cross, S, out=np.zeros(np.broadcast_shapes(cross.shape, S.shape)), where=S > 0)
-    K = cross @ inverse(S)
-    return np.where(np.isnan(K), 0.0, K)
+    K: Array = cross @ inverse(S)
+    K[np.isnan(K)] = 0.0
+    return K
 
 
 def normalized_square(innovation: Array, S: Array) -> Array:
@@ -77,6 +78,8 @@ def normalized_square(innovation: Array, S: Array) -> Array:
         s, ν = S[..., 0, 0], innovation[..., 0]
         nis: Array = np.divide(ν * ν, s, out=np.full(np.broadcast_shapes(ν.shape, s.shape), np.nan), where=s > 0)
         return nis
+    if S.ndim == 2 and innovation.ndim == 1:
+        return np.array(innovation @ inverse(S) @ innovation if S.any() else np.nan)
     square = np.vecdot(innovation, np.matvec(inverse(S), innovation))
     return np.where(np.any(S != 0, axis=(-2, -1)), square, np.nan)
 
