@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ekfsim.errors import UsageError
+from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.logs.folder import find, find_any, folder_of
 from ekfsim.files.logs.ordering import in_order, tell_gaps
 from ekfsim.files.logs.recorded import Recorded
@@ -67,12 +67,17 @@ def _truth(folder: Path, robot: str, warnings: list[str]) -> Truth | None:
 
 
 def _subjects(barcodes: Rows) -> dict[int, int]:
-    """The subject that wears each barcode. Raises UsageError where two wear the same."""
-    subject_of = dict[int, int]()
-    for subject, barcode in barcodes.values.astype(int).tolist():
-        if subject_of.setdefault(barcode, subject) != subject:
-            told = f"the subjects {subject_of[barcode]} and {subject} wear the same barcode {barcode}"
-            raise UsageError(f"{barcodes.file}: {told}; give each its own")
+    """The subject that wears each barcode. Raises InputError where two wear the same, or one is no whole number."""
+    subject_of, mistakes = dict[int, int](), list[Mistake]()
+    for line, (subject, barcode) in zip(barcodes.lines.tolist(), barcodes.values.tolist(), strict=True):
+        place = Place(barcodes.file, line)
+        if subject != int(subject) or barcode != int(barcode):
+            mistakes.append(Mistake(place, "", f"{subject:g} or {barcode:g} is no name", "both are whole numbers"))
+        elif subject_of.setdefault(int(barcode), int(subject)) != subject:
+            told = f"the subject {subject_of[int(barcode)]} has the barcode {barcode:g} already"
+            mistakes.append(Mistake(place, "", told, "give each its own"))
+    if mistakes:
+        raise InputError(mistakes)
     return subject_of
 
 

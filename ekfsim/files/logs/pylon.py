@@ -10,7 +10,7 @@ from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.logs.folder import table_file
 from ekfsim.files.logs.ordering import tell_gaps, tell_repeated
 from ekfsim.files.logs.recorded import Recorded
-from ekfsim.files.logs.table import Rows, Wanted, numbers_of, some
+from ekfsim.files.logs.table import Rows, Wanted, is_number, numbers_of, some
 from ekfsim.files.logs.targets import only
 from ekfsim.files.logs.text import Lines, lines_of
 from ekfsim.files.logs.timeline import beginning
@@ -107,8 +107,8 @@ def _stamps(rows: Rows, lines: Lines) -> list[int]:
     for number in rows.lines.tolist():
         fields = text_of[number].split(",")
         text = fields[STAMP].strip()
-        value = int(text) if text.isdecimal() else None if not math.isfinite(float(text)) else int(float(text))
-        if value is None or not 0 <= value < 1 << 64:
+        value = int(text) if text.isdecimal() else _whole(float(text)) if is_number(text) else -1
+        if not 0 <= value < 1 << 64:
             column = len(",".join(fields[:STAMP])) + 2
             wrong = f"{quoted(text)} is no stamp"
             mistakes.append(Mistake(Place(rows.file, number, column), "Time Stamp", wrong, "it is a 64-bit number"))
@@ -117,3 +117,8 @@ def _stamps(rows: Rows, lines: Lines) -> list[int]:
     if mistakes:
         raise InputError(mistakes[:20])
     return stamps
+
+
+def _whole(number: float) -> int:
+    """The whole number that a float stands for, −1 where it is none."""
+    return int(number) if math.isfinite(number) else -1

@@ -7,7 +7,6 @@ cannot be meant (denormals, a million metres). Whatever else is wrong is refused
 import math
 import re
 import sys
-import warnings as library
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,8 +23,7 @@ from ekfsim.geometry import Array, Booleans, Integers
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?(nan|inf|infinity)", re.IGNORECASE | re.ASCII)
 MOST_TOLD = 20  # mistakes
 MOST_WARNED = 3  # rows of one kind
-ENORMOUS = 1e6  # m, rad, s-1, …
-FAR_FUTURE = 1e12  # s
+ENORMOUS = {"t": 1e12, "time": 1e12, "x": 1e7, "y": 1e7}  # s and m: until the year 33658, and for any UTM northing
 
 
 @dataclass(frozen=True)
@@ -39,7 +37,7 @@ class Wanted:
 
     def limits(self) -> Array:
         """The magnitude beyond which a number cannot be meant."""
-        return np.array([FAR_FUTURE if name in ("t", "time") else ENORMOUS for name in self.names])
+        return np.array([ENORMOUS.get(name, 1e6) for name in self.names])
 
 
 @dataclass(frozen=True)
@@ -108,7 +106,7 @@ def _whole(lines: Lines, separator: str | None, warnings: list[str]) -> Lines:
     place = f"{lines.file}:{lines.numbers[-1]}"
     if above and len(last) < len(above[-1]):
         why = "in the middle of a row"
-    elif above and not lines.ended and (not _is_number(last[-1]) or _is_cut(last[-1], [row[-1] for row in above])):
+    elif above and not lines.ended and (not is_number(last[-1]) or _is_cut(last[-1], [row[-1] for row in above])):
         why = "in the middle of a number"
     else:
         if not lines.ended:
@@ -124,27 +122,32 @@ def _is_cut(number: str, above: list[str]) -> bool:
     return len(above) > 2 and len(decimals) == 1 and len(number.strip().partition(".")[2]) < decimals.pop()
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether a text is a number as programs write it, nan and inf included."""
     return NUMBER.fullmatch(text.strip()) is not None
 
 
 def _quickly(lines: Lines, wanted: Wanted, separator: str | None) -> Array | None:
-    """The wanted columns as numpy reads them; None where it stumbles, or might be more lenient than we are."""
+    """The wanted columns as numpy reads them; None where it stumbles, or some rows have other widths."""
     if not len(lines):
         return np.empty((0, len(wanted.places)))
-    try:
-        with library.catch_warnings():
-            library.simplefilter("error")
-            values: Array = np.loadtxt(lines.texts, delimiter=separator, ndmin=2, comments=None)
-    except (ValueError, UserWarning, OverflowError):
+    width, *others = {_width(text, separator) for text in lines.texts}
+    if others or width not in wanted.widths:
         return None
-    return values[:, list(wanted.places)] if values.shape[1] in wanted.widths else None
+    try:
+        return np.loadtxt(lines.texts, delimiter=separator, usecols=wanted.places, ndmin=2, comments=None)
+    except (ValueError, OverflowError):
+        return None
+
+
+def _width(text: str, separator: str | None) -> int:
+    return text.count(separator) + 1 if separator else len(text.split())
 
 
 def _carefully(lines: Lines, wanted: Wanted, separator: str | None) -> Array:
     """The same in as long as it takes. Raises InputError with the mistakes, each at its place."""
     mistakes, rows, more = list[Mistake](), list[list[float]](), 0
-    widths = [len(text.split(separator)) for text in lines.texts]
+    widths = [_width(text, separator) for text in lines.texts]
     usual = next((width for width in widths if width in wanted.widths), None)
     if usual is None and len(set(widths)) == 1:
         raise InputError([_width_mistake(lines, 0, widths[0], wanted.widths)])
@@ -172,9 +175,8 @@ def _row_mistakes(
     found, column = [], 0
     for place, field in enumerate(fields):
         column = text.index(field, column) if field else column
-        if not _is_number(field):
-            start = column + len(field) - len(field.lstrip())
-            name = wanted.names[wanted.places.index(place)] if place in wanted.places else f"column {place + 1}"
+        if place in wanted.places and not is_number(field):
+            start, name = column + len(field) - len(field.lstrip()), wanted.names[wanted.places.index(place)]
             wrong = f"{quoted(field)} is not a number" if field.strip() else "nothing stands where a number belongs"
             found.append(Mistake(Place(lines.file, lines.numbers[row], start + 1), name, wrong, "write e.g. 1.5"))
         column += len(field) + (separator is not None)
