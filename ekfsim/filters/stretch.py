@@ -21,25 +21,22 @@ def stretch(belief: Belief, motion: Motion, U: Array) -> Gaussian:
     so that the covariances are cumulative sums, too. Held equal to EKF.predict in a loop by a test.
     """
     x, P = belief
-    moved = motion.f(np.zeros_like(x), U)  # seen from where each step begins
-    headings = wrap(x[..., 2] + np.cumsum(moved[..., 2], axis=0))
-    before = np.zeros_like(moved)
-    before[:1, ..., 2], before[1:, ..., 2] = x[..., 2], headings[:-1]
-    c, s = np.cos(before[..., 2]), np.sin(before[..., 2])
-    along, aside = moved[..., 0], moved[..., 1]
-    way = np.cumsum(np.stack([c * along - s * aside, s * along + c * aside]), axis=1)
+    along, aside, turn = motion.f(np.zeros_like(x), U).T  # seen from where each step begins; time last, as is fastest
+    θ = wrap(x[..., 2].T[..., None] + np.cumsum(turn, axis=-1))
+    before = np.zeros((*θ.T.shape, 3))
+    before[:1, ..., 2], before[1:, ..., 2] = x[..., 2], θ.T[:-1]
+    c, s = np.cos(before[..., 2].T), np.sin(before[..., 2].T)
+    way = np.cumsum([c * along - s * aside, s * along + c * aside], axis=-1)
     G = motion.G(before, U)
     W = G @ motion.M(U) @ G.mT + motion.Q(U)
-    places = np.moveaxis(way, (0, 1), (-2, -1))  # time is the last axis where it is summed and multiplied: faster
-    summed = np.cumsum(_sheared(np.ascontiguousarray(np.moveaxis(W, 0, -1)), -places), axis=-1)
-    covariances = np.moveaxis(_sheared(P[..., None] + summed, places), -1, 0)
-    mean = np.stack([x[..., 0] + way[0], x[..., 1] + way[1], headings], axis=-1)
-    return Gaussian(mean, symmetric(covariances))
+    from_start = P.T[..., None] + np.cumsum(_sheared(np.ascontiguousarray(W.T), -way), axis=-1)
+    mean = np.stack([x[..., 0].T[..., None] + way[0], x[..., 1].T[..., None] + way[1], θ])
+    return Gaussian(mean.T, symmetric(_sheared(from_start, way).T))
 
 
 def _sheared(P: Array, way: Array) -> Array:
-    """A(p) P A(p)ᵀ : (…, 3, 3, N), in place; the uncertainty of a heading, seen a way p : (…, 2, N) further."""
-    c = np.stack([-way[..., 1, :], way[..., 0, :]], axis=-2)
-    P[..., :2, :, :] += c[..., :, None, :] * P[..., 2:, :, :]
-    P[..., :, :2, :] += c[..., None, :, :] * P[..., :, 2:, :]
+    """A(p) P A(p)ᵀ : (3, 3, …, N), in place; the uncertainty of a heading, seen a way p : (2, …, N) further."""
+    c = np.stack([-way[1], way[0]])
+    P[:2] += c[:, None] * P[2:]
+    P[:, :2] += c * P[:, 2:]
     return P
