@@ -21,6 +21,7 @@ SYSTEM_OF: dict[str, SystemName] = {  # the system that each format of a log rec
     "ranges": "ranges",
     "pioneer": "pioneer",
 }
+WITH_LANDMARKS = ("mower", "mrclam", "ranges")  # formats that tell what stands where
 WAYS = ("commands", "drive", "recording")  # exactly one of them makes a file a commands file
 ONE_WAY: JsonDict = {"oneOf": [{"required": [way]} for way in WAYS]}
 ONE_COMMAND: JsonDict = {"minProperties": 1, "maxProperties": 1, "examples": [{"move": MOVE}]}

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from ekfsim.errors import InputError, Mistake, UsageError
 from ekfsim.files.building import scene_of, world_of
 from ekfsim.files.checks import Sound, angle_warnings, check_commands, check_world, kidnap_warnings
-from ekfsim.files.commands_file import WAYS, CommandsKeys, RecordingKeys
+from ekfsim.files.commands_file import WAYS, WITH_LANDMARKS, CommandsKeys, RecordingKeys
 from ekfsim.files.marked import Mark, Node, parse
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import resolve, source_name
@@ -65,20 +65,20 @@ def load_scene(
     return read_scene(resolve(path, "commands"), world, log, reading).get()
 
 
-def read_world(path: str | Path, shown: str | None = None, recorded: bool = False) -> Loaded[World]:
-    """A world file, with its mistakes and warnings; `shown` is how messages name it.
+def read_world(path: str | Path, shown: str | None = None, logged: bool = False) -> Loaded[World]:
+    """A world file, with its mistakes and warnings; `shown` is how messages name it. A log may bring its landmarks.
 
     Raises UsageError where there is no such file.
     """
-    return world_in(read(Path(path), shown or str(path), "world"), recorded)
+    return world_in(read(Path(path), shown or str(path), "world"), logged)
 
 
-def world_in(file: "File", recorded: bool = False) -> Loaded[World]:
-    """The world that was found in a file; one that a log was recorded in may lack what the log brings."""
+def world_in(file: "File", logged: bool = False) -> Loaded[World]:
+    """The world that was found in a file."""
     loaded = Loaded[World](mistakes=file.mistakes, warnings=file.warnings)
     if isinstance(file.keys, WorldKeys) and file.sound is not None and not file.mistakes:
         loaded.value = world_of(file.keys)
-        loaded.warnings += system_warnings(file.sound, loaded.value, recorded)
+        loaded.warnings += system_warnings(file.sound, loaded.value, logged)
     return loaded
 
 
@@ -140,8 +140,8 @@ def scene_in(file: "File", path: Path, world: str | Path | None = None) -> Loade
     if file.sound is None:  # nothing can be read in it, not even its world
         return Loaded(mistakes=file.mistakes)
     source = Path(world) if world is not None else path.parent / (file.sound.value("world") or "")
-    is_recorded = file.sound.root.at(("recording",)) is not None
-    found = read_world(source, recorded=is_recorded) if world is not None else own_world(file, source, is_recorded)
+    logged = file.sound.value("recording", "format") in WITH_LANDMARKS
+    found = read_world(source, logged=logged) if world is not None else own_world(file, source, logged)
     if isinstance(file.keys, CommandsKeys) and found.value is not None:
         file.mistakes += check_fit(file.sound, file.keys, found.value)
         file.mistakes.sort(key=in_order_of_place)
@@ -153,7 +153,7 @@ def scene_in(file: "File", path: Path, world: str | Path | None = None) -> Loade
     return loaded
 
 
-def own_world(file: "File", source: Path, recorded: bool) -> Loaded[World]:
+def own_world(file: "File", source: Path, logged: bool) -> Loaded[World]:
     """The world that a commands file names. A missing one is a mistake in that file."""
     sound = file.sound
     assert sound is not None
@@ -170,7 +170,7 @@ def own_world(file: "File", source: Path, recorded: bool) -> Loaded[World]:
         file.mistakes.append(sound.mistake(("world",), wrong, right or "write its path relative to this file"))
         file.mistakes.sort(key=in_order_of_place)
         return Loaded()
-    return read_world(source, os.path.normpath(source), recorded)
+    return read_world(source, os.path.normpath(source), logged)
 
 
 def kind_of(path: str | Path) -> Kind:

@@ -52,12 +52,24 @@ def schema_at(kind: Kind, path: tuple[str | int, ...]) -> Schema:
     whole = json_schema(kind)
     found = whole
     for part in path:
-        if "oneOf" in found and "properties" not in found:  # a drive: a list or a mapping
-            found = next(one for one in found["oneOf"] if ("items" in one) == isinstance(part, int))
-            found = resolved(found, whole)
+        found = one_kind(found, whole, isinstance(part, int))
         found = found.get("items", {}) if isinstance(part, int) else found.get("properties", {}).get(part, {})
         found = resolved(found, whole)
     return found
+
+
+def keys_at(kind: Kind, path: tuple[str | int, ...]) -> Schema:
+    """What the schema says of each key of a mapping of a file; {} where it knows none."""
+    whole = json_schema(kind)
+    known: Schema = one_kind(schema_at(kind, path), whole, is_list=False).get("properties", {})
+    return known
+
+
+def one_kind(found: Schema, whole: Schema, is_list: bool) -> Schema:
+    """Of what may be a list or a mapping, as a drive, the one that it is."""
+    if "oneOf" not in found or "properties" in found:
+        return found
+    return resolved(next(one for one in found["oneOf"] if ("items" in one) == is_list), whole)
 
 
 def resolved(found: Schema, whole: Schema) -> Schema:

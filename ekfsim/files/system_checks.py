@@ -34,10 +34,12 @@ def check_system(file: Sound) -> Iterator[Mistake]:
     if system == "classroom":
         yield from check_classroom(file)
     elif system is not None:
-        for path in (("noise",), ("belief", "noise"), ("faults",)):
+        for path in (("noise",), ("belief", "noise")):
             if file.root.at(path):
-                wrong = f"{path[-1]} belong{'s' * (path[-1] == 'noise')} to the classroom's robot"
-                yield file.mistake(path, wrong, f"'robot' and 'sensors' hold the noise of the system '{system}'")
+                right = f"'robot' and 'sensors' hold that of the system '{system}'"
+                yield file.mistake(path, "the noise ratios belong to the classroom's robot", right)
+        if file.root.at(("faults",)):
+            yield file.mistake(("faults",), "faults belong to the classroom's robot", "delete 'faults'")
         yield from check_robot(file, system)
     yield from check_sensors(file)
 
@@ -89,19 +91,19 @@ def check_sensors(file: Sound) -> Iterator[Mistake]:
                     yield file.mistake(path, wrong, "write a range that is more than the nearest")
 
 
-def system_warnings(file: Sound, world: World, recorded: bool) -> Iterator[str]:
-    """Sensors that have nothing to see, or are read less often than they say; a recording brings what it needs."""
+def system_warnings(file: Sound, world: World, logged: bool) -> Iterator[str]:
+    """Sensors that have nothing to see, or are read less often than they say; a log may bring its landmarks."""
     for index, instrument in enumerate(world.instruments):
         item = file.root.at(("sensors", index))
         path: Path = ("sensors", index, *item.keys) if item else ("system",)
-        for wrong, right in [] if recorded else doubts(instrument, world):
+        for wrong, right in doubts(instrument, world, logged):
             yield str(at(file.file, file.root.nearest(path).mark, path, wrong, right))
 
 
-def doubts(instrument: Instrument, world: World) -> Iterator[tuple[str, str]]:
+def doubts(instrument: Instrument, world: World, logged: bool) -> Iterator[tuple[str, str]]:
     """Why a sensor hardly does what is meant, and the way out."""
     name, robot = instrument.name, world.robot
-    if name in OF_LANDMARKS and not world.landmarks:
+    if name in OF_LANDMARKS and not world.landmarks and not logged:
         yield f"the sensor '{name}' sees landmarks, and the world has none", "list them under 'landmarks'"
     if name in BEAMS and not any(world.map.rings()):
         yield f"the sensor '{name}' sees walls, and the world has none", "write a 'boundary' or 'obstacles'"
@@ -150,20 +152,20 @@ def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake
     if keys.commands is not None and world.robot is not None:
         wrong = f"the robot of the system '{system}' obeys no commands"
         yield file.mistake(("commands",), wrong, "write 'drive' or 'recording', or name a world of the classroom")
-    if keys.drive is not None:
+    elif keys.drive is not None:
         if world.robot is None:
             wrong = "the classroom's robot is not driven, it obeys commands"
             yield file.mistake(("drive",), wrong, "write 'commands', or name a world of another system")
         else:
             yield from check_length(file, drive_of(keys.drive), world.robot.rate)
-    if keys.recording is not None and system != (wanted := SYSTEM_OF[keys.recording.format]):
+    elif keys.recording is not None and system != (wanted := SYSTEM_OF[keys.recording.format]):
         wrong = f"a '{keys.recording.format}' log is of the system '{wanted}', the world of the system '{system}'"
         yield file.mistake(("recording", "format"), wrong, f"name a world of the system '{wanted}'")
 
 
 def check_length(file: Sound, drive: Drive, rate: float) -> Iterator[Mistake]:
     """Drives of no step at all, and those that never end."""
-    steps = duration_of(drive) * rate
+    steps = steps_of(drive, rate)
     if steps > MAX_STEPS:
         number = f"{steps:,.0f}".replace(",", " ") if steps < 1e12 else f"about {steps:.0e}"
         wrong = f"the drive takes {number} steps at the robot's {rate:g} Hz, more than 1 000 000"
@@ -173,15 +175,16 @@ def check_length(file: Sound, drive: Drive, rate: float) -> Iterator[Mistake]:
         yield file.mistake(("drive",), wrong, f"drive at least {1 / rate:g} s")
 
 
-def duration_of(drive: Drive) -> float:
-    """How long a drive takes, in s."""
+def steps_of(drive: Drive, rate: float) -> float:
+    """How many steps a drive takes, about, without taking them."""
     match drive:
         case Spiral():
-            return drive.duration
+            return drive.duration * rate
         case Square():
-            return 4 * drive.laps * (drive.side / drive.speed + math.pi / 2 / drive.turn_rate)
+            side, turn = drive.side / drive.speed, math.pi / 2 / drive.turn_rate
+            return 4 * drive.laps * (max(side * rate, 1) + max(turn * rate, 1))
         case Circle():
-            return 2 * math.pi * drive.radius * drive.laps / drive.speed
+            return max(2 * math.pi * drive.radius * drive.laps / drive.speed * rate, 1)
         case Stretches():
-            return math.fsum(stretch.duration for stretch in drive.stretches)
+            return math.fsum(stretch.duration for stretch in drive.stretches) * rate
     raise AssertionError(drive)

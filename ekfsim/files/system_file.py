@@ -1,5 +1,6 @@
 """The keys of a world file that tell of a document's system and of its robot."""
 
+import dataclasses
 import math
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -34,10 +35,9 @@ def robot_fields(system: str) -> list[str]:
     return fields_of(type(SYSTEMS[system].robot))
 
 
-def fields_of(part: type) -> list[str]:
+def fields_of(part: Any) -> list[str]:
     """The names of what a robot, an instrument or a drive is made from, in their order."""
-    fields = getattr(part, "__dataclass_fields__", {})
-    return [name for name, field in fields.items() if field.init]
+    return [field.name for field in dataclasses.fields(part) if field.init]
 
 
 class RobotKeys(PartKeys):

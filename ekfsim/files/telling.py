@@ -10,7 +10,7 @@ from pydantic_core import ErrorDetails
 
 from ekfsim.errors import Mistake, Place
 from ekfsim.files.marked import Mark, Node, Path, field_of
-from ekfsim.files.schema import Kind, Schema, schema_at
+from ekfsim.files.schema import Kind, Schema, keys_at, schema_at
 
 NOUNS = {
     "number": "a number",
@@ -83,18 +83,18 @@ def unknown_key(key: str, mapping: Node, kind: Kind, path: Path) -> tuple[str, s
     what = {"a command": "command", "a sensor": "sensor"}.get(schema.get("title", ""))
     wrong = f"{quoted(key)} is not a {what}" if what else f"unknown key {quoted(key)}"
     for other in mapping.keys:
-        if key in schema_at(kind, (*path, other)).get("properties", {}):
+        if key in keys_at(kind, (*path, other)):
             return wrong, f"indent it further than '{other}' to put it under it"
     if known := meant(key, kind, path):
         name, colon, value = key.partition(":")
         spaced_out = f"write a space after the colon: '{known}: {short(value)}'"
         return wrong, spaced_out if colon and name == known else f"did you mean '{known}'?"
-    return wrong, f"known {what or 'key'}s here: {', '.join(schema['properties'])}"
+    return wrong, f"known {what or 'key'}s here: {', '.join(keys_at(kind, path))}"
 
 
 def meant(key: str, kind: Kind, path: Path) -> str:
     """The known key of a mapping that an unknown one was meant to be, "" where none is near."""
-    known = list(schema_at(kind, path).get("properties", {}))
+    known = list(keys_at(kind, path))
     name = key.partition(":")[0]
     return name if name in known else nearest(key, known)
 
@@ -117,7 +117,7 @@ def one_of(words: list[str]) -> str:
 def wrong_length(node: Node, schema: Schema) -> tuple[str, str]:
     """Too few points, no pair, or nothing in a list."""
     count = len(node.value) if isinstance(node.value, list) else 0
-    if count == 0 and "a list" in noun(schema):
+    if count == 0 and schema.get("minItems", 1) == 1:
         return "an empty list stands here", f"write e.g. {example(schema)}"
     values = f"{count} value{'' if count == 1 else 's'}"
     if "maxItems" in schema:
@@ -188,7 +188,7 @@ def out_of_range(node: Node, schema: Schema) -> tuple[str, str]:
     low, high = schema["minimum" if "minimum" in schema else "exclusiveMinimum"], schema["maximum"]
     small = isinstance(value, int | float) and value <= low
     if small and "exclusiveMinimum" in schema:
-        return f"{shown(node)} is {'negative' if value != low else f'not more than {spaced(low)}'}", right
+        return f"{shown(node)} is {'too small' if value == low else 'negative'}", f"write more than {spaced(low)}"
     if high == 1:
         right = f"write {noun(schema)} from 0 to 1"
     else:
