@@ -37,7 +37,7 @@ def resolve(name_or_path: str | Path, kind: Folder) -> Path:
     if exists or name not in known:
         is_bare = not path.suffix and path.name == name and name.isprintable()
         if not exists and is_bare:
-            near = difflib.get_close_matches(name, known, 3)
+            near = difflib.get_close_matches(name, known, 3, 0.7)
             right = f"did you mean {' or '.join(map(repr, near))}?" if near else "see `ekfsim list`, or name a file"
             raise UsageError(f"{name!r} is neither a file nor one of the packaged {kind}; {right}")
         return path

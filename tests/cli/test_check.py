@@ -154,3 +154,21 @@ def test_a_file_that_may_not_be_read(place):
     told = ekfsim("check", "world.yaml")
     assert told.status == 2
     assert told.err == "ekfsim: world.yaml: cannot be read: Permission denied\n"
+
+
+def test_a_recording_without_a_path_is_ok_and_cannot_be_run():
+    told = ekfsim("check", "pylon_log")
+    assert (told.status, told.out, told.err) == (0, "pylon_log: ok\n", "")
+    told = ekfsim("run", "pylon_log")
+    assert (told.status, told.out) == (2, "")
+    assert told.err.endswith("pylon_log.yaml:5:12: recording: the recording names no path; give one with --log\n")
+
+
+def test_a_log_where_nothing_was_recorded():
+    told = ekfsim("run", "short.yaml", "--log", "log.csv")
+    assert (told.status, told.out) == (2, "")
+    line = "short.yaml:3:3: commands: the file has 'commands', not a recording; --log has nothing to replace\n"
+    assert told.err == line
+    told = ekfsim("run", "short.yaml", "--reading", "spoken")
+    assert told.status == 2
+    assert "'printed', 'coded', 'corrected'" in told.err
