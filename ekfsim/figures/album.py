@@ -8,6 +8,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ekfsim.views.lettering import drawable
 
@@ -15,6 +16,7 @@ PATTERNS = ("*.png", "*.svg", "*.pdf", "*.csv", "captions.md")  # what an album 
 BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = "#0072B2", "#56B4E9", "#009E73", "#D55E00", "#CC79A7", "#E69F00"
 GREY, BLACK = "#777777", "#000000"
 DPI = 120
+SOURCE_LINE = 0.14  # in, at the foot of a figure
 
 
 @dataclass
@@ -31,6 +33,10 @@ class Album:
         """A new figure, in inches, that no window manages."""
         made = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
         FigureCanvasAgg(made)
+        foot = SOURCE_LINE / height
+        engine = made.get_layout_engine()
+        assert isinstance(engine, ConstrainedLayoutEngine)
+        engine.set(rect=(0, foot, 1, 1 - foot))  # the source is written below
         return made
 
     def add(self, figure: Figure, name: str, title: str, caption: str) -> None:
@@ -40,14 +46,16 @@ class Album:
             figure.savefig(self.folder / f"{name}.{ending}", dpi=DPI)
         self.pages.append(f"## {title}\n\n![{title}]({name}.{self.formats[0]})\n\n{caption.strip()}\n")
 
-    def table(
-        self, name: str, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], caption: str
-    ) -> None:
+    def table(self, name: str, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], caption: str) -> None:
         """Write a table as CSV and into the captions."""
         with (self.folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
             csv.writer(file, lineterminator="\n").writerows([header, *rows])
         lines = ["| " + " | ".join(cells) + " |" for cells in (header, ["---"] * len(header), *rows)]
         self.pages.append(f"## {title}\n\n" + "\n".join(lines) + f"\n\n{caption.strip()}\n")
+
+    def note(self, title: str, text: str) -> None:
+        """Say in the captions why something is not drawn."""
+        self.pages.append(f"## {title}\n\n{text.strip()}\n")
 
     def close(self) -> None:
         """Write the page of captions."""
