@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.models.noise import alike, independent
+from ekfsim.models.noise import alike
 from ekfsim.models.protocols import Quantity
 
 TINY = 1e-12  # no echo rises in a shorter T than this, in the times' unit, nor is there any before s is as large
@@ -53,7 +53,7 @@ class Echo:
     """
 
     times: Array  # (k,) s
-    sigma: float  # V, of each sample
+    sigma: Array | float  # V, of each sample : (…)
 
     @property
     def outputs(self) -> tuple[Quantity, ...]:
@@ -74,7 +74,8 @@ class Echo:
         A, shape, s = _envelope(self.times, A0, τ, T, α)
         per_T = 1 / np.where(T > TINY, T, 1.0)
         H = np.stack([shape, A * (1 - α / s) * per_T, A * (s - α) * per_T, A * np.log(s)], axis=-1)
-        return A, H, alike(independent(*[self.sigma] * len(self.times)), x.shape[:-1])
+        R = np.asarray(self.sigma)[..., None, None] ** 2 * np.eye(len(self.times))
+        return A, H, alike(R, x.shape[:-1])
 
     def residual(self, z: Array, h: Array) -> Array:
         """ν = z − h : (…, k) V"""

@@ -1,0 +1,86 @@
+"""Many runs of one filter side by side, and their errors over time."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ekfsim.filters.belief import Refused
+from ekfsim.filters.chi_square import quantile
+from ekfsim.geometry import Array
+from ekfsim.geometry.angles import wrap
+from ekfsim.localization import play
+from ekfsim.records import Control, Nees
+from ekfsim.scene import Scene
+
+LOST = 0.999  # NEES beyond this χ² quantile: lost
+
+
+@dataclass(frozen=True)
+class Crowd:
+    """N runs of one filter side by side, one row for each of T instants."""
+
+    t: Array  # (T,) s
+    error: Array  # (T, N, 3) m, m, rad: estimate − truth
+    reckoned: Array  # (T, N, 3) the same of the motion inputs alone
+    nees: Array  # (N,) of the pose at the end, ∞ where the belief is impossible
+    blind: float  # readings in a run that were refused because the filter predicted none
+
+    @property
+    def position(self) -> Array:
+        """(T, N) m"""
+        distance: Array = np.hypot(self.error[..., 0], self.error[..., 1])
+        return distance
+
+    @property
+    def heading(self) -> Array:
+        """(T, N) rad"""
+        return self.error[..., 2]
+
+    @property
+    def lost(self) -> float:
+        """The share of runs whose last NEES lies beyond its χ² quantile."""
+        return float(np.mean(self.nees > quantile(LOST, 3)))
+
+
+def crowd_of(scene: Scene, n: int) -> Crowd:
+    """Runs 0 … n − 1 of a scene, simulated."""
+    layout, reckoned, blind = scene.world.layout, np.zeros(0), 0
+    at: dict[float, tuple[Array, Array]] = {}  # the last of each instant
+    last: Nees | None = None
+    for step in play(scene, runs=np.arange(n)):
+        entry = step.entry
+        assert entry.t is not None
+        assert entry.truth is not None
+        if entry.given is None:
+            reckoned = step.posterior.mean
+        if isinstance(entry.given, Control):
+            reckoned = entry.given.motion.f(reckoned, entry.given.u)
+        if step.correction is not None:
+            blind += int(np.sum(step.correction.refused == Refused.NO_WALL))
+        estimated, alone = layout.pose(step.posterior.mean), layout.pose(reckoned)
+        at[entry.t] = _difference(estimated, entry.truth), _difference(alone, entry.truth)
+        last = step.nees
+    assert last is not None
+    errors, of_reckoned = (np.stack(each) for each in zip(*at.values(), strict=True))
+    return Crowd(np.array(list(at)), errors, of_reckoned, np.where(last.impossible, np.inf, last.value), blind / n)
+
+
+def _difference(pose: Array, truth: Array) -> Array:
+    """pose − truth : (…, 3), the heading wrapped"""
+    e: Array = pose - truth
+    e[..., 2] = wrap(e[..., 2])
+    return e
+
+
+def set_down(scene: Scene, metres: float, degrees: float) -> Scene:
+    """The same scene, its robot set down on its mark no better than that, and the filter told so."""
+    sigma = np.array([metres, metres, math.radians(degrees)])
+    told = replace(scene.world.told, sigma=sigma)
+    return replace(scene, world=replace(scene.world, start_sigma=sigma, told=told))
+
+
+def over_runs(e: Array) -> Array:
+    """RMSE of all runs at each instant : (T, N) → (T,)"""
+    over_time: Array = np.sqrt(np.mean(e**2, axis=1))
+    return over_time
