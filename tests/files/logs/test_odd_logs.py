@@ -22,6 +22,9 @@ def gnss(folder, wheels=None, fixes=None, truth=None):
         "gnss-1.csv": table("t,x,y", FIXES) if fixes is None else fixes,
         "groundtruth-1.csv": table("t,x,y,phi", TRUTH) if truth is None else truth,
     }
+    for name, text in files.items():
+        if text == "absent":
+            (folder / name).unlink()
     return lay(folder, **{name: text for name, text in files.items() if text != "absent"})
 
 
@@ -244,10 +247,13 @@ def test_a_last_number_that_may_be_whole_is_used_and_told(log):
     [
         ("", "log/wheelspeeds-1.csv:1:1: the file is empty; it begins with the line t,vl,vr"),
         ("\n \n# nothing\n", "log/wheelspeeds-1.csv:1:1: the file is empty; it begins with the line t,vl,vr"),
-        ("t,vr,vl\n", "log/wheelspeeds-1.csv:1:1: the file holds no rows; without wheel speeds there is nothing to localize"),
+        ("t,vr,vl\n", "log/wheelspeeds-1.csv:1:1: the file holds no rows; "
+                      "without wheel speeds there is nothing to localize"),
         ("0,1,1\n0.1,1,1\n", "log/wheelspeeds-1.csv:1:1: '0,1,1' names no columns; "
                              "the first line says what they are: t,vl,vr"),
-        ("t,vr\n0,1\n", "log/wheelspeeds-1.csv:1:1: no column is named 'vl'; found 't', 'vr'; did you mean 'vr'?"),
+        ("t,vr\n0,1\n", "log/wheelspeeds-1.csv:1:1: no column is named 'vl'; found 't', 'vr'"),
+        ("t,vr,v_l\n0,1,1\n",
+         "log/wheelspeeds-1.csv:1:1: no column is named 'vl'; found 't', 'vr', 'v_l'; did you mean 'v_l'?"),
         ("time,left,right\n0,1,1\n",
          "log/wheelspeeds-1.csv:1:1: no column is named 'vl'; found 'time', 'left', 'right'\n"
          "log/wheelspeeds-1.csv:1:1: no column is named 'vr'; found 'time', 'left', 'right'"),
