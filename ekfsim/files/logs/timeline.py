@@ -17,6 +17,8 @@ from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.instruments import Landmark
 from ekfsim.world import World
 
+SAME = 1e-6  # s; times that differ by no more are one: 0.3 and 0.1 + 0.2, or a Unix time as a float
+
 
 @dataclass(frozen=True)
 class Motions:
@@ -84,12 +86,25 @@ class Timeline:
 
     def _within(self, start: float, motions: Motions, warnings: list[str]) -> list[Sample]:
         """The readings that the motions reach, by time."""
-        end = float(motions.end[-1]) if len(motions.end) else start
-        kept = sorted((s for s in self.samples if start <= s.t <= end), key=lambda sample: sample.t)
+        edges = np.concatenate([[start], motions.end])
+        times = _snapped(np.array([sample.t for sample in self.samples]), edges)
+        kept = [
+            Sample(float(times[i]), self.samples[i].reading)
+            for i in np.argsort(times, kind="stable")
+            if start <= times[i] <= edges[-1]
+        ]
         if missed := len(self.samples) - len(kept):
             readings = "1 reading lies" if missed == 1 else f"{missed} readings lie"
             warnings.append(f"{self.name}: {readings} before or after the motion: left out")
         return kept
+
+
+def _snapped(t: Array, edges: Array) -> Array:
+    """The times, those that are an edge's but for rounding as the edge has it. edges : (n,) in order"""
+    after = np.minimum(np.searchsorted(edges, t), len(edges) - 1)
+    before = np.maximum(after - 1, 0)
+    nearest = np.where(np.abs(edges[after] - t) < np.abs(edges[before] - t), edges[after], edges[before])
+    return np.where(np.abs(nearest - t) <= SAME, nearest, t)
 
 
 def beginning(world: World, reading: DocumentReading, pose: Array | None) -> Gaussian:

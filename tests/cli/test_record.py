@@ -1,0 +1,76 @@
+import json
+
+import pytest
+from program import WORLD, ekfsim, left_in
+
+DRIVE = "world: world.yaml\nseed: 3\ndrive: {path: circle, radius: 2, speed: 1, laps: 0.5}\n"
+LOGGED = "world: world.yaml\nrecording: {format: gnss}\n"
+LAWN = "name: lawn\nsystem: gnss\nstart: {x: 0, y: 0, theta: 0}\n"
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name, text in {"world.yaml": LAWN, "drive.yaml": DRIVE, "logged.yaml": LOGGED}.items():
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+def posteriors(file):
+    lines = [json.loads(line) for line in file.read_text().splitlines()]
+    return [number for line in lines[1:] for number in line["posterior"]["mean"]]
+
+
+def test_a_drive_recorded_and_run_again_is_the_same(place):
+    ended = ekfsim("record", "drive.yaml", "-o", "log")
+    assert (ended.status, ended.err) == (0, "")
+    assert ended.out == "log: a gnss log; run the filter on it with --log\n"
+    assert left_in(place / "log") == ["about.txt", "gnss.csv", "groundtruth.csv", "wheelspeeds.csv"]
+    assert "commands drive.yaml" in (place / "log" / "about.txt").read_text()
+    for args in (("drive.yaml", "--trace", "run"), ("logged.yaml", "--log", "log", "--trace", "again")):
+        assert ekfsim("run", *args, "--quiet").status == 0
+    assert posteriors(place / "again") == pytest.approx(posteriors(place / "run"), abs=1e-9)
+
+
+def test_another_seed_and_run_make_another_log(place):
+    texts = set()
+    for n, args in enumerate(([], ["--seed", "4"], ["--run", "1"])):
+        assert ekfsim("record", "drive.yaml", "-o", f"log{n}", *args).status == 0
+        texts.add((place / f"log{n}" / "gnss.csv").read_text())
+    assert len(texts) == 3
+
+
+def test_a_log_that_exists_is_refused_without_force(place):
+    assert ekfsim("record", "drive.yaml", "-o", "log").status == 0
+    ended = ekfsim("record", "drive.yaml", "-o", "log")
+    assert ended.status == 2
+    assert ended.err.startswith("ekfsim: log: the folder is not empty; choose another")
+    assert ekfsim("record", "drive.yaml", "-o", "log", "--force").status == 0
+    (place / "log" / "mine.md").write_text("")
+    assert ekfsim("record", "drive.yaml", "-o", "log", "--force").status == 2
+
+
+def test_a_classroom_and_a_log_are_not_recorded(place):
+    ekfsim("record", "drive.yaml", "-o", "log")
+    (place / "world.yaml").write_text(WORLD)
+    (place / "drive.yaml").write_text("world: world.yaml\ncommands: [move: {distance: 1, angle: 0}]\n")
+    ended = ekfsim("record", "drive.yaml", "-o", "out")
+    assert (ended.status, ended.out) == (2, "")
+    assert ended.err.startswith("ekfsim: drive.yaml: only driven systems are recorded: mower, gnss, pylon, pioneer; ")
+    (place / "world.yaml").write_text(LAWN)
+    ended = ekfsim("record", "logged.yaml", "--log", "log", "-o", "out")
+    assert ended.status == 2
+    assert ended.err.endswith("ekfsim: logged.yaml: is a recorded log already; name a simulated drive\n")
+    assert not (place / "out").exists()
+
+
+def test_a_log_that_is_wrong_is_told_with_its_place(place):
+    ekfsim("record", "drive.yaml", "-o", "log")
+    (place / "log" / "gnss.csv").write_text("t,x,y\n0.1,1,2\n0.2,x,2\n0.3,1,2\n")
+    ended = ekfsim("run", "logged.yaml", "--log", "log")
+    assert (ended.status, ended.out) == (2, "")
+    assert ended.err == "log/gnss.csv:3:5: x: 'x' is not a number; write e.g. 1.5\n"
+    (place / "log" / "gnss.csv").unlink()
+    ended = ekfsim("run", "logged.yaml", "--log", "log")
+    assert (ended.status, ended.out) == (2, "")
+    assert ended.err == "ekfsim: log: no file 'gnss*.csv' in it; it would hold the satellite fixes\n"
