@@ -1,6 +1,7 @@
 """A folder of figures and tables with one page of captions: what to see, and how it compares with the print."""
 
 import csv
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -44,14 +45,14 @@ class Album:
         figure.text(0.995, 0.004, drawable(self.source), fontsize=5.5, ha="right", va="bottom", color="#777777")
         for ending in self.formats:
             figure.savefig(self.folder / f"{name}.{ending}", dpi=DPI)
-        self.pages.append(f"## {title}\n\n![{title}]({name}.{self.formats[0]})\n\n{caption.strip()}\n")
+        self.pages.append(f"## {title}\n\n![{title}]({name}.{self.formats[0]})\n\n{filled(caption)}\n")
 
     def table(self, name: str, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], caption: str) -> None:
         """Write a table as CSV and into the captions."""
         with (self.folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
             csv.writer(file, lineterminator="\n").writerows([header, *rows])
         lines = ["| " + " | ".join(cells) + " |" for cells in (header, ["---"] * len(header), *rows)]
-        self.pages.append(f"## {title}\n\n" + "\n".join(lines) + f"\n\n{caption.strip()}\n")
+        self.pages.append(f"## {title}\n\n" + "\n".join(lines) + f"\n\n{filled(caption)}\n")
 
     def note(self, title: str, text: str) -> None:
         """Say in the captions why something is not drawn."""
@@ -61,6 +62,16 @@ class Album:
         """Write the page of captions."""
         text = "\n".join([f"# {self.title}\n", f"{self.source}\n", *self.pages])
         (self.folder / "captions.md").write_text(text, encoding="utf-8")
+
+
+def filled(text: str) -> str:
+    """Paragraphs of even lines; lists and tables stay as they are."""
+    paragraphs = text.strip().split("\n\n")
+    return "\n\n".join(
+        paragraph if any(line.startswith(("- ", "| ", "* ")) for line in paragraph.splitlines()[1:])
+        else textwrap.fill(" ".join(paragraph.split()), 120, break_long_words=False, break_on_hyphens=False)
+        for paragraph in paragraphs
+    )  # fmt: skip
 
 
 def labelled(axes: Axes, x: str, y: str) -> Axes:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ekfsim.consistency import LOST
 from ekfsim.filters.belief import Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array
@@ -12,8 +13,6 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.localization import play
 from ekfsim.records import Control, Nees
 from ekfsim.scene import Scene
-
-LOST = 0.999  # NEES beyond this χ² quantile: lost
 
 
 @dataclass(frozen=True)

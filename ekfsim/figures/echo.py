@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from ekfsim.figures.album import BLACK, BLUE, GREEN, GREY, ORANGE, SKY, VERMILLION, Album, labelled
 from ekfsim.figures.track import rmse
@@ -131,8 +132,9 @@ def _draw_fit(scene: Scene, album: Album, pair: Pair) -> None:
         figure, "fig5-echo", "Figure 5: the echo, its Hilbert envelope and the UKF's fit",
         ECHO.format(
             distance=DISTANCE, snr=SHOWN, share=100 * SHARE, rate=pair.rate / 1e3, carrier=pair.carrier / 1e3,
-            flight=x[1] * US, sigma=σ * US, true=echo[1] * US, error=error * US, mm=error * MM, threshold=crossing * US, A0=x[0],
-            T=x[2] * US, α=x[3], A0_true=echo[0], T_true=T * US, α_true=α, T_pair=pair.rise * US, α_pair=pair.power,
+            flight=x[1] * US, sigma=σ * US, true=echo[1] * US, error=error * US, mm=error * MM,
+            threshold=crossing * US, A0=x[0], T=x[2] * US, α=x[3], A0_true=echo[0], T_true=T * US, α_true=α,
+            T_pair=pair.rise * US, α_pair=pair.power,
             power=2 * pair.power, times=np.exp(2 * pair.power),
             drawn=" (green, cut off)" if scene.reading == "printed" else "",
         ),
@@ -171,14 +173,14 @@ def _caption(album: Album, figure: Figure, pair: Pair, trials: list[Trial]) -> N
     )  # fmt: skip
 
 
-def _millimetres(flight: Array) -> Array:
+def _millimetres(flight: ArrayLike) -> ArrayLike:
     """of distance, for µs of flight"""
-    return np.asarray(flight) / US * MM
+    return np.asarray(flight, float) / US * MM
 
 
-def _microseconds(distance: Array) -> Array:
+def _microseconds(distance: ArrayLike) -> ArrayLike:
     """of flight, for mm of distance"""
-    return np.asarray(distance) / MM * US
+    return np.asarray(distance, float) / MM * US
 
 
 def _curve(axes: Axes, snr: list[float], error: list[float], color: str, marker: str, label: str) -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ekfsim.figures.album import BLUE, GREEN, ORANGE, VERMILLION, Album, labelled
+from ekfsim.figures.album import BLACK, BLUE, ORANGE, VERMILLION, Album, labelled
 from ekfsim.figures.beams import draw_infrared, draw_ultrasonic
 from ekfsim.figures.crowd import Crowd, crowd_of, over_runs, set_down
 from ekfsim.figures.echo import draw_echo
@@ -17,7 +17,8 @@ from ekfsim.scene import Scene
 
 RUNS = 100
 NAMES = {"kf": "LKF", "ekf": "EKF", "ukf": "UKF"}
-COLORS = {"kf": VERMILLION, "ekf": BLUE, "ukf": GREEN}
+COLORS = {"kf": VERMILLION, "ekf": BLUE, "ukf": BLACK}
+LINES = {"kf": ("-", 1.5), "ekf": ("-", 3.2), "ukf": ("--", 1.3)}  # EKF and UKF lie on one another
 STARTS = ((0.02, 2.0), (0.2, 20.0), (0.3, 30.0))  # m, degrees: how well the robot is set down on its mark
 FILTERS = """
 RMSE of position (top) and heading (bottom) over {runs} runs, at every instant; the robot is set down on its mark to 2
@@ -75,9 +76,9 @@ def _draw_filters(scene: Scene, album: Album, crowds: dict[str, Crowd]) -> None:
         shade_corners(axes, scene)
         axes.plot(t, unit * over_runs(e), color=ORANGE, lw=1.5, label="odometry alone")
     for name, crowd in crowds.items():
-        look = {"color": COLORS[name], "lw": 2.6 if name == "ekf" else 1.3, "label": NAMES[name]}
-        position.plot(t, 1e3 * over_runs(crowd.position), **look)
-        heading.plot(t, np.degrees(over_runs(crowd.heading)), **look)
+        style, width = LINES[name]
+        position.plot(t, 1e3 * over_runs(crowd.position), style, color=COLORS[name], lw=width, label=NAMES[name])
+        heading.plot(t, np.degrees(over_runs(crowd.heading)), style, color=COLORS[name], lw=width)
     labelled(position, "", "position RMSE (mm)").set(yscale="log", xlim=(0, t[-1]), ylim=(1.5, None))
     labelled(heading, "time (s)", "heading RMSE (°)").set(yscale="log")
     position.legend(fontsize=8.5, ncols=4, loc="lower center")
@@ -130,6 +131,6 @@ def _compared(crowds: dict[str, Crowd]) -> str:
     better, times = ("UKF", e / u) if u < e else ("EKF", u / e)
     return (
         f"{e:.0f} mm by the EKF, {u:.0f} mm by the UKF: the {better} is better by a factor of {times:.1f}. The EKF "
-        f"loses {100 * ekf.lost:.0f} % of the runs, the UKF {100 * ukf.lost:.0f} %; the EKF is blind to {ekf.blind:.1f} "
-        f"readings in a run, the UKF to {ukf.blind:.1f}."
+        f"loses {100 * ekf.lost:.0f} % of the runs, the UKF {100 * ukf.lost:.0f} %; the EKF is blind to "
+        f"{ekf.blind:.1f} readings in a run, the UKF to {ukf.blind:.1f}."
     )
