@@ -57,7 +57,7 @@ class IEKF:
         moving = refused == Refused.NOT
         for _ in range(self.iterations):
             nearer = wrapped(x + np.matvec(K, rest), self.headings)
-            moving = moving & np.any(np.abs(wrapped(nearer - at, self.headings)) > CONVERGED * σ, axis=-1)
+            moving = moving & np.any(np.abs(nearer - at) > CONVERGED * σ, axis=-1)
             if not np.any(moving):
                 break
             h_i, H_i, _ = sensor.linearize(nearer)

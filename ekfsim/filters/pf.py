@@ -33,7 +33,7 @@ class PF:
     generators: tuple["Generator", ...]  # one for each run, in the order of the leading axes
     gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
-    count: int = 500  # particles of each run
+    count: int = 1000  # particles of each run
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:

@@ -25,9 +25,7 @@ class Beginning:
 class Filter(Protocol):
     """A filter holds its settings and nothing else; beliefs go in and come out."""
 
-    remark: ClassVar[
-        str
-    ]  # what whoever reads its results should know of it, a sentence without a full stop; "" if none
+    remark: ClassVar[str]  # what a reader of its results should know of it, without a full stop; "" if nothing
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:

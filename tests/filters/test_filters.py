@@ -9,8 +9,11 @@ from numerics import covariance, definite
 from problems import ROOM, begun, classroom, landmark, problem
 from scipy.stats import chi2
 
+from ekfsim.consistency import Evidence, Verdict
+from ekfsim.files.load import load_scene
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian, Particles, Refused
+from ekfsim.localization import play
 from ekfsim.models.laser import Laser
 from ekfsim.models.move_turn import MoveTurn
 from ekfsim.models.wheels import TwoWheels
@@ -306,3 +309,13 @@ def test_a_tour_of_a_room_ends_consistent(name):
     nees = np.vecdot(e, np.linalg.solve(belief.covariance, e[..., None])[..., 0])
     lost = np.count_nonzero(nees > chi2.ppf(0.999, 3))
     assert lost == runs if name == "kf" else lost <= 1  # it is linearised for the first heading
+
+
+@pytest.mark.parametrize("name", FILTERS)
+def test_the_packaged_tour_ends_consistent(name):
+    """kf, which is linearised for the first heading, is lost after the first turn, and says why it may be."""
+    evidence = Evidence()
+    for step in play(replace(load_scene("tour"), filter=name)):
+        evidence.add(step)
+    assert evidence.verdict == (Verdict.LOST if name == "kf" else Verdict.CONSISTENT)
+    assert (FILTERS[name].remark != "") == (name == "kf")
