@@ -122,7 +122,7 @@ def estimate_echo(measured: Array, sigma: Array, pair: Pair) -> Gaussian:
             belief, _ = ukf.update(belief, Echo(times[comb::COMBS], trusted), z[..., comb::COMBS])
     x = belief.mean * scale
     x[..., 1] += pair.times[peak]
-    return Gaussian(x, belief.covariance * scale[..., :, None] * scale[..., None, :])
+    return Gaussian(x, belief.covariance * (scale[..., :, None] * scale[..., None, :]))
 
 
 def threshold_crossing(measured: Array, sigma: Array, pair: Pair, share: float = SHARE) -> Array:
