@@ -1,0 +1,234 @@
+"""1 000 runs side by side, 100 predictions and updates each, against filterpy in a Python loop over the runs.
+
+Without rays both are handed the same odometry, readings and truth: a range of a landmark after every move. Ours keeps
+every Step with the NEES after the move and after the reading; filterpy keeps nothing and works out one NEES per pair.
+With rays both play the classroom's game among 400 walls: draw, drive, measure, predict, update, judge. filterpy's
+ranges come from shapely's STRtree, its Jacobian from the wall that was hit; it does not look whether a wall stands in
+the robot's way, which ours does.
+
+The peers are timed on a part of the runs: a loop over more of them takes as much longer.
+
+python benchmarks/study.py [--quick]
+"""
+
+import argparse
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import shapely
+from timing import Task, optional, ratios
+
+from ekfsim.filters.belief import Gaussian
+from ekfsim.filters.chi_square import quantile
+from ekfsim.filters.ekf import EKF
+from ekfsim.geometry import Array
+from ekfsim.geometry.angles import wrap_one
+from ekfsim.localization import localize, play
+from ekfsim.models.landmarks import RangeOnly
+from ekfsim.models.move_turn import MoveTurn
+from ekfsim.records import Control, Entry, Log, Move, Reading, Repeat, Sense, Step
+from ekfsim.scene import Scene
+from ekfsim.world import Map, Noise, Obstacle, Told, World
+
+RUNS, STEPS = 1000, 100
+NOISE = Noise(0.01, 0.01, 0.02, 0.02, 0.01)
+BEACONS = ((5.0, 40.0), (45.0, 5.0), (42.0, 44.0), (6.0, 4.0), (25.0, 48.0))
+BEACON_SIGMA = 0.1  # m
+FIRST = Gaussian(np.array([25.0, 25.0, 0.0]), np.diag([0.1, 0.1, 0.05]) ** 2)
+LANE = 10.0  # m from the middle of one pillar to the next
+GATE = 0.997  # a beam to another wall than the one predicted is refused by both
+SIDE = 2 * LANE  # m of the square lap between them
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="fewer rounds")
+    quick = parser.parse_args().quick
+    if optional("filterpy") is None:
+        return
+    log, scene = recorded(), among_pillars()
+    some = np.arange(10 if quick else 25)
+    last = None
+    for step in localize(log.entries, EKF(), log.first):
+        last = step
+    assert last is not None
+    theirs = np.array([filtered(log, int(run))[0] for run in some])
+    print(f"no rays: largest difference from filterpy {np.abs(last.posterior.mean[some] - theirs).max():.1e}")
+    compare(
+        "no rays", lambda: every(localize(log.entries, EKF(), log.first)), lambda: filter_all(log, some), some, quick
+    )
+    print(f"rays: {len(scene.world.map.walls.segments)} walls, mean NEES {nees_of(play(scene, np.arange(RUNS)))}")
+    trees = Trees(scene.world.map)
+    compare("rays", lambda: every(play(scene, np.arange(RUNS))), lambda: play_all(scene, trees, some), some, quick)
+
+
+def compare(name: str, ours: Task, peer: Task, some: Array, quick: bool) -> None:
+    """Print how a study compares with a loop over all its runs, of which the peer does some."""
+    for ratio in ratios(ours, {f"filterpy in a loop, {name}": peer}, 3 if quick else 7):
+        many = RUNS / len(some)
+        print(replace(ratio, ratio=ratio.ratio * many, seconds=ratio.seconds * many))
+
+
+def every(steps: Iterator[Step]) -> int:
+    """Go through a study as one that reduces it does; how many steps that is."""
+    return sum(1 for _ in steps)
+
+
+def nees_of(steps: Iterator[Step]) -> str:
+    """The median and the mean NEES at the end."""
+    *_, last = steps
+    assert last.nees is not None
+    return f"{np.nanmedian(last.nees.value):.2f} (median), {np.nanmean(last.nees.value):.2f} (mean) at the end"
+
+
+def recorded(seed: int = 0) -> Log:
+    """The log of N robots side by side that move and turn among beacons."""
+    random = np.random.default_rng(seed)
+    motion, entries = MoveTurn(NOISE.odometry_distance, NOISE.odometry_angle), []
+    truth = FIRST.mean + random.standard_normal((RUNS, 3)) * np.sqrt(np.diagonal(FIRST.covariance))
+    entries.append(Entry(0, None, truth))
+    for k in range(STEPS):
+        u = np.array([1.0, 0.08])
+        truth = motion.f(truth, u * (1 + NOISE.odometry_distance * random.standard_normal((RUNS, 2))))
+        entries.append(Entry(2 * k + 1, Control(motion, np.broadcast_to(u, (RUNS, 2)).copy()), truth))
+        sensor = RangeOnly(*BEACONS[k % len(BEACONS)], BEACON_SIGMA)
+        z = sensor.h(truth) + BEACON_SIGMA * random.standard_normal((RUNS, 1))
+        entries.append(Entry(2 * k + 2, Reading(sensor, z), truth))
+    return Log(tuple(entries), Gaussian(np.tile(FIRST.mean, (RUNS, 1)), np.tile(FIRST.covariance, (RUNS, 1, 1))))
+
+
+def among_pillars(seed: int = 5) -> Scene:
+    """99 square pillars in a hall of 100 m by 100 m, 400 walls, and a robot that drives a square in the lanes."""
+    random = np.random.default_rng(seed)
+    corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    middles = [(LANE * (i + 0.5), LANE * (j + 0.5)) for i in range(10) for j in range(10)][1:]
+    obstacles = tuple(
+        Obstacle(f"pillar {n}", np.array(middle) + random.uniform(-1, 1, 2) + corners * random.uniform(1, 2.5))
+        for n, middle in enumerate(middles)
+    )
+    room = Map(np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]]), obstacles)
+    start, sigma = np.array([4 * LANE, 4 * LANE, 0.0]), np.array([0.05, 0.05, 0.01])
+    world = World("pillars", room, start, sigma, NOISE, Told(start, sigma, NOISE, room))
+    looks = [math.radians(angle) for angle in (70, -75, 180, 105, -100)]
+    side = tuple(
+        command
+        for k in range(int(SIDE))
+        for command in (Move(1.0, math.pi / 2 if k == SIDE - 1 else 0.0), Sense(looks[k % len(looks)]))
+    )
+    return Scene(world, (Repeat(STEPS // int(SIDE), side),), gate=GATE)
+
+
+def robot(sensors: int = 1) -> Any:
+    """filterpy's extended Kalman filter for a robot that moves and turns."""
+    from filterpy.kalman import ExtendedKalmanFilter
+
+    ratio_d, ratio_a = NOISE.odometry_distance**2, NOISE.odometry_angle**2
+
+    class Robot(ExtendedKalmanFilter):  # type: ignore[misc]
+        def predict_x(self, u: Any = 0) -> None:
+            d, a = u
+            x, y, θ = self.x.tolist()
+            c, s = math.cos(θ), math.sin(θ)
+            self.x = np.array([x + d * c, y + d * s, wrap_one(θ + a)])
+            self.F = np.array([[1.0, 0.0, -d * s], [0.0, 1.0, d * c], [0.0, 0.0, 1.0]])
+            D = ratio_d * d * d
+            self.Q = np.array([[D * c * c, D * c * s, 0.0], [D * c * s, D * s * s, 0.0], [0.0, 0.0, ratio_a * a * a]])
+
+    return Robot(dim_x=3, dim_z=sensors)
+
+
+def nees_one(x: Array, P: Array, truth: Array) -> float:
+    """eᵀ P⁻¹ e"""
+    e = x - truth
+    e[2] = wrap_one(float(e[2]))
+    return float(e @ np.linalg.solve(P, e))
+
+
+def filtered(log: Log, run: int) -> tuple[Array, float]:
+    """One run of the log by filterpy: the last estimate and the sum of its NEES."""
+    one, total = robot(), 0.0
+    one.x, one.P = log.first.mean[run].copy(), log.first.covariance[run].copy()
+    one.R = np.array([[BEACON_SIGMA**2]])
+    entries = iter(log.entries[1:])
+    for move, reading in zip(entries, entries, strict=True):
+        one.predict(move.given.u[run].tolist())
+        x_b, y_b = reading.given.sensor.x, reading.given.sensor.y
+
+        def h(x: Array, x_b: float = x_b, y_b: float = y_b) -> Array:
+            px, py, _ = x.tolist()
+            return np.array([math.hypot(x_b - px, y_b - py)])
+
+        def H(x: Array, x_b: float = x_b, y_b: float = y_b) -> Array:
+            px, py, _ = x.tolist()
+            r = math.hypot(x_b - px, y_b - py)
+            return np.array([[(px - x_b) / r, (py - y_b) / r, 0.0]])
+
+        one.update(reading.given.z[run], H, h)
+        total += nees_one(one.x, one.P, reading.truth[run])
+    return one.x, total
+
+
+def filter_all(log: Log, runs: Array) -> float:
+    return sum(filtered(log, run)[1] for run in runs.tolist())
+
+
+class Trees:
+    """Ranges from shapely's STRtree over the walls, one by one."""
+
+    def __init__(self, plan: Map, reach: float = 150.0) -> None:
+        self.reach, self.walls = reach, plan.walls
+        self.lines = [shapely.LineString(ends) for ends in plan.walls.segments]
+        self.tree = shapely.STRtree(self.lines)
+        self.normals = plan.walls.normals.tolist()
+
+    def cast(self, x: float, y: float, heading: float) -> tuple[float, int]:
+        """Range and wall; nan and −1 where there is none."""
+        end = (x + self.reach * math.cos(heading), y + self.reach * math.sin(heading))
+        beam = shapely.LineString([(x, y), end])
+        near = self.tree.query(beam, predicate="intersects")
+        if len(near) == 0:
+            return math.nan, -1
+        met = shapely.intersection(beam, self.tree.geometries.take(near))
+        ranges = shapely.distance(shapely.Point(x, y), met)
+        first = int(ranges.argmin())
+        return float(ranges[first]), int(near[first])
+
+
+def played(scene: Scene, trees: Trees, run: int) -> float:
+    """One run of the classroom by filterpy and shapely; the sum of its NEES."""
+    commands = [command for repeat in scene.commands for command in repeat.commands] * STEPS
+    random = np.random.default_rng([scene.seed, run]).standard_normal((STEPS, 5)).tolist()
+    world, noise, one, total, limit = scene.world, NOISE, robot(), 0.0, quantile(GATE, 1)
+    one.x, one.P = world.told.start.copy(), np.diag(world.told.sigma**2)
+    x, y, θ = (world.start + world.start_sigma * np.array(random[0][:3])).tolist()
+    for k, (n1, n2, n3, n4, n5) in enumerate(random):
+        move, sense = commands[2 * k], commands[2 * k + 1]
+        d, a = move.distance * (1 + noise.execution_distance * n1), move.angle * (1 + noise.execution_angle * n2)
+        x, y, θ = x + d * math.cos(θ), y + d * math.sin(θ), wrap_one(θ + a)
+        one.predict((d * (1 + noise.odometry_distance * n3), a * (1 + noise.odometry_angle * n4)))
+        z = trees.cast(x, y, θ + sense.angle)[0] * (1 + noise.range * n5)
+        px, py, pθ = one.x.tolist()
+        direction = pθ + sense.angle
+        r, wall = trees.cast(px, py, direction)
+        if wall < 0 or math.isnan(z):
+            continue
+        c, s = math.cos(direction), math.sin(direction)
+        nx, ny = trees.normals[wall]
+        n_d = nx * c + ny * s
+        H = np.array([[-nx / n_d, -ny / n_d, -r * (ny * c - nx * s) / n_d]])
+        one.R = np.array([[(noise.range * r) ** 2]])
+        if (z - r) ** 2 <= limit * float((H @ one.P @ H.T + one.R)[0, 0]):
+            one.update(np.array([z]), lambda x, H=H: H, lambda x, r=r: np.array([r]))
+        total += nees_one(one.x, one.P, np.array([x, y, θ]))
+    return total
+
+
+def play_all(scene: Scene, trees: Trees, runs: Array) -> float:
+    return sum(played(scene, trees, run) for run in runs.tolist())
+
+
+if __name__ == "__main__":
+    main()
