@@ -45,12 +45,12 @@ def advance(filter: Filter, belief: Belief, entry: Entry, guard: Guard = "warn",
 
 def first_belief(scene: Scene, axes: tuple[int, ...] = ()) -> Gaussian:
     """What the filter is told of the start : (…, n), (…, n, n)"""
-    mean, P = (scene.log.first if scene.log is not None else _told_first(scene))
+    mean, P = scene.log.first if scene.log is not None else _told_first(scene)
     return Gaussian(np.broadcast_to(mean, (*axes, *mean.shape)), np.broadcast_to(P, (*axes, *P.shape)))
 
 
 def _told_first(scene: Scene) -> Gaussian:
-    """The first belief of a simulation: the document's own, its pose as uncertain as the world file says where it does."""
+    """The first belief of a simulation: the document's own; the world file may say how uncertain its pose is."""
     world, told = scene.world, scene.world.told
     if world.robot is None:
         return Gaussian(told.start, np.diag(told.sigma**2))

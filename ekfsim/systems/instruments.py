@@ -13,7 +13,8 @@ import numpy as np
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.infrared import COLOURS, Infrared as InfraredBeam
+from ekfsim.models.infrared import COLOURS
+from ekfsim.models.infrared import Infrared as InfraredBeam
 from ekfsim.models.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.layout import Layout
 from ekfsim.models.offset import LandmarkOffset
@@ -221,9 +222,7 @@ class Ultrasonic(_Looking):
     def targets(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each beam."""
         for number, bearing in enumerate(self.bearings):
-            beam = UltrasonicBeam(
-                around.walls, bearing, self.sigma, self.sigma_per_metre, self.nearest, self.farthest
-            )
+            beam = UltrasonicBeam(around.walls, bearing, self.sigma, self.sigma_per_metre, self.nearest, self.farthest)
             yield Target(f"ultrasonic {number}", beam)
 
 
