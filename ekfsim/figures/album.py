@@ -40,9 +40,12 @@ class Album:
         engine.set(rect=(0, foot, 1, 1 - foot))  # the source is written below
         return made
 
-    def add(self, figure: Figure, name: str, title: str, caption: str) -> None:
-        """Write a figure in every format, and its caption. name : as in "fig4-paths", without an ending"""
-        figure.text(0.995, 0.004, drawable(self.source), fontsize=5.5, ha="right", va="bottom", color="#777777")
+    def add(self, figure: Figure, name: str, title: str, caption: str, source: str | None = None) -> None:
+        """Write a figure in every format, and its caption. name : as in "fig4-paths", without an ending
+
+        source : what made it, where that is not what made the others
+        """
+        figure.text(0.995, 0.004, drawable(source or self.source), fontsize=5.5, ha="right", va="bottom", color="#777777")
         for ending in self.formats:
             figure.savefig(self.folder / f"{name}.{ending}", dpi=DPI)
         self.pages.append(f"## {title}\n\n![{title}]({name}.{self.formats[0]})\n\n{filled(caption)}\n")

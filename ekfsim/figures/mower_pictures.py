@@ -33,8 +33,8 @@ def paths(scene: Scene, track: Track, album: Album) -> None:
     figure.legend(loc="outside upper center", ncols=4, frameon=False)
     album.add(
         figure, "fig4-paths", "Figure 4: true and estimated path, and the markers",
-        "Where no marker is in view the estimate wanders off, by dead reckoning alone; with the next one it jumps back. "
-        "In the print, too, the reference is darker and the estimate lighter. "
+        "Where no marker is in view the estimate wanders off, by dead reckoning alone; with the next one it jumps "
+        "back. In the print, too, the reference is darker and the estimate lighter. "
         + ("The field has its 50 by 75 m and its 28 markers; where they stood it does not say."
            if scene.log is None else ""),
     )  # fmt: skip

@@ -1,0 +1,99 @@
+"""The figures of document 002: the display, the proofs, a divergence, σ_xθ, and the size of an ellipse."""
+
+import csv
+import re
+
+import numpy as np
+import pytest
+
+from ekfsim.figures.album import Album
+from ekfsim.figures.classroom import draw_classroom
+from ekfsim.figures.proofs import shipped
+
+
+class Kept(Album):
+    """An album that keeps its figures, and writes none."""
+
+    def add(self, figure, name, title, caption, source=None):
+        self.drawn = {**getattr(self, "drawn", {}), name: figure}
+        self.captions = {**getattr(self, "captions", {}), name: caption}
+
+
+@pytest.fixture(scope="module")
+def album(tmp_path_factory):
+    kept = Kept("classroom", "test", tmp_path_factory.mktemp("classroom"))
+    draw_classroom(shipped("tour"), kept)
+    return kept
+
+
+def test_every_figure_is_there(album):
+    assert list(album.drawn) == ["display", "divergence", "theta", "ellipse"]
+    assert [path.name for path in album.folder.iterdir()] == ["proofs.csv"]
+    assert any("made up" in page for page in album.pages)
+
+
+def test_the_display_is_six_pictures_as_they_are_rendered(album):
+    pictures = album.drawn["display"].axes
+    assert [axes.images[0].get_array().shape for axes in pictures] == [(700, 900, 3)] * 6
+    numbers = [int(re.search(r"\d+", axes.get_title(loc="left")).group()) for axes in pictures]
+    assert numbers == [0, 2, 4, 6, 7, 45]
+
+
+def test_every_proof_gives_what_was_expected(album):
+    with (album.folder / "proofs.csv").open(encoding="utf-8") as file:
+        rows = list(csv.reader(file))[1:]
+    assert {row[0] for row in rows} == {
+        f"proof-{name}" for name in (
+            "no-noise", "turn-noise", "distance-noise", "heading-bends", "square-twice", "across-wall", "corner",
+            "two-beams", "dead-reckoning", "unsure-start", "coverage",
+        )
+    }  # fmt: skip
+    for _, what, expected, measured in rows:
+        if "runs" in what:
+            shares = [float(share) for share in re.findall(r"[\d.]+", measured)]
+            assert shares == pytest.approx([95.4, 95.4], abs=2)
+        else:
+            assert measured == expected
+    assert not any("|" in cell for row in rows for cell in row)  # it would end a cell of the captions
+
+
+def test_the_divergence_begins_with_the_beam_that_is_shown(album):
+    room, error, nees = (album.drawn["divergence"].axes[i] for i in range(3))
+    step = int(re.search(r"step (\d+)", room.get_title()).group(1))
+    lines = {line.get_label(): line for line in error.get_lines()}
+    wrong, cured, tour = (lines[name].get_ydata() for name in ("wrong wall", "the same, --guard skip", "tour"))
+    assert wrong[-1] > 1 > 0.2 > cured[-1]
+    assert tour[-1] < 0.05
+    first, *_ = nees.get_lines()
+    over = np.flatnonzero(np.nan_to_num(first.get_ydata()) > 16.27)
+    assert over[0] == step
+    assert over[-1] == len(first.get_ydata()) - 1
+    assert len(over) == over[-1] - over[0] + 1
+    bounds = {line.get_label(): line.get_ydata()[0] for line in nees.get_lines() if "χ²" in str(line.get_label())}
+    assert bounds == pytest.approx({"χ² 95 %": 7.815, "χ² 99.9 %": 16.266}, abs=1e-3)
+    assert re.search(r"1000 runs 3\d\.\d % end lost", album.captions["divergence"])
+
+
+def test_theta_shows_the_conditional_ellipses_far_apart_before_the_beam_and_together_after(album):
+    apart = []
+    for axes in album.drawn["theta"].axes:
+        plus, minus = (
+            next(line for line in axes.get_lines() if line.get_gid() == gid)
+            for gid in ("ellipse-plus", "ellipse-minus")
+        )
+        apart.append(np.mean(plus.get_ydata()) - np.mean(minus.get_ydata()))
+    assert apart[0] == pytest.approx(2 * 1.26, abs=0.05)
+    assert apart[1] < 0.2
+
+
+def test_two_standard_deviations_hold_86_percent_of_an_ellipse(album):
+    left, right = album.drawn["ellipse"].axes
+    labels = [str(line.get_label()) for line in left.get_lines()]
+    assert labels[1:] == ["k = 2.482: 95.1 % inside", "k = 2: 86.5 % inside"]
+    formula = next(line for line in right.get_lines() if "exp" in str(line.get_label()))
+    k, share = formula.get_data()
+    assert np.interp(2.4816, k, share) == pytest.approx(95.4, abs=0.02)
+    for line in right.get_lines():
+        if str(line.get_label()).startswith("proof-"):
+            assert np.abs(line.get_ydata() - share).max() < 4
+    assert "2.4816" in album.captions["ellipse"]
