@@ -5,21 +5,22 @@ Traversal Algorithm, 1987). A crowded cell has a grid of its own: a town of wall
 it means to meet a wall is told in meeting.py.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, nan
 from typing import Self
 
 import numpy as np
 
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.geometry.meeting import REACH, TIE, meet, meet_one, see
+from ekfsim.geometry.meeting import REACH, TIE, meet_one
 
 PAD = 1 / 64  # of a cell: a wall is listed in the cells it passes as near as this, so rounding on the way is harmless
 CROWDED = 64  # walls in a cell from which on it has a grid of its own
 FINEST = 2e-8  # of the coordinates' size: a smaller cell, and rounding would count for beams from near by
 DEEPEST = 4  # grids within grids; walls that all pass through one point never part
 NOTHING: list["Wall"] = []
-CHUNK = 1 << 18  # beams × walls that are held in memory at a time
 
 Wall = tuple[float, float, float, float, int]  # its ends' x, y, x, y in m, and its index
 
@@ -32,6 +33,7 @@ class Grid:
     """
 
     segments: Array  # (W, 2, 2) m: the ends of each wall
+    numbers: Integers  # (W,) the index that each wall has on the map
     size: float  # m, the largest coordinate of any wall
     horizon: float  # m: as long as |x| + |y| is less, rounding is small against a cell, and the walls are found
     left: float  # m
@@ -40,9 +42,9 @@ class Grid:
     columns: int
     rows: int
     start: Integers  # (cells + 1,): cell c lists walls[start[c] : start[c + 1]]
-    walls: Integers  # (listed,) indices of walls, cell after cell
+    walls: Integers  # (listed,) which of the segments, cell after cell
     border: Booleans  # (cells,)
-    lists: list["list[Wall] | Grid | None"]  # the same for a single beam: each cell's walls, None for the border
+    crowded: Mapping[int, "Grid"]  # the grids of the cells that have one of their own
 
     @classmethod
     def over(cls, segments: Array) -> Self:
@@ -67,22 +69,30 @@ class Grid:
         start = np.concatenate([[0], np.cumsum(np.bincount(at, minlength=columns * rows))])
         border = np.pad(np.zeros((columns - 2, rows - 2), bool), 1, constant_values=True).ravel()
 
-        tuples = list(zip(*segments.reshape(-1, 4).T.tolist(), numbers.tolist(), strict=True))
-        listed, bounds = [tuples[k] for k in wall[order].tolist()], start.tolist()
-        lists: list[list[Wall] | Grid | None] = [
-            None if outside else listed[a:b]
-            for outside, a, b in zip(border.tolist(), bounds[:-1], bounds[1:], strict=True)
-        ]
         horizon = PAD / 64 * cell / TIE - size
-        crowded = np.flatnonzero((np.diff(start) > CROWDED) & ~border & (depth < DEEPEST))
-        for c in crowded.tolist():
+        crowds = np.flatnonzero((np.diff(start) > CROWDED) & ~border & (depth < DEEPEST))
+        crowded = {}
+        for c in crowds.tolist():
             here = wall[order[start[c] : start[c + 1]]]
             corner = np.array([left, bottom]) + np.array(divmod(c, rows)) * cell
             inside = clipped(segments[here], corner - 2 * PAD * cell, corner + (1 + 2 * PAD) * cell)
-            nested = cls._within(segments[here], inside, numbers[here], size, depth + 1)
-            lists[c], horizon = nested, min(horizon, nested.horizon)
+            crowded[c] = cls._within(segments[here], inside, numbers[here], size, depth + 1)
+        horizon = min([horizon, *(nested.horizon for nested in crowded.values())])
         place = horizon, float(left), float(bottom), cell, columns, rows
-        return cls(segments, size, *place, start, wall[order], border, lists)
+        return cls(segments, numbers, size, *place, start, wall[order], border, crowded)
+
+    @cached_property
+    def lists(self) -> list["list[Wall] | Grid | None"]:
+        """What a single beam finds in each cell: its walls, or the grid of a crowd; None for the border."""
+        tuples = list(zip(*self.segments.reshape(-1, 4).T.tolist(), self.numbers.tolist(), strict=True))
+        listed, bounds = [tuples[k] for k in self.walls.tolist()], self.start.tolist()
+        lists: list[list[Wall] | Grid | None] = [
+            None if outside else listed[a:b]
+            for outside, a, b in zip(self.border.tolist(), bounds[:-1], bounds[1:], strict=True)
+        ]
+        for c, nested in self.crowded.items():
+            lists[c] = nested
+        return lists
 
     def walk(self, x: float, y: float, dx: float, dy: float) -> tuple[float, int]:
         """Range and wall of one beam, from cell to cell in plain floats; nan and -1 where it meets none."""
@@ -147,61 +157,6 @@ class Grid:
             return found[0] if found else (nan, -1)
         return best, min(wall for r, wall in found if r <= limit)
 
-    def march(self, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
-        """Ranges and walls of many beams, all (n,): every beam steps into its next cell at once."""
-        ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
-        listed = int(np.diff(self.start).max())
-        step = max(16, min(4096, CHUNK // listed))
-        for first in range(0, len(x), step):
-            part = slice(first, first + step)
-            ranges[part], walls[part] = self._march(x[part], y[part], dx[part], dy[part])
-        return ranges, walls
-
-    def _march(self, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
-        cell, rows = self.cell, self.rows
-        span = self.size + np.abs(x) + np.abs(y)
-        reach, tie = REACH * span, TIE * span
-        u, v = (x - self.left) / cell, (y - self.bottom) / cell
-        beam, i, j = _entries(u, v, dx, dy, self.columns, rows)
-        x_step, x_exit, x_cell = _ways(u[beam], i, dx[beam], cell, rows)
-        y_step, y_exit, y_cell = _ways(v[beam], j, dy[beam], cell, 1)
-
-        at = i * rows + j
-        best = np.full(len(x), np.inf)
-        found = [(beam[:0], beam[:0], best[:0])]
-        while len(beam):
-            which, wall = self._listed(at)
-            which = beam[which]
-            seen = see(self.segments[wall], x[which], y[which], dx[which], dy[which])
-            maybe = np.flatnonzero(seen[1] * seen[3] <= 4 * (reach * span)[which])  # not both ends on one side
-            which, wall = which[maybe], wall[maybe]
-            r = meet(seen[:, maybe], reach[which])
-            met = (r < np.inf) & (r <= (best + tie)[which])
-            found.append((which[met], wall[met], r[met]))
-            np.minimum.at(best, which[met], r[met])
-
-            east = x_exit < y_exit
-            leaving = np.where(east, x_exit, y_exit)
-            at = at + np.where(east, x_step, y_step)
-            x_exit = np.where(east, x_exit + x_cell, x_exit)
-            y_exit = np.where(east, y_exit, y_exit + y_cell)
-            on = ((best + tie)[beam] >= leaving) & ~self.border[at]
-            beam, at, x_step, x_exit, x_cell, y_step, y_exit, y_cell = (
-                each[on] for each in (beam, at, x_step, x_exit, x_cell, y_step, y_exit, y_cell)
-            )
-        which, wall, r = (np.concatenate(each) for each in zip(*found, strict=True))
-        equal = r <= (best + tie)[which]
-        nearest = np.full(len(x), len(self.segments))
-        np.minimum.at(nearest, which[equal], wall[equal])
-        met = best < np.inf
-        return np.where(met, best, np.nan), np.where(met, nearest, -1)
-
-    def _listed(self, at: Integers) -> tuple[Integers, Integers]:
-        """All pairs of a place in `at` and a wall that its cell lists."""
-        begin, counts = self.start[at], self.start[at + 1] - self.start[at]
-        which, nth = spread(counts)
-        return which, self.walls[begin[which] + nth]
-
 
 def crossed(segments: Array, columns: int, rows: int) -> tuple[Integers, Integers]:
     """All pairs of a segment and a cell that it crosses or passes within PAD; segments (n, 2, 2) in units of cells.
@@ -241,7 +196,7 @@ def clipped(segments: Array, low: Array, high: Array) -> Array:
 def spread(counts: Integers) -> tuple[Integers, Integers]:
     """Counts (2, 0, 3) give owners (0, 0, 2, 2, 2) and numbers (0, 1, 0, 1, 2)."""
     owner = np.repeat(np.arange(len(counts)), counts)
-    return owner, np.arange(len(owner)) - (np.cumsum(counts) - counts)[owner]
+    return owner, np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
 
 
 def _way(u: float, i: int, d: float, cell: float, stride: int) -> tuple[int, float, float]:
@@ -251,13 +206,6 @@ def _way(u: float, i: int, d: float, cell: float, stride: int) -> tuple[int, flo
     if d < 0:
         return -stride, (i - u) * cell / d, -cell / d
     return 0, inf, inf
-
-
-def _ways(u: Array, i: Integers, d: Array, cell: float, stride: int) -> tuple[Integers, Array, Array]:
-    """`_way` of many beams."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        due = np.where(d == 0, np.inf, (i + (d > 0) - u) * cell / d)
-        return np.where(d > 0, stride, -stride), due, np.abs(cell / d)
 
 
 def _entry(u: float, v: float, dx: float, dy: float, columns: int, rows: int) -> tuple[int, int] | None:
@@ -271,15 +219,3 @@ def _entry(u: float, v: float, dx: float, dy: float, columns: int, rows: int) ->
             return None
     i, j = min(max(int(u + enter * dx), 1), columns - 2), min(max(int(v + enter * dy), 1), rows - 2)
     return (i, j) if enter <= leave else None
-
-
-def _entries(u: Array, v: Array, dx: Array, dy: Array, columns: int, rows: int) -> tuple[Integers, Integers, Integers]:
-    """Which beams come into the cells inside the border, and by which cell (column, row) each."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        to_x = np.sort([(1 - u) / dx, (columns - 1 - u) / dx], axis=0)  # where dx is 0: -inf and inf inside, nan or
-        to_y = np.sort([(1 - v) / dy, (rows - 1 - v) / dy], axis=0)  # both alike outside
-        enter = np.maximum(np.maximum(to_x[0], to_y[0]), 0.0)
-        beam = np.flatnonzero(enter <= np.minimum(to_x[1], to_y[1]))
-    u, v = u[beam] + enter[beam] * dx[beam], v[beam] + enter[beam] * dy[beam]
-    i = np.clip(u.astype(np.int64), 1, columns - 2)
-    return beam, i, np.clip(v.astype(np.int64), 1, rows - 2)

@@ -1,0 +1,52 @@
+"""Every beam against every wall, in broad strokes first: the quickest way where there are few walls.
+
+With across_a, across_b of a wall's ends (see meeting.py) and its `area`, twice that of the triangle from the beam's
+origin to both ends, a beam crosses the wall at
+
+    r = area / (across_b − across_a)     where across_a and across_b differ in sign and r ≥ 0
+
+All three are linear in what is known of the beam, (x, y, dx, dy, x dy − y dx), so a matrix product gives each for all
+pairs. Rounding may spoil the last digits: the walls that come out nearest, within `BLUR`, are looked at closely, and a
+beam for which the close look does not bear out the broad one is followed anew by trying all walls.
+"""
+
+import numpy as np
+
+from ekfsim.geometry import Array, Integers
+from ekfsim.geometry.pairs import CHUNK, first_of, measure
+
+FINE = 1e-6  # of the coordinates' size: a wall that looks this short to a beam is not judged in broad strokes
+BLUR = 1e-8  # of the coordinates' size: what a range in broad strokes may be off, and to spare; rounding / FINE is 1e-9
+
+
+def broad(ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array) -> tuple[Array, Integers, Integers]:
+    """Ranges and walls of many beams, all (n,), and which beams are left in doubt.
+
+    ends : (W, 4) m: x, y of the first and of the second end of each wall; span : (n,) m, the coordinates' size
+    """
+    ranges, walls, doubtful = np.empty(x.shape), np.empty(x.shape, np.int64), np.empty(x.shape, bool)
+    ax, ay, bx, by = ends.T
+    ones = np.ones(len(ends))
+    to_a, to_b = np.stack([ax, ay, ones]), np.stack([bx, by, ones])
+    to_area = np.stack([by - ay, ax - bx, ay * bx - ax * by])
+    aims = np.stack([dy, -dx, y * dx - x * dy], -1)
+    origins = np.stack([x, y, np.ones_like(x)], -1)
+    step = max(1, CHUNK // len(ends))
+    for first in range(0, len(x), step):
+        part = slice(first, first + step)
+        across_a, across_b, r = aims[part] @ to_a, aims[part] @ to_b, origins[part] @ to_area
+        blur = BLUR * span[part]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            r /= np.subtract(across_b, across_a)
+        sides = np.multiply(across_a, across_b, out=across_a)
+        np.copyto(r, np.inf, where=(sides >= 0) | (r < -blur[:, None]))
+        nearest = r.min(-1)
+        shown = nearest < np.inf
+        near = r <= np.where(shown, nearest + 2 * blur, -1)[:, None]
+        which, wall = np.divmod(np.flatnonzero(near), len(ends))
+        beam = which + first
+        exact = measure(ends[wall], x[beam], y[beam], dx[beam], dy[beam], span[beam])
+        ranges[part], walls[part] = first_of(which, wall, exact, span[part], len(ends))
+        doubtful[part] = np.abs(sides, out=sides).min(-1) <= (FINE * span[part]) ** 2
+        doubtful[part] |= shown & ~(ranges[part] <= nearest + blur)
+    return ranges, walls, np.flatnonzero(doubtful)

@@ -1,0 +1,89 @@
+"""Many beams at once through the cells of a grid: in every pass each beam tries the walls of its cell and steps on.
+
+The steps are those of `Grid.walk`. Where a beam comes to a crowded cell, a second walk of the same beam begins in the
+grid of that cell, while the first goes on; what either finds shortens both.
+"""
+
+import numpy as np
+
+from ekfsim.geometry import Array, Integers
+from ekfsim.geometry.cells import BORDER, Cells
+from ekfsim.geometry.grid import spread
+from ekfsim.geometry.meeting import TIE
+from ekfsim.geometry.pairs import first_of, measure
+
+BLOCK = 4096  # beams that march together
+
+
+def march(cells: Cells, x: Array, y: Array, dx: Array, dy: Array, span: Array) -> tuple[Array, Integers]:
+    """Ranges and walls of many beams, all (n,); span : (n,) m, the size of the coordinates at each."""
+    ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
+    for first in range(0, len(x), BLOCK):
+        part = slice(first, first + BLOCK)
+        ranges[part], walls[part] = _march(cells, x[part], y[part], dx[part], dy[part], span[part])
+    return ranges, walls
+
+
+def _march(cells: Cells, x: Array, y: Array, dx: Array, dy: Array, span: Array) -> tuple[Array, Integers]:
+    beams = np.stack([x, y, dx, dy, span])
+    tie = TIE * span
+    limit = np.full(len(x), np.inf)  # nothing farther matters: the nearest range so far, and a tie more
+    everyone = np.arange(len(x))
+    place, due = _enter(cells, beams, everyone, np.zeros_like(everyone))
+    found = [(everyone[:0], everyone[:0], x[:0])]
+    while place.size:
+        beam, at, x_step, y_step = place
+        begin = cells.start[at]
+        which, nth = spread(cells.start[at + 1] - begin)
+        if which.size:
+            listed, which = begin[which] + nth, beam[which]
+            r = measure(cells.ends[listed], *beams[:, which])
+            met = np.flatnonzero(r <= limit[which])
+            which, r = which[met], r[met]
+            found.append((which, cells.walls[listed[met]], r))
+            np.minimum.at(limit, which, r + tie[which])
+
+        grid = cells.within[at]
+        crowded = np.flatnonzero(grid >= 0)
+        x_exit, y_exit, x_cell, y_cell = due
+        east = x_exit < y_exit
+        on = limit[beam] >= np.where(east, x_exit, y_exit)
+        at += np.where(east, x_step, y_step)
+        x_exit += np.where(east, x_cell, 0)
+        y_exit += np.where(east, 0, y_cell)
+        on &= cells.within[at] != BORDER
+        newcomers = _enter(cells, beams, beam[crowded], grid[crowded]) if crowded.size else None
+        place, due = place[:, on], due[:, on]
+        if newcomers is not None:
+            place, due = np.hstack([place, newcomers[0]]), np.hstack([due, newcomers[1]])
+    which, wall, r = (np.concatenate(each) for each in zip(*found, strict=True))
+    return first_of(which, wall, r, span, len(cells.walls))
+
+
+def _enter(cells: Cells, beams: Array, beam: Integers, grid: Integers) -> tuple[Integers, Array]:
+    """Begin a walk of each `beam` (n,) in its `grid` (n,); those that pass the grid by are left out.
+
+    Gives beam, cell, and the steps east and north to the next cell, (4, m); and the ranges at which these steps are
+    due, and those from one to the next, (4, m) m.
+    """
+    (x, y, dx, dy, _), (left, bottom, cell), (columns, rows, first) = (
+        beams[:, beam],
+        cells.place[grid].T,
+        cells.shape[grid].T,
+    )
+    u, v = (x - left) / cell, (y - bottom) / cell
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        to_x = np.sort([(1 - u) / dx, (columns - 1 - u) / dx], axis=0)  # where dx is 0: -inf and inf inside, nan or
+        to_y = np.sort([(1 - v) / dy, (rows - 1 - v) / dy], axis=0)  # both alike outside
+        enter = np.maximum(np.maximum(to_x[0], to_y[0]), 0.0)
+        comes = np.flatnonzero(enter <= np.minimum(to_x[1], to_y[1]))
+        beam, u, v, dx, dy, enter, cell, columns, rows, first = (
+            each[comes] for each in (beam, u, v, dx, dy, enter, cell, columns, rows, first)
+        )
+        i = np.clip((u + enter * dx).astype(np.int64), 1, columns - 2)
+        j = np.clip((v + enter * dy).astype(np.int64), 1, rows - 2)
+        x_exit = np.where(dx == 0, np.inf, (i + (dx > 0) - u) * cell / dx)
+        y_exit = np.where(dy == 0, np.inf, (j + (dy > 0) - v) * cell / dy)
+        due = np.stack([x_exit, y_exit, np.abs(cell / dx), np.abs(cell / dy)])
+    steps = np.where(dx > 0, rows, -rows), np.where(dy > 0, 1, -1)
+    return np.stack([beam, first + i * rows + j, *steps]), due
