@@ -16,17 +16,28 @@ from ekfsim.localization import play
 from ekfsim.scene import Scene
 from ekfsim.systems.drives import Course
 
+DRIVEN = """
+The square of 2 × 2 m in a room of {room}, driven once in {seconds:.0f} s (run {run} of seed {seed}). The driver holds
+the robot to the square by its true pose, so that only estimates stray.
+"""
+RECORDED = """
+A recorded run of {seconds:.0f} s in a room of {room}.
+"""
 SQUARE = """
-The square of 2 × 2 m in a room of {room}, driven once in {seconds:.0f} s (run {run} of seed {seed}). Left: the true
-way (black), what the wheels alone make of it (orange) and the {filter}'s estimate with its 95.4 % ellipses, ten times
-as large, every {every:.0f} s (blue, on the black line). The driver holds the robot to the square by its true pose, so
-only estimates stray. Right: the errors over time; corners are shaded. Odometry ends {end:.2f} m and {turned:.1f}° off
-(RMSE {odometry:.3f} m): the wheels' errors turn the heading, and nothing turns it back. The filter, which also hears
-and sees the walls, keeps to {filtered:.1f} mm and {heading:.2f}°.
+{whence} Left: the true way (black), what the wheels alone make of it (orange) and the {filter}'s estimate with its
+95.4 % ellipses, ten times as large, every {every:.0f} s (blue, close to the black line). Right: the errors over time,
+corners shaded. Odometry ends {end:.2f} m and {turned:.1f}° off (RMSE {odometry:.3f} m): the wheels' errors turn the
+heading, and nothing turns it back. The filter, which also hears and sees the walls, keeps to {filtered:.1f} mm and
+{heading:.2f}°.
 
 Compared with the print: of figure 7 the text says that the trajectory is noisy and drifts in orientation, "which is
 hard to detect even with the EKF": that EKF was given no walls, and without them no filter can. Here ultrasonic and
 infrared readings tell them. {arctan}
+"""
+UNKNOWN = """
+{whence} Orange: what the wheels alone make of it; blue: the {filter}'s estimate with its 95.4 % ellipses, ten times
+as large, every {every:.0f} s. The log tells no truth, so there are no errors to draw; at the end the two are
+{apart:.2f} m apart.
 """
 ARCTAN = """
 Eq. 33 turns the heading by the arctangent of the wheels' difference over W, and the simulated wheels obey it. A
@@ -44,8 +55,8 @@ def draw_square(scene: Scene, album: Album, arctan: str) -> None:
     grid = figure.add_gridspec(2, 2, width_ratios=(1.1, 1))
     floor, position = square(figure.add_subplot(grid[:, 0])), figure.add_subplot(grid[0, 1])
     heading = figure.add_subplot(grid[1, 1], sharex=position)
-    for _, ring in scene.world.map.rings():
-        floor.plot(*np.vstack([ring, ring[:1]]).T, color=GREY, lw=2.5, label="walls")
+    for number, (_, ring) in enumerate(scene.world.map.rings()):
+        floor.plot(*np.vstack([ring, ring[:1]]).T, color=GREY, lw=2.5, label="_" if number else "walls")
     reckoned = scene.world.layout.pose(track.reckoned)
     floor.plot(*track.truth[:, :2].T, color=BLACK, lw=2.4, label="truth")
     floor.plot(*reckoned[:, :2].T, color=ORANGE, lw=1.5, label="odometry alone")
@@ -63,18 +74,29 @@ def draw_square(scene: Scene, album: Album, arctan: str) -> None:
     position.plot(track.t, 1e3 * track.position_error, color=BLUE, lw=1.0)
     heading.plot(track.t, np.degrees(turned), color=ORANGE, lw=1.4)
     heading.plot(track.t, np.degrees(track.heading_error), color=BLUE, lw=1.0)
-    labelled(position, "", "position error (mm)").set(yscale="log", ylim=(0.3, None), xlim=(0, track.t[-1]))
+    labelled(position, "", "position error (mm)").set(yscale="log", ylim=(0.3, None), xlim=track.t[[0, -1]])
     labelled(heading, "time (s)", "heading error (°)")
     floor.legend(loc="upper center", bbox_to_anchor=(0.5, 0.93), fontsize=7.5, ncols=2)
-    size = np.ptp(scene.world.map.boundary, axis=0) if scene.world.map.boundary is not None else (0, 0)
-    album.add(
-        figure, "fig7-square", "Figure 7: the square by odometry and by the filter",
-        SQUARE.format(
-            room=f"{size[0]:g} × {size[1]:g} m", seconds=track.t[-1], run=scene.run, seed=scene.seed,
-            filter=scene.filter.upper(), every=track.t[-1] / 8, end=odometry[-1], turned=abs(math.degrees(turned[-1])),
-            odometry=rmse(odometry), filtered=1e3 * rmse(track.position_error),
-            heading=math.degrees(rmse(track.heading_error)), arctan=arctan,
-        ),
+    title = "Figure 7: the square by odometry and by the filter"
+    album.add(figure, "fig7-square", title, _caption(scene, track, odometry, turned, arctan))
+
+
+def _caption(scene: Scene, track: Track, odometry: Array, turned: Array, arctan: str) -> str:
+    """What is to be seen in figure 7. odometry and turned : (N,) m and rad, errors of the wheels alone"""
+    boundary = scene.world.map.boundary
+    width, height = (0.0, 0.0) if boundary is None else np.ptp(boundary, axis=0)
+    whence = (DRIVEN if scene.log is None else RECORDED).strip().format(
+        room=f"{width:g} × {height:g} m", seconds=track.t[-1] - track.t[0], run=scene.run, seed=scene.seed
+    )  # fmt: skip
+    filter, every = scene.filter.upper(), (track.t[-1] - track.t[0]) / 8
+    known = np.flatnonzero(track.has_truth)
+    if not known.size:
+        apart = np.hypot(*(scene.world.layout.pose(track.reckoned) - track.pose)[-1, :2])
+        return UNKNOWN.format(whence=whence, filter=filter, every=every, apart=apart)
+    return SQUARE.format(
+        whence=whence, filter=filter, every=every, end=odometry[known[-1]],
+        turned=abs(math.degrees(turned[known[-1]])), odometry=rmse(odometry),
+        filtered=1e3 * rmse(track.position_error), heading=math.degrees(rmse(track.heading_error)), arctan=arctan,
     )  # fmt: skip
 
 

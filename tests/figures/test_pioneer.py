@@ -14,6 +14,7 @@ from ekfsim.figures.album import Album, filled
 from ekfsim.figures.crowd import crowd_of, over_runs, set_down
 from ekfsim.models.infrared import COLOURS
 from ekfsim.models.polar import cartesian, cartesian_jacobian, cartesian_moments
+from ekfsim.records import Log
 from ekfsim.simulation.bench import gaussian, readings
 from ekfsim.systems.instruments import Infrared, Ultrasonic
 
@@ -239,6 +240,43 @@ def test_what_eq_33_s_arctangent_costs_is_told(scene, crowds):
     told = square.told_of_arctan(set_down(scene, 0.02, 2.0), crowds["ekf"])
     x = math.tan(math.radians(4.5))
     assert f"turns {80 * math.degrees(x - math.atan(x)):.2f}° too far" in " ".join(told.split())
+
+
+def recorded(scene, truth=True):
+    """The same run as a log."""
+    entries = tuple(entry if truth else replace(entry, truth=None) for entry in ekfsim.simulate(scene))
+    return replace(scene, log=Log(entries, ekfsim.first_belief(scene)), drive=None)
+
+
+def test_a_recorded_run_is_filtered_as_the_simulated_one(scene, album):
+    square.draw_square(scene, album, "")
+    drawn = lines(album.figures["fig7-square"].axes[0])["EKF"].get_xydata()
+    square.draw_square(recorded(scene), album, "")
+    np.testing.assert_array_equal(lines(album.figures["fig7-square"].axes[0])["EKF"].get_xydata(), drawn)
+    assert "The square of 2 × 2 m in a room of 4 × 4 m, driven once in 40 s" in " ".join(album.pages[0].split())
+    assert "A recorded run of 40 s in a room of 4 × 4 m." in album.pages[1]
+    pioneer._tabulate_log(recorded(scene), album)
+    error = {row["filter"]: float(row["position RMSE (mm)"]) for row in rows(album, "filters")}
+    assert error["EKF"] < 10 < 200 < error["odometry alone"] < 1000 < error["LKF"]
+
+
+def test_a_log_without_truth_has_no_errors_and_says_so(scene, album):
+    square.draw_square(recorded(scene, truth=False), album, "")
+    pioneer._tabulate_log(recorded(scene, truth=False), album)
+    told = " ".join(" ".join(album.pages).split())
+    assert "The log tells no truth, so there are no errors to draw" in told
+    assert "without it no filter can be called the better one" in told
+    assert "nan" not in told
+
+
+def test_what_no_log_tells_is_simulated_and_says_so(scene, album, monkeypatch):
+    for name in ("draw_infrared", "draw_echo", "draw_ultrasonic"):
+        monkeypatch.setattr(pioneer, name, lambda scene, album: None)
+    pioneer.draw_pioneer(recorded(scene), album)
+    assert len(album.pages) == 4  # the polar reading and its table, the square and the filters
+    sources = {name: figure.texts[-1].get_text() for name, figure in album.figures.items()}
+    assert sources["fig2-unscented"].startswith("Simulated, whatever was recorded: ekfsim ")
+    assert sources["fig7-square"] == "source"
 
 
 # the page of captions
