@@ -18,6 +18,7 @@ BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = "#0072B2", "#56B4E9", "#009E73", 
 GREY, BLACK = "#777777", "#000000"
 DPI = 120
 SOURCE_LINE = 0.14  # in, at the foot of a figure
+SOURCE_LETTERS = 21  # of it, to an inch
 
 
 @dataclass
@@ -34,10 +35,6 @@ class Album:
         """A new figure, in inches, that no window manages."""
         made = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
         FigureCanvasAgg(made)
-        foot = SOURCE_LINE / height
-        engine = made.get_layout_engine()
-        assert isinstance(engine, ConstrainedLayoutEngine)
-        engine.set(rect=(0, foot, 1, 1 - foot))  # the source is written below
         return made
 
     def add(self, figure: Figure, name: str, title: str, caption: str, source: str | None = None) -> None:
@@ -45,7 +42,13 @@ class Album:
 
         source : what made it, where that is not what made the others
         """
-        figure.text(0.995, 0.004, drawable(source or self.source), fontsize=5.5, ha="right", va="bottom", color="#777777")
+        width, height = figure.get_size_inches()
+        made_by = textwrap.wrap(drawable(source or self.source), int(SOURCE_LETTERS * width))
+        engine = figure.get_layout_engine()
+        if isinstance(engine, ConstrainedLayoutEngine):
+            foot = SOURCE_LINE * len(made_by) / height
+            engine.set(rect=(0, foot, 1, 1 - foot))
+        figure.text(0.995, 0.004, "\n".join(made_by), fontsize=5.5, ha="right", va="bottom", color="#777777")
         for ending in self.formats:
             figure.savefig(self.folder / f"{name}.{ending}", dpi=DPI)
         self.pages.append(f"## {title}\n\n![{title}]({name}.{self.formats[0]})\n\n{filled(caption)}\n")

@@ -143,11 +143,11 @@ def counter_example(runs: Runs, album: Album) -> None:
         f"Position RMSE {recipe:.3g} m: {_times(recipe / raw)} that of the raw fixes, {raw:.3g} m, which are all it "
         "has to go by. Its position prediction has no dt: every row of the wheels moves the robot by V metres in place "
         "of V dt. Its yaw rate is made of the mean speed, φ + 0.27 V dt, and not of the wheels' difference. Q, R and "
-        "P₀ are the identity, whatever the units and the length of a step. It takes each innovation at the state before "
-        "the prediction. So it keeps up with the robot only because it corrects at every row, by a fix interpolated "
-        "between the recorded ones, the next of which no robot can know yet. Corrected at the recorded fixes alone it "
-        f"is {rmse(runs.sparse.position_error):.3g} m off. The document prints the right equations and mentions none "
-        "of this.",
+        "P₀ are the identity, whatever the units and the length of a step. It takes each innovation at the state "
+        "before the prediction. So it keeps up with the robot only because it corrects at every row, by a fix "
+        "interpolated between the recorded ones, the next of which no robot can know yet. Corrected at the recorded "
+        f"fixes alone it is {rmse(runs.sparse.position_error):.3g} m off. The document prints the right equations and "
+        "mentions none of this.",
     )
 
 
