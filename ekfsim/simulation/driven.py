@@ -20,7 +20,7 @@ from ekfsim.systems.robots import PylonCart
 
 GPS_SIGMA, GPS_PERIOD = 0.4, 2.0  # m, s: of the pylon cart's GPS, which is recorded and not used
 SOON = 1e-9  # of a period: what rounding makes of an instant
-AT_ONCE = 20_000  # ticks times runs that are worked out together: one by one is slow, all at once takes much memory
+AT_ONCE = 100_000  # ticks times runs that are worked out together: one by one is slow, all at once takes much memory
 DISTURBANCE, INPUT, FIX, READING = range(4)  # the streams of random numbers, the last one for each target
 
 
