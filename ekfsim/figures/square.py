@@ -18,17 +18,16 @@ from ekfsim.systems.drives import Course
 
 DRIVEN = """
 The square of 2 × 2 m in a room of {room}, driven once in {seconds:.0f} s (run {run} of seed {seed}). The driver holds
-the robot to the square by its true pose, so that only estimates stray.
+the robot to the square by its true pose, so that only estimates stray. On the right its corners are shaded.
 """
 RECORDED = """
 A recorded run of {seconds:.0f} s in a room of {room}.
 """
 SQUARE = """
 {whence} Left: the true way (black), what the wheels alone make of it (orange) and the {filter}'s estimate with its
-95.4 % ellipses, ten times as large, every {every:.0f} s (blue, close to the black line). Right: the errors over time,
-corners shaded. Odometry ends {end:.2f} m and {turned:.1f}° off (RMSE {odometry:.3f} m): the wheels' errors turn the
-heading, and nothing turns it back. The filter, which also hears and sees the walls, keeps to {filtered:.1f} mm and
-{heading:.2f}°.
+95.4 % ellipses, ten times as large, every {every:.0f} s (blue, close to the black line). Right: the errors over time.
+Odometry ends {end:.2f} m and {turned:.1f}° off (RMSE {odometry:.3f} m): the wheels' errors turn the heading, and
+nothing turns it back. The filter, which also hears and sees the walls, keeps to {filtered:.1f} mm and {heading:.2f}°.
 
 Compared with the print: of figure 7 the text says that the trajectory is noisy and drifts in orientation, "which is
 hard to detect even with the EKF": that EKF was given no walls, and without them no filter can. Here ultrasonic and
