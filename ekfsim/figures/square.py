@@ -50,34 +50,41 @@ much. The document comes without code: `coded` is `corrected`.
 def draw_square(scene: Scene, album: Album, arctan: str) -> None:
     """Figure 7: the square by odometry and by the filter."""
     track = Track.of(play(scene), scene.world.layout)
-    figure = album.figure(10.0, 4.9)
-    grid = figure.add_gridspec(2, 2, width_ratios=(1.1, 1))
-    floor, position = square(figure.add_subplot(grid[:, 0])), figure.add_subplot(grid[0, 1])
-    heading = figure.add_subplot(grid[1, 1], sharex=position)
-    for number, (_, ring) in enumerate(scene.world.map.rings()):
-        floor.plot(*np.vstack([ring, ring[:1]]).T, color=GREY, lw=2.5, label="_" if number else "walls")
     reckoned = scene.world.layout.pose(track.reckoned)
-    floor.plot(*track.truth[:, :2].T, color=BLACK, lw=2.4, label="truth")
-    floor.plot(*reckoned[:, :2].T, color=ORANGE, lw=1.5, label="odometry alone")
-    floor.plot(*track.pose[:, :2].T, color=BLUE, lw=1.0, label=scene.filter.upper())
-    shown = np.linspace(0, len(track.t) - 1, 9).astype(int)
-    for number, i in enumerate(shown):
-        label = "its 95.4 % ellipse, ten times as large" if number == 0 else None
-        ring = outline(track.pose[i], 100 * track.pose_covariance[i], 0.954)
-        floor.plot(*ring.T, color=BLUE, lw=0.9, alpha=0.7, label=label)
     odometry = np.hypot(*(reckoned - track.truth)[:, :2].T)
     turned = wrap(reckoned[:, 2] - track.truth[:, 2])
-    for axes in (position, heading):
-        shade_corners(axes, scene)
-    position.plot(track.t, 1e3 * odometry, color=ORANGE, lw=1.4)
-    position.plot(track.t, 1e3 * track.position_error, color=BLUE, lw=1.0)
-    heading.plot(track.t, np.degrees(turned), color=ORANGE, lw=1.4)
-    heading.plot(track.t, np.degrees(track.heading_error), color=BLUE, lw=1.0)
-    labelled(position, "", "position error (mm)").set(yscale="log", ylim=(0.3, None), xlim=track.t[[0, -1]])
-    labelled(heading, "time (s)", "heading error (°)")
-    floor.legend(loc="upper center", bbox_to_anchor=(0.5, 0.93), fontsize=7.5, ncols=2)
+    known = bool(np.any(track.has_truth))
+    figure = album.figure(10.0 if known else 5.4, 4.9)
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.1, 1)) if known else figure.add_gridspec(2, 1)
+    _draw_floor(square(figure.add_subplot(grid[:, 0])), scene, track, reckoned)
+    if known:
+        position = figure.add_subplot(grid[0, 1])
+        heading = figure.add_subplot(grid[1, 1], sharex=position)
+        for axes in (position, heading):
+            shade_corners(axes, scene)
+        position.plot(track.t, 1e3 * odometry, color=ORANGE, lw=1.4)
+        position.plot(track.t, 1e3 * track.position_error, color=BLUE, lw=1.0)
+        heading.plot(track.t, np.degrees(turned), color=ORANGE, lw=1.4)
+        heading.plot(track.t, np.degrees(track.heading_error), color=BLUE, lw=1.0)
+        labelled(position, "", "position error (mm)").set(yscale="log", ylim=(0.3, None), xlim=track.t[[0, -1]])
+        labelled(heading, "time (s)", "heading error (°)")
     title = "Figure 7: the square by odometry and by the filter"
     album.add(figure, "fig7-square", title, _caption(scene, track, odometry, turned, arctan))
+
+
+def _draw_floor(floor: Axes, scene: Scene, track: Track, reckoned: Array) -> None:
+    """The ways in the room."""
+    for number, (_, ring) in enumerate(scene.world.map.rings()):
+        floor.plot(*np.vstack([ring, ring[:1]]).T, color=GREY, lw=2.5, label="_" if number else "walls")
+    if np.any(track.has_truth):
+        floor.plot(*track.truth[:, :2].T, color=BLACK, lw=2.4, label="truth")
+    floor.plot(*reckoned[:, :2].T, color=ORANGE, lw=1.5, label="odometry alone")
+    floor.plot(*track.pose[:, :2].T, color=BLUE, lw=1.0, label=scene.filter.upper())
+    for number, i in enumerate(np.linspace(0, len(track.t) - 1, 9).astype(int)):
+        label = "_" if number else "its 95.4 % ellipse, ten times as large"
+        ring = outline(track.pose[i], 100 * track.pose_covariance[i], 0.954)
+        floor.plot(*ring.T, color=BLUE, lw=0.9, alpha=0.7, label=label)
+    floor.legend(loc="upper center", bbox_to_anchor=(0.5, 0.93), fontsize=7.5, ncols=2)
 
 
 def _caption(scene: Scene, track: Track, odometry: Array, turned: Array, arctan: str) -> str:

@@ -262,6 +262,8 @@ def test_a_recorded_run_is_filtered_as_the_simulated_one(scene, album):
 
 def test_a_log_without_truth_has_no_errors_and_says_so(scene, album):
     square.draw_square(recorded(scene, truth=False), album, "")
+    (floor,) = album.figures["fig7-square"].axes
+    assert "truth" not in lines(floor)
     pioneer._tabulate_log(recorded(scene, truth=False), album)
     told = " ".join(" ".join(album.pages).split())
     assert "The log tells no truth, so there are no errors to draw" in told
