@@ -10,12 +10,14 @@ from ekfsim.filters.chi_square import band, quantile
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.geometry.ellipse import cone_factor, radius_factor
+from ekfsim.geometry.lanes import front
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Nees, Step
 
 RANK = 1e-10  # an eigenvalue of the correlation matrix above this counts towards the rank
 ROUNDING = 1e-12  # m, rad; a smaller standard deviation is what sin π leaves of none
 CLEAR = 1e-8  # a determinant of the correlation matrix above this needs no eigenvalues to tell the rank
+MANY = 64  # runs from which on they are told apart by rank
 OUTSIDE = 1e-6  # m, rad; a longer part of the error outside the range of P makes the belief impossible
 LOST = 0.999  # NEES beyond this χ² quantile: lost
 BAND = 0.99  # the two-sided band that ΣNIS is held against
@@ -32,7 +34,7 @@ def nees(belief: Belief, truth: Array, layout: Layout = POSE) -> Nees:
     """Normalised estimation error squared of the pose, aware of the rank of its P. truth : (…, 3)"""
     pose = posed(belief, layout)
     value, rank, impossible = squared_error(error(pose, truth), pose.covariance)
-    return Nees(np.where(impossible, np.nan, value), rank, impossible)
+    return Nees(np.where(impossible, np.nan, value) if impossible.any() else value, rank, impossible)
 
 
 def inside_ellipse(belief: Gaussian, truth: Array, probability: float) -> Booleans:
@@ -60,6 +62,13 @@ def squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
     """
     if e.ndim == 1 and (value := _full_rank_square(e.tolist(), P.tolist())) is not None:
         return np.array(value), np.array(len(e)), np.array(False)
+    if e.ndim == 2 and len(e) >= MANY and e.shape[-1] in (2, 3) and e.shape == P.shape[:-1]:
+        return _squared_errors(e, P)
+    return _squared_error(e, P)
+
+
+def _squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
+    """The same as its formulas stand."""
     σ = np.sqrt(np.maximum(np.diagonal(P, axis1=-2, axis2=-1), 0.0))
     σ = np.where(σ > ROUNDING, σ, 0.0)
     per_σ = np.divide(1.0, σ, out=np.zeros_like(σ), where=σ > 0)
@@ -71,6 +80,38 @@ def squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
         y, outside = _coordinates(e, σ[..., :, None] * V, kept)
     value = np.sum(np.divide(y * y, λ, out=np.zeros_like(y), where=kept), axis=-1)
     return value, np.count_nonzero(kept, axis=-1), outside > OUTSIDE
+
+
+def _squared_errors(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
+    """The same for many runs, by P = L D Lᵀ where P is clearly of full rank. Held equal to the above by a test."""
+    n = e.shape[-1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        value, clear = _full_rank_squares(front(e, 1), front(P))
+    rank, impossible = np.full(len(e), n), np.zeros(len(e), bool)
+    if not clear.all():
+        rest = ~clear
+        value[rest], rank[rest], impossible[rest] = _squared_error(e[rest], P[rest])
+    return value, rank, impossible
+
+
+def _full_rank_squares(e: Array, P: Array) -> tuple[Array, Booleans]:
+    """eᵀ P⁻¹ e : (N,), and where P is clearly of full rank; e : (n, N), P : (n, n, N). See `_full_rank_square`."""
+    a, b, d = P[0, 0], P[0, 1], P[1, 1]
+    k = b / a
+    D = d - k * b
+    y = e[1] - k * e[0]
+    square = e[0] * e[0] / a + y * y / D
+    clear = (a > ROUNDING**2) & (d > ROUNDING**2) & (CLEAR * d < D)
+    if len(e) == 2:
+        return square, clear
+    p, q, r = P[2]
+    m = p / a
+    c = q - m * b
+    n = c / D
+    D3 = r - m * p - n * c
+    y3 = e[2] - m * e[0] - n * y
+    square += y3 * y3 / D3
+    return square, clear & (r > ROUNDING**2) & (CLEAR * d * r < D * D3)
 
 
 def _full_rank_square(e: list[float], P: list[list[float]]) -> float | None:

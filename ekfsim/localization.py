@@ -29,14 +29,18 @@ def localize(
 
 
 def advance(filter: Filter, belief: Belief, entry: Entry, guard: Guard = "warn", layout: Layout = POSE) -> Step:
-    """What the filter makes of one entry."""
+    """What the filter makes of one entry.
+
+    A single run is told all that the sensor knows of a beam; N runs side by side only what the guard needs to know.
+    """
     prediction = correction = sighting = None
     posterior = belief
     match entry.given:
         case Control(motion, u):
             posterior, prediction = filter.predict(belief, motion, u)
         case Reading(sensor, z):
-            sighting = sensor.sight(*belief)
+            if belief.mean.ndim == 1 or guard == "skip":
+                sighting = sensor.sight(*belief)
             skip = guard == "skip" and sighting is not None and sighting.ambiguous
             posterior, correction = filter.update(belief, sensor, z, skip)
     measured = None if entry.truth is None else nees(posterior, entry.truth, layout)

@@ -98,7 +98,15 @@ def test_a_study_has_a_leading_axis(name, shape):
         assert step.posterior.covariance.shape == (*shape, 3, 3)
         assert step.nees.value.shape == step.nees.dof.shape == step.nees.impossible.shape == shape
         if step.correction:
-            assert step.correction.refused.shape == step.sighting.ambiguous.shape == shape
+            assert step.correction.refused.shape == shape
+            assert step.sighting is None
+
+
+def test_a_study_looks_along_a_beam_only_where_the_guard_must_know():
+    for step in play(rich(guard="skip"), np.arange(3)):
+        if step.correction:
+            assert step.sighting.ambiguous.shape == (3,)
+            assert not (step.sighting.ambiguous & (step.correction.refused == Refused.NOT)).any()
 
 
 def test_the_gate_of_the_scene_is_the_gate_of_the_filter():

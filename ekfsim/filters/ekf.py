@@ -6,6 +6,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from ekfsim.filters import unrolled
 from ekfsim.filters.algebra import ROUNDING, innovation_covariance, refusal_one, settled, symmetric, wrapped
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction, Refused
 from ekfsim.filters.correcting import corrected
@@ -31,7 +32,10 @@ class EKF:
         """x⁻ = f(x, u)      P⁻ = F P Fᵀ + G M Gᵀ + Q          eqs 4, 7; u : (…, m) in the motion's units"""
         x, P = belief
         f, F, G, M, Q = motion.linearize(x, u)
-        return Gaussian(f, symmetric(F @ P @ F.mT + G @ M @ G.mT + Q)), Prediction(F, G)
+        P_new = unrolled.predicted(P, F, G, M, Q)
+        if P_new is None:
+            P_new = symmetric(F @ P @ F.mT + G @ M @ G.mT + Q)
+        return Gaussian(f, P_new), Prediction(F, G)
 
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
@@ -46,6 +50,9 @@ class EKF:
         innovation = sensor.residual(z, h)
         if z.shape == (1,) and x.ndim == 1:
             return self._update_one(Gaussian(x, P), z, innovation, h, H, R, bool(skip))
+        if unrolled.knows(x, z, H) and len(self.headings) == 1:
+            reading = unrolled.Linearized(z, h, innovation, H, R)
+            return unrolled.updated(Gaussian(x, P), reading, skip, self.gate, self.headings[0])
         return corrected(Gaussian(x, P), z, h, innovation, H, R, skip, self.gate, self.headings)
 
     def _update_one(

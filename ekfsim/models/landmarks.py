@@ -10,6 +10,7 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap, wrap_one
+from ekfsim.geometry.lanes import lanes
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.noise import alike, independent
 from ekfsim.models.protocols import Quantity
@@ -47,7 +48,7 @@ class _Landmark:
 
     def _placed(self, x: Array, rows: list[list[Array | float]]) -> Array:
         """Derivatives by x, y, θ, a row for each entry of z, as H : (…, k, n)"""
-        H = np.zeros((*x.shape[:-1], len(rows), x.shape[-1]))
+        H = lanes(x.shape[:-1], len(rows), x.shape[-1])
         for i, row in enumerate(rows):
             for column, derivative in zip(self.layout.places, row, strict=True):
                 H[..., i, column] = derivative

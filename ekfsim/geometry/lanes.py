@@ -1,0 +1,33 @@
+"""Small matrices of many runs, laid out so that numpy is quick at them.
+
+Everywhere an array of matrices is (…, n, m). In memory, however, the same entry of all runs may lie side by side: then
+`M[..., i, j]` is one stretch of numbers, and what is worked out entry by entry costs a fraction.
+"""
+
+import numpy as np
+
+from ekfsim.geometry import Array
+
+
+def lanes(axes: tuple[int, ...], *inner: int) -> Array:
+    """Zeros (*axes, *inner), the same entry of all runs side by side in memory.
+
+    >>> lanes((1000,), 3, 3)[:, 0, 1].strides
+    (8,)
+    """
+    d = len(inner)
+    return np.zeros((*inner, *axes)).transpose(*range(d, d + len(axes)), *range(d))
+
+
+def front(M: Array, inner: int = 2) -> Array:
+    """A view of (…, n, m) with its entries in front : (n, m, …)
+
+    inner : how many axes at the end are entries, 2 of a matrix, 1 of a vector
+    """
+    axes = M.ndim - inner
+    return M.transpose(*range(axes, M.ndim), *range(axes))
+
+
+def back(M: Array, inner: int = 2) -> Array:
+    """What `front` took apart: a view of (n, m, …) as (…, n, m)."""
+    return M.transpose(*range(inner, M.ndim), *range(inner))
