@@ -8,12 +8,14 @@ import click
 
 from ekfsim import process
 from ekfsim.errors import UsageError
-from ekfsim.options import FORCE, Result, scene_options
+from ekfsim.options import FORCE, Result, scene_options, study_options
 from ekfsim.process import Program, heed, say, shown
+from ekfsim.progress import progress
 from ekfsim.version import VERSION
 
 if TYPE_CHECKING:
     from ekfsim.scene import Scene
+    from ekfsim.study.engines import Engine
     from ekfsim.systems.document import DocumentReading
 
 
@@ -151,14 +153,15 @@ def check(files: tuple[str, ...]) -> None:
 
 
 @ekfsim.command()
-@click.argument("kind", type=click.Choice(["world", "commands"]))
+@click.argument("kind", type=click.Choice(["world", "commands", "study"]))
 def schema(kind: str) -> None:
-    """Print the JSON Schema from which editors complete and check a world or commands file."""
+    """Print the JSON Schema from which editors complete and check a world, commands or study file."""
     import json
+    from typing import cast
 
-    from ekfsim.files.schema import json_schema
+    from ekfsim.files.schema import Kind, json_schema
 
-    click.echo(json.dumps(json_schema(kind), indent=2, ensure_ascii=False))
+    click.echo(json.dumps(json_schema(cast("Kind", kind)), indent=2, ensure_ascii=False))
 
 
 @ekfsim.command("list")
@@ -220,10 +223,39 @@ def figures(
     click.echo(shown(f"{out}: {len(written)} files, read captions.md first"))
 
 
+@ekfsim.command()
+@study_options
+def study(out: Path, resume: bool, force: bool, workers: int, cluster: str | None, **asked: Any) -> None:
+    """Run COMMANDS, or what a study file tells, many times: how often is it lost, and is the filter honest?"""
+    from ekfsim.views.look import get_ready
+
+    get_ready()
+    from ekfsim.files import load_study
+    from ekfsim.files.writing import refuse_existing_folder
+    from ekfsim.study.doing import do, results_of
+    from ekfsim.study.journal import journal_in, remove
+    from ekfsim.study.plan import Plan
+    from ekfsim.views.study_folder import FILES, write_study
+    from ekfsim.views.study_words import conclude
+
+    plan = Plan.of(load_study.asked(**asked))
+    for warning in plan.warnings:
+        say(warning)
+    refuse_existing_folder(out, *FILES, force=force)
+    partial = out.with_name(f"{out.name}.partial")
+    with journal_in(partial, plan, resume, force) as journal:
+        with progress(plan, journal) as done:
+            do(plan, journal, _engine(workers, cluster), done)
+        results = results_of(plan, journal)
+        write_study(plan, results, out, force)
+    remove(partial)
+    click.echo(shown(conclude(plan, results)), nl=False)
+
+
 def _scene(
     commands: str, world: str | None = None, seed: int | None = None, run_number: int = 0,
     filter_name: str | None = None, gate: float | None = None, guard: str | None = None, log: str | None = None,
-    reading: str = "corrected",
+    reading: str = "corrected", settings: tuple[str, ...] = (),
 ) -> "Scene":  # fmt: skip
     """The scene of a commands file, overruled by the options that were given."""
     from dataclasses import replace
@@ -231,12 +263,14 @@ def _scene(
 
     from ekfsim.files.load import read_scene
     from ekfsim.files.packaged import resolve
+    from ekfsim.files.settings import setting
     from ekfsim.filters import FILTERS
 
     if filter_name is not None and filter_name not in FILTERS:
         raise UsageError(f"--filter {filter_name}: there is no such filter; known: {', '.join(FILTERS)}")
     world_file = None if world is None else resolve(world, "worlds")
-    found = read_scene(resolve(commands, "commands"), world_file, log, cast("DocumentReading", reading))
+    overruling = [setting(text) for text in settings]
+    found = read_scene(resolve(commands, "commands"), world_file, log, cast("DocumentReading", reading), overruling)
     for warning in found.warnings:
         say(warning)
     scene = found.get()
@@ -245,3 +279,14 @@ def _scene(
         source = getattr(scene, name)
         chosen[name] = None if source is None else shown(source).replace("\n", "\\x0a")
     return replace(scene, **{name: value for name, value in chosen.items() if value is not None})
+
+
+def _engine(workers: int, address: str | None) -> "Engine":
+    """Where the blocks of a study run."""
+    from ekfsim.study import engines
+
+    if address is not None:
+        from ekfsim.study.cluster import cluster
+
+        return cluster(address, say)
+    return engines.serial if workers == 1 else engines.pool(workers)

@@ -11,6 +11,8 @@ MOST = 2**63 - 1
 READINGS = ("printed", "coded", "corrected")  # of a document; told here again, so that --help need not load them
 READING = click.option("--reading", type=click.Choice(READINGS), default="corrected", show_default=True,
                        help="Which to follow where a document's print, its code and the truth differ.")  # fmt: skip
+SET = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
+                   help="Another number in place of the world's, e.g. noise.rangeSigmaRatio=0.02; repeatable.")  # fmt: skip
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
 
 
@@ -43,6 +45,11 @@ class Result(click.Path):
         return super().convert(value, param, ctx)
 
 
+GATE = click.option("--gate", type=Probability(), metavar="P",
+                    help="Refuse readings whose NIS lies beyond this χ² quantile.")  # fmt: skip
+GUARD = click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams.")
+
+
 def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options by which every command that plays a scene may overrule its file."""
     options = [
@@ -53,11 +60,39 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
         click.option("--log", metavar="PATH", help="A recorded log in place of the one that COMMANDS names."),
         READING,
         click.option("--filter", "filter_name", help="In place of the file's filter: kf, ekf, iekf, ukf or pf."),
-        click.option("--gate", type=Probability(), metavar="P",
-                     help="Refuse readings whose NIS lies beyond this χ² quantile."),
-        click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams."),
+        GATE,
+        GUARD,
+        SET,
         click.option("--confidence", type=Probability(), default=0.954,
                      show_default=True, help="Probability of the ellipse and the cone."),
+    ]  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of a study: which runs, watched by whom, made where."""
+    options = [
+        click.argument("commands", metavar="COMMANDS|STUDY.yaml"),
+        click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names."),
+        click.option("--runs", type=click.IntRange(1, 10**9), metavar="N",
+                     help="How many runs of each cell and filter; 10000 where nothing says otherwise."),
+        click.option("--seed", type=click.IntRange(0, MOST), help="In place of the file's seed."),
+        click.option("--filter", "filters", metavar="NAME,…", help="Filters that watch the same runs, e.g. ekf,ukf."),
+        click.option("--sweep", "sweeps", multiple=True, metavar="KEY=V1,V2,…",
+                     help="Values of a number of the world, of gate or of guard; several make a grid."),
+        SET,
+        GATE,
+        GUARD,
+        click.option("--reading", type=click.Choice(READINGS),
+                     help="Which to follow where a document's print, its code and the truth differ."),
+        click.option("--workers", type=click.IntRange(1, 1024), default=1, show_default=True, metavar="N",
+                     help="Processes on this machine."),
+        click.option("--cluster", metavar="ADDRESS", help="The scheduler of a Dask cluster, e.g. tcp://10.0.0.1:8786."),
+        click.option("--resume", is_flag=True, help="Go on with a study that did not end."),
+        click.option("--out", "-o", type=Result(), required=True, help="A folder for tables and pictures."),
+        FORCE,
     ]  # fmt: skip
     for option in reversed(options):
         command = option(command)

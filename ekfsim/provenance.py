@@ -20,6 +20,8 @@ def provenance(scene: Scene) -> dict[str, str | int | float | None]:
         facts["log"] = scene.log_source
     if scene.reading != "corrected":
         facts["reading"] = scene.reading
+    if scene.settings:
+        facts["set"] = " ".join(scene.settings)
     return facts
 
 

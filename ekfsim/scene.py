@@ -43,6 +43,7 @@ class Scene:
     world_source: str = "world"  # how outputs name the two files they were made from
     commands_source: str = "commands"
     log_source: str | None = None  # how outputs name the log, where the run was recorded
+    settings: tuple[str, ...] = ()  # KEY=VALUE each: what overrules numbers of the two files
 
     @property
     def commanded(self) -> bool:

@@ -1,6 +1,7 @@
 """World and commands files → World and Scene; all mistakes of a file at once."""
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Generic, TypeVar
@@ -15,6 +16,7 @@ from ekfsim.files.marked import Mark, Node, parse
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import resolve, source_name
 from ekfsim.files.schema import MODELS, Kind
+from ekfsim.files.settings import Setting, overruled, refusal
 from ekfsim.files.source import bytes_of, text_of
 from ekfsim.files.system_checks import aliases, check_fit, check_system, check_ways, system_warnings
 from ekfsim.files.telling import at, details_of, tell
@@ -65,12 +67,14 @@ def load_scene(
     return read_scene(resolve(path, "commands"), world, log, reading).get()
 
 
-def read_world(path: str | Path, shown: str | None = None, logged: bool = False) -> Loaded[World]:
+def read_world(
+    path: str | Path, shown: str | None = None, logged: bool = False, settings: Sequence[Setting] = ()
+) -> Loaded[World]:
     """A world file, with its mistakes and warnings; `shown` is how messages name it. A log may bring its landmarks.
 
     Raises UsageError where there is no such file.
     """
-    return world_in(read(Path(path), shown or str(path), "world"), logged)
+    return world_in(read(Path(path), shown or str(path), "world", settings), logged)
 
 
 def world_in(file: "File", logged: bool = False) -> Loaded[World]:
@@ -87,13 +91,18 @@ def read_scene(
     world: str | Path | None = None,
     log: str | Path | None = None,
     reading: DocumentReading = "corrected",
+    settings: Sequence[Setting] = (),
 ) -> Loaded[Scene]:
-    """A commands file, its world and its log, with the mistakes and warnings of all.
+    """A commands file, its world and its log, with the mistakes and warnings of all; `settings` overrule both files.
 
-    Raises UsageError where there is no such file.
+    Raises UsageError where there is no such file, or where the settings make a mistake of what was none.
     """
-    file = read(Path(path), str(path), "commands")
-    loaded = scene_in(file, Path(path), world)
+    if settings:
+        loaded = read_scene(path, world, log, reading)
+        if loaded.mistakes:
+            return loaded
+    file = read(Path(path), str(path), "commands", settings)
+    loaded = scene_in(file, Path(path), world, settings)
     keys = file.keys if isinstance(file.keys, CommandsKeys) else None
     if loaded.value is not None:
         loaded.value = replace(loaded.value, reading=reading)
@@ -103,6 +112,10 @@ def read_scene(
         way = next(way for way in WAYS if way in file.sound.root.keys)
         wrong = f"the file has '{way}', not a recording"
         loaded.mistakes.append(file.sound.mistake((way,), wrong, "--log has nothing to replace"))
+    if settings and loaded.mistakes:
+        raise refusal(loaded.mistakes, settings)
+    if settings and loaded.value is not None:
+        loaded.value = replace(loaded.value, settings=tuple(map(str, settings)))
     return loaded
 
 
@@ -135,13 +148,18 @@ def recorded(loaded: Loaded[Scene], file: "File", recording: RecordingKeys, path
     loaded.warnings += found.warnings
 
 
-def scene_in(file: "File", path: Path, world: str | Path | None = None) -> Loaded[Scene]:
+def scene_in(
+    file: "File", path: Path, world: str | Path | None = None, settings: Sequence[Setting] = ()
+) -> Loaded[Scene]:
     """The scene that was found in a file, in the world that it names or in the one given, its log not yet read."""
     if file.sound is None:  # nothing can be read in it, not even its world
         return Loaded(mistakes=file.mistakes)
     source = Path(world) if world is not None else path.parent / (file.sound.value("world") or "")
     logged = file.sound.value("recording", "format") in WITH_LANDMARKS
-    found = read_world(source, logged=logged) if world is not None else own_world(file, source, logged)
+    if world is not None:
+        found = read_world(source, logged=logged, settings=settings)
+    else:
+        found = own_world(file, source, logged, settings)
     if isinstance(file.keys, CommandsKeys) and found.value is not None:
         file.mistakes += check_fit(file.sound, file.keys, found.value)
         file.mistakes.sort(key=in_order_of_place)
@@ -153,7 +171,7 @@ def scene_in(file: "File", path: Path, world: str | Path | None = None) -> Loade
     return loaded
 
 
-def own_world(file: "File", source: Path, logged: bool) -> Loaded[World]:
+def own_world(file: "File", source: Path, logged: bool, settings: Sequence[Setting] = ()) -> Loaded[World]:
     """The world that a commands file names. A missing one is a mistake in that file."""
     sound = file.sound
     assert sound is not None
@@ -170,7 +188,7 @@ def own_world(file: "File", source: Path, logged: bool) -> Loaded[World]:
         file.mistakes.append(sound.mistake(("world",), wrong, right or "write its path relative to this file"))
         file.mistakes.sort(key=in_order_of_place)
         return Loaded()
-    return read_world(source, os.path.normpath(source), logged)
+    return read_world(source, os.path.normpath(source), logged, settings)
 
 
 def kind_of(path: str | Path) -> Kind:
@@ -204,15 +222,16 @@ class File:
     warnings: list[str] = field(default_factory=list)
 
 
-def read(path: Path, shown: str, kind: Kind | None) -> File:
+def read(path: Path, shown: str, kind: Kind | None, settings: Sequence[Setting] = ()) -> File:
     """Read a file as one of a kind, or as whatever it is. Raises UsageError where there is no such file."""
     try:
         root, mistakes = parse(text_of(path, shown), shown)
     except InputError as error:
         return File(kind or "world", error.mistakes)
     kind = kind or kind_of_tree(root)
-    if refusal := other_kind(root, kind):
-        return File(kind, [*mistakes, at(shown, *refusal)])
+    if other := other_kind(root, kind):
+        return File(kind, [*mistakes, at(shown, *other)])
+    root = overruled(root, kind, settings)
     keys, wrong = None, set[tuple[str | int, ...]]()
     try:
         keys = MODELS[kind].model_validate(root.plain())

@@ -7,11 +7,12 @@ from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
 from ekfsim.files.commands_file import CommandsKeys
+from ekfsim.files.study_file import StudyKeys
 from ekfsim.files.world_file import WorldKeys
 
-Kind = Literal["world", "commands"]
+Kind = Literal["world", "commands", "study"]
 Schema = dict[str, Any]
-MODELS: dict[Kind, type[BaseModel]] = {"world": WorldKeys, "commands": CommandsKeys}
+MODELS: dict[Kind, type[BaseModel]] = {"world": WorldKeys, "commands": CommandsKeys, "study": StudyKeys}
 
 
 class WithoutNull(GenerateJsonSchema):
@@ -53,8 +54,15 @@ def schema_at(kind: Kind, path: tuple[str | int, ...]) -> Schema:
     found = whole
     for part in path:
         found = one_kind(found, whole, isinstance(part, int))
-        found = found.get("items", {}) if isinstance(part, int) else found.get("properties", {}).get(part, {})
+        found = found.get("items", {}) if isinstance(part, int) else key_of(found, part)
         found = resolved(found, whole)
+    return found
+
+
+def key_of(mapping: Schema, key: str) -> Schema:
+    """What the schema of a mapping says of one key; of any, where it names none of its own."""
+    others = mapping.get("additionalProperties")
+    found: Schema = mapping.get("properties", {}).get(key, others if isinstance(others, dict) else {})
     return found
 
 

@@ -54,15 +54,8 @@ def whole_text(path: Path, force: bool = False) -> Iterator[TextIO]:
         file.flush()  # a full disk must show before the rename
 
 
-@contextmanager
-def whole_folder(path: Path, *patterns: str, force: bool = False) -> Iterator[Path]:
-    """A temporary folder that becomes `path` when the block ends well.
-
-    With `force` an older result is replaced, but only if every file in it matches one of the `patterns`: what else
-    lies in a folder is not ours to delete.
-
-    Raises UsageError if the folder holds something and may not be replaced, RunError if the disk refuses.
-    """
+def refuse_existing_folder(path: Path, *patterns: str, force: bool = False) -> Path:
+    """Raise UsageError where `whole_folder` would; else where the folder is to lie, at the end of every link."""
     with told(path):
         place = Path(os.path.realpath(path))  # where a link leads: it stays a link
         if os.path.lexists(place) and not place.is_dir():
@@ -75,6 +68,19 @@ def whole_folder(path: Path, *patterns: str, force: bool = False) -> Iterator[Pa
     for file in held:
         if file.is_dir() or not any(map(file.match, patterns)):
             raise UsageError(f"{path}: holds {file.name!r}, which is no result of ekfsim; choose another folder")
+    return place
+
+
+@contextmanager
+def whole_folder(path: Path, *patterns: str, force: bool = False) -> Iterator[Path]:
+    """A temporary folder that becomes `path` when the block ends well.
+
+    With `force` an older result is replaced, but only if every file in it matches one of the `patterns`: what else
+    lies in a folder is not ours to delete.
+
+    Raises UsageError if the folder holds something and may not be replaced, RunError if the disk refuses.
+    """
+    place = refuse_existing_folder(path, *patterns, force=force)
     with _parents(path, place), _temporary_folder(path, place) as beside:
         with told(path):
             yield beside

@@ -1,0 +1,53 @@
+"""How far a study has come, on a terminal; and what is kept of it where it ends early."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import click
+
+from ekfsim.errors import RunError
+from ekfsim.process import heed, say
+
+if TYPE_CHECKING:
+    from ekfsim.study.journal import Journal
+    from ekfsim.study.plan import Plan, Task
+    from ekfsim.study.tally import Tally
+
+
+@contextmanager
+def progress(plan: "Plan", journal: "Journal") -> Iterator[Callable[["Task", "Tally"], None]]:
+    """A bar on standard error where that is a terminal, with the share of runs that are lost so far."""
+    total = plan.blocks * len(plan.cases)
+    runs = lost = 0
+    hidden = not sys.stderr.isatty()
+    with click.progressbar(
+        length=total, label="blocks", file=sys.stderr, hidden=hidden, item_show_func=lambda told: told
+    ) as bar:
+
+        def done(task: "Task", tally: "Tally") -> None:
+            nonlocal runs, lost
+            heed()
+            runs, lost = runs + tally.runs, lost + sum(tally.lost_from.values())
+            bar.update(1, f"{100 * lost / runs:.2g} % lost")
+
+        if not hidden:
+            for task in plan.tasks():
+                if task in journal:
+                    done(task, journal.tally(task))
+        try:
+            yield done
+        except RunError as failure:
+            raise RunError(f"{failure}{kept(journal, total)}") from None
+        except (KeyboardInterrupt, SystemExit):
+            if told := kept(journal, total):
+                say(told.removeprefix("; "))
+            raise
+
+
+def kept(journal: "Journal", total: int) -> str:
+    """What is kept of a study that ends early, and the way on."""
+    if not len(journal):
+        return ""
+    return f"; {len(journal)} of {total} blocks are kept in {journal.path.parent}, --resume goes on with the rest"

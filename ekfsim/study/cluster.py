@@ -1,0 +1,72 @@
+"""Blocks on the workers of a Dask scheduler, which may come, go and die."""
+
+import itertools
+import logging
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+from ekfsim.errors import RunError, UsageError
+from ekfsim.study.engines import Done, Engine, Parcels, work
+from ekfsim.study.plan import Plan, Task
+
+PATIENCE = "10s"  # for a scheduler that does not answer
+RETRIES = 3  # of a block whose worker failed or died
+AHEAD = 4  # blocks for each worker that are handed out at once
+
+
+def cluster(address: str, tell: Callable[[str], None]) -> Engine:
+    """An engine of the workers of a scheduler. Raises UsageError without `distributed`, RunError where none answers."""
+    try:
+        import dask
+        import distributed
+    except ImportError:
+        raise UsageError("--cluster needs the package 'distributed': pip install 'ekfsim[cluster]'") from None
+    for name in ("distributed", "tornado", "asyncio"):  # they tell at length what we say in a line
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    limits = {"distributed.comm.timeouts.connect": PATIENCE, "distributed.comm.retry.count": 0}
+
+    def engine(plan: Plan, tasks: Iterable[Task]) -> Iterator[Done]:
+        with dask.config.set(limits):
+            client = _connected(distributed, address)
+            try:
+                yield from _done(distributed, client, plan, tasks, tell)
+            except (distributed.client.FutureCancelledError, distributed.comm.core.CommClosedError, TimeoutError):
+                raise RunError(f"the scheduler at {address} is gone") from None
+            except distributed.KilledWorker:
+                raise RunError("a block was given up, as every worker that began it died") from None
+            finally:
+                client.close(timeout=1)
+
+    return engine
+
+
+def _connected(distributed: Any, address: str) -> Any:
+    try:
+        return distributed.Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, TimeoutError):
+        raise RunError(f"no scheduler answers at {address}; start one with `dask scheduler`") from None
+    except ValueError as error:
+        raise UsageError(f"--cluster {address}: is no address: {error}; write e.g. tcp://127.0.0.1:8786") from None
+
+
+def _done(
+    distributed: Any, client: Any, plan: Plan, tasks: Iterable[Task], tell: Callable[[str], None]
+) -> Iterator[Done]:
+    """The blocks as they are done, no more of them handed out than the workers need."""
+    workers = len(client.scheduler_info(n_workers=-1)["workers"])
+    if workers == 0:
+        tell(f"no worker has come yet; start some with `dask worker {client.scheduler.address}`")
+    waiting, parcels = iter(tasks), Parcels(plan)
+    running: dict[str, Task] = {}
+    ready = distributed.as_completed(raise_errors=False)
+
+    def hand_out(many: int) -> None:
+        for task in itertools.islice(waiting, many):
+            future = client.submit(work, *parcels(task), pure=False, retries=RETRIES)
+            running[future.key] = task
+            ready.add(future)
+
+    hand_out(AHEAD * max(workers, 8))
+    for future in ready:
+        yield running.pop(future.key), future.result()
+        hand_out(1)

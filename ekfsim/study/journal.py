@@ -1,0 +1,144 @@
+"""Each finished block at once on disk: what a study has done survives whatever ends it.
+
+A JSON Lines file: first what decides the numbers of the study, then a line for each block. A last line that is torn
+was never finished; its block is done again.
+"""
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from ekfsim.errors import UsageError
+from ekfsim.files.writing import told
+from ekfsim.study.plan import Plan, Task
+from ekfsim.study.tally import Tally
+
+NAME = "journal.jsonl"
+FORMAT = 1
+
+
+class Journal:
+    """The blocks that are done. Of each only its place in the file is held in memory."""
+
+    def __init__(self, path: Path, file: BinaryIO, places: dict[tuple[int, int], tuple[int, int]]) -> None:
+        self.path = path
+        self._file = file
+        self._places = places  # (case, block) → where its line begins, and its length
+
+    def __contains__(self, task: Task) -> bool:
+        return (task.case, task.block) in self._places
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+    def add(self, task: Task, tally: Tally) -> None:
+        """Keep a finished block. When this returns, a power cut may come. Raises RunError where the disk is full."""
+        line = _line({"case": task.case, "block": task.block, "tally": tally.plain()})
+        with told(self.path):
+            place = self._file.seek(0, os.SEEK_END)
+            self._file.write(line)
+            self._file.flush()
+            os.fsync(self._file.fileno())
+        self._places[task.case, task.block] = place, len(line)
+
+    def tally(self, task: Task) -> Tally:
+        """The tally of a block that is done."""
+        place, length = self._places[task.case, task.block]
+        self._file.seek(place)
+        return Tally.of_plain(json.loads(self._file.read(length))["tally"])
+
+    def total(self, plan: Plan, case: int) -> Tally:
+        """All blocks of a case together, always in their order: sums of floating numbers depend on it."""
+        tallies = map(self.tally, plan.tasks_of(case))
+        total = next(tallies)
+        for tally in tallies:
+            total = total + tally
+        return total
+
+
+@contextmanager
+def journal_in(folder: Path, plan: Plan, resume: bool, force: bool) -> Iterator[Journal]:
+    """The journal of a study in its folder of work, begun or gone on with; removed where nothing came to be in it.
+
+    Raises UsageError where there is one that must not be touched, or another study is at work.
+    """
+    path = folder / NAME
+    with told(folder):
+        if path.exists() and not (resume or force):
+            right = "go on with --resume, or begin anew with --force"
+            raise UsageError(f"{folder}: holds what was done of a study that did not end; {right}")
+        folder.mkdir(parents=True, exist_ok=True)
+        file = path.open("r+b" if resume and path.exists() else "w+b")
+    with file:
+        _lock(file, folder)
+        with told(path):
+            journal = Journal(path, file, _begun(file, plan, path))
+        try:
+            yield journal
+        finally:
+            if not len(journal):
+                remove(folder)
+
+
+def remove(folder: Path) -> None:
+    """Remove the journal, and its folder where nothing else lies in it."""
+    with suppress(OSError):
+        (folder / NAME).unlink()
+        folder.rmdir()
+
+
+def _lock(file: BinaryIO, folder: Path) -> None:
+    """Raises UsageError where another process holds the journal. Where nothing can be locked, nothing is."""
+    with suppress(ImportError, OSError):
+        import fcntl
+
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise UsageError(f"{folder}: another study is at work there; wait for it, or choose another name") from None
+
+
+def _begun(file: BinaryIO, plan: Plan, path: Path) -> dict[tuple[int, int], tuple[int, int]]:
+    """Where the lines of an older journal stand, after what was torn of it is cut off; a new one gets its head."""
+    places: dict[tuple[int, int], tuple[int, int]] = {}
+    end = 0
+    for number, line in enumerate(file):
+        try:
+            held = json.loads(line) if line.endswith(b"\n") else None
+        except ValueError:
+            held = None
+        if held is None:
+            break
+        if number == 0:
+            _compare(held, plan, path)
+        else:
+            places[held["case"], held["block"]] = end, len(line)
+        end += len(line)
+    file.seek(end)
+    file.truncate()
+    if end == 0:
+        file.write(_line({"journal": FORMAT, "study": plan.identity()}))
+        file.flush()
+    return places
+
+
+def _compare(head: Mapping[str, Any], plan: Plan, path: Path) -> None:
+    """Raises UsageError where a journal is of another study, with the first thing that differs."""
+    was, now = head.get("study"), plan.identity()
+    if head.get("journal") != FORMAT or not isinstance(was, dict):
+        raise UsageError(f"{path}: is no journal of this version; begin anew with --force")
+    for name, value in now.items():
+        if was.get(name) != value:
+            what = (
+                f"the {name} file was another"
+                if name in ("commands", "world")
+                else f"{name} was {was.get(name) or 'not given'}, and is now {value or 'not given'}"
+            )
+            raise UsageError(f"{path.parent}: was begun as another study: {what}; begin anew with --force")
+
+
+def _line(held: Mapping[str, Any]) -> bytes:
+    return json.dumps(held, separators=(",", ":")).encode() + b"\n"

@@ -1,0 +1,132 @@
+"""What is asked → what is to be done: every cell of the grid, watched by every filter, in blocks of runs."""
+
+import hashlib
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, NamedTuple, Self
+
+from ekfsim.errors import UsageError
+from ekfsim.files.load import read_scene
+from ekfsim.files.load_study import Request
+from ekfsim.files.marked import parse
+from ekfsim.files.settings import Setting
+from ekfsim.files.source import bytes_of, text_of
+from ekfsim.scene import Scene
+from ekfsim.simulation.draws import BLOCK
+from ekfsim.version import VERSION
+
+MOST_CASES = 10_000
+
+
+class Task(NamedTuple):
+    """A block of runs of one case."""
+
+    case: int  # its number in the plan
+    block: int
+    first: int  # run
+    runs: int
+
+
+@dataclass(frozen=True)
+class Case:
+    """One cell of the grid, watched by one filter: a row of the summary."""
+
+    values: tuple[Setting, ...]  # of the swept keys, in their order
+    scene: Scene
+
+    @property
+    def filter(self) -> str:
+        """The name of the filter."""
+        return self.scene.filter
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A study, ready to be done."""
+
+    request: Request
+    cases: tuple[Case, ...]
+    warnings: tuple[str, ...]
+
+    @classmethod
+    def of(cls, request: Request) -> Self:
+        """The plan of what is asked. Raises UsageError or InputError where a cell of it is no sound scene."""
+        cells = math.prod(map(len, request.sweep))
+        if cells * max(len(request.filters), 1) > MOST_CASES:
+            wrong = f"the grid has {cells} cells for {max(len(request.filters), 1)} filters"
+            raise UsageError(f"{wrong}, more than {MOST_CASES} rows; sweep fewer values")
+        cases, warnings = list[Case](), dict[str, None]()
+        if request.written_by not in ("", VERSION):
+            told = f"{request.commands_name}: the study was written by ekfsim {request.written_by}, this is {VERSION}"
+            warnings[f"{told}: its numbers may differ"] = None
+        for values in itertools.product(*request.sweep):
+            loaded = read_scene(request.commands, request.world, None, request.reading, (*request.settings, *values))
+            scene = loaded.get()
+            warnings |= dict.fromkeys(loaded.warnings)
+            if scene.log is not None:
+                raise UsageError(f"{request.commands_name}: a recording is one run only; study a simulated one")
+            seeded = scene if request.seed is None else replace(scene, seed=request.seed)
+            cases += [Case(values, replace(seeded, filter=name)) for name in request.filters or (scene.filter,)]
+        return cls(request, tuple(cases), tuple(warnings))
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The swept keys."""
+        return tuple(values[0].key for values in self.request.sweep)
+
+    @property
+    def seed(self) -> int:
+        """The seed of all cells."""
+        return self.cases[0].scene.seed
+
+    @property
+    def filters(self) -> tuple[str, ...]:
+        """The filters that watch, in their order."""
+        return tuple(dict.fromkeys(case.filter for case in self.cases))
+
+    def tasks(self) -> Iterator[Task]:
+        """Every block of every case, in the order in which they are put together."""
+        return (task for case in range(len(self.cases)) for task in self.tasks_of(case))
+
+    def tasks_of(self, case: int) -> Iterator[Task]:
+        """Every block of one case, in order."""
+        runs = self.request.runs
+        return (Task(case, b, b * BLOCK, min(BLOCK, runs - b * BLOCK)) for b in range(self.blocks))
+
+    @property
+    def blocks(self) -> int:
+        """How many blocks each case has."""
+        return -(-self.request.runs // BLOCK)
+
+    def identity(self) -> dict[str, Any]:
+        """All that decides the numbers of this study, by the name that a person has for it."""
+        request = self.request
+        return {
+            "ekfsim": VERSION,
+            "commands": _digest(request.commands),
+            "world": _digest(world_of(request)),
+            "runs": request.runs,
+            "seed": self.seed,
+            "filters": ",".join(self.filters),
+            "sweep": " ".join(f"{values[0].key}={','.join(one.value for one in values)}" for values in request.sweep),
+            "set": " ".join(map(str, request.settings)),
+            "reading": request.reading,
+        }
+
+
+def world_of(request: Request) -> Path:
+    """The world file of a study."""
+    if request.world is not None:
+        return request.world
+    root, _ = parse(text_of(request.commands, str(request.commands)), str(request.commands))
+    named = root.at(("world",))
+    assert named is not None  # else there had been no scene
+    return request.commands.parent / named.written
+
+
+def _digest(path: Path) -> str:
+    """A file's contents as a word: what differs in it makes another study."""
+    return hashlib.sha256(bytes_of(path, str(path))).hexdigest()[:16]

@@ -1,0 +1,85 @@
+"""Results → CSV: a row a case, and a row a step. No date and no path: the same bytes wherever the runs were made."""
+
+import csv
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TextIO
+
+from ekfsim.study.plan import Plan
+from ekfsim.study.results import AtStep, Result, Share
+from ekfsim.study.verdict import verdict
+from ekfsim.version import VERSION
+
+SHARES = ("above_50", "above_95", "above_999", "ellipse", "cone", "lost")
+AT_STEP = (
+    *("step", "t", "runs", "impossible", "position_rmse", "heading_rmse"),
+    *(f"{name}{end}" for name in SHARES for end in ("", "_low", "_high")),
+    *("ellipse_runs", "cone_runs", "nees_mean", "nees_low", "nees_high"),
+)
+OF_RUNS = (
+    *("nees_mean_warning", "nis_mean", "nis_low", "nis_high", "nis_readings"),
+    *("nis_runs", "nis_runs_above", "nis_runs_below", "nees_runs_above", "nees_runs_below"),
+    *("lost_from_median", "lost_from_median_t", "worst_run", "typical_run", "verdict", "verdict_from_step"),
+    "verdict_from_t",
+)
+ORIGIN = ("seed", "gate", "guard", "reading", "set", "ekfsim")
+
+
+def write_summary(file: TextIO, plan: Plan, results: Iterable[Result]) -> None:
+    """A row for each cell and filter."""
+    table = csv.writer(file, lineterminator="\n")
+    table.writerow([*plan.keys, "filter", *AT_STEP, *OF_RUNS, *ORIGIN])
+    for result in results:
+        table.writerow([*_case(result), *_at(result.last), *_of_runs(result), *_origin(result, plan)])
+
+
+def write_steps(file: TextIO, plan: Plan, results: Iterable[Result]) -> None:
+    """A row for each cell, filter and step."""
+    table = csv.writer(file, lineterminator="\n")
+    table.writerow([*plan.keys, "filter", *AT_STEP, *ORIGIN])
+    for result in results:
+        case, origin = _case(result), _origin(result, plan)
+        table.writerows([*case, *_at(at), *origin] for at in result.steps)
+
+
+def _case(result: Result) -> list[str]:
+    return [*(one.value for one in result.case.values), result.case.filter]
+
+
+def _at(at: AtStep) -> list[str]:
+    shares: Sequence[Share] = (at.above_50, at.above_95, at.above_999, at.ellipse, at.cone, at.lost)
+    return [
+        *map(_cell, (at.step, at.t, at.runs, at.impossible, at.position_rmse, at.heading_rmse)),
+        *(_cell(number) for share in shares for number in (share.value, share.low, share.high)),
+        *map(_cell, (at.ellipse.of, at.cone.of, *at.nees)),
+    ]
+
+
+def _of_runs(result: Result) -> Iterator[str]:
+    of, nis, found = result.tally.of, result.nis, verdict(result)
+    yield warning(result)
+    yield from map(_cell, (*nis, of.nis_readings))
+    yield from map(_cell, (of.nis_runs, of.nis_above, of.nis_below, of.nees_above, of.nees_below))
+    yield from map(_cell, (result.lost_from, result.time_of(result.lost_from), result.worst, result.typical))
+    yield found.word.value
+    yield from map(_cell, (None, None) if found.since is None else (found.since.step, found.since.t))
+
+
+def _origin(result: Result, plan: Plan) -> list[str]:
+    scene = result.case.scene
+    settings = " ".join(map(str, plan.request.settings))
+    return list(map(_cell, (scene.seed, scene.gate, scene.guard, scene.reading, settings, VERSION)))
+
+
+def warning(result: Result) -> str:
+    """What stands beside every mean of NEES."""
+    last = result.last
+    left_out = f", {last.impossible} impossible ones left out" if last.impossible else ""
+    return f"a few lost runs dominate a mean ({last.lost.runs} lost{left_out})"
+
+
+def _cell(value: object) -> str:
+    """A number as it stands in a table: six digits; nothing where it is undefined."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

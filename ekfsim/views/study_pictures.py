@@ -1,0 +1,205 @@
+"""The three pictures of a study: NEES against χ², coverage, and divergence; over the steps or over what was swept."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.ticker import PercentFormatter
+
+from ekfsim.files.marked import scalar
+from ekfsim.study.plan import Plan
+from ekfsim.study.results import AtStep, Result, Share
+from ekfsim.study.verdict import MOST_LOST
+from ekfsim.version import VERSION
+from ekfsim.views.lettering import drawable, shortened
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")  # of the filters
+GREY = "#666666"
+DPI = 120
+MOST_MAPS = 12  # of two swept keys, in one row of pictures
+FOOT = 0.16  # in, for the line that tells what made it
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One share that is drawn, and where it should lie."""
+
+    title: str
+    of: Callable[[AtStep], Share]
+    meant: float
+    meant_words: str
+    at_most: bool = False  # whether less is as good
+
+
+LOST = Quantity("lost for good", lambda at: at.lost, MOST_LOST, "2 %: no longer consistent", at_most=True)
+PICTURES: dict[str, tuple[str, tuple[Quantity, ...]]] = {
+    "nees": (
+        "Runs whose NEES lies above a quantile of χ²",
+        (
+            Quantity("above the median", lambda at: at.above_50, 0.5, "50 %, where the filter is honest"),
+            Quantity("above the 95 % quantile", lambda at: at.above_95, 0.05, "5 %, where the filter is honest"),
+            Quantity("above the 99.9 % quantile", lambda at: at.above_999, 0.001, "0.1 %, where the filter is honest"),
+        ),
+    ),
+    "coverage": (
+        "Runs whose truth lies inside the 95.4 % ellipse and cone",
+        (
+            Quantity("position inside the ellipse", lambda at: at.ellipse, 0.954, "95.4 %"),
+            Quantity("heading inside the cone", lambda at: at.cone, 0.954, "95.4 %"),
+        ),
+    ),
+    "divergence": ("Runs that are lost", (LOST,)),
+}
+
+
+def draw_study(plan: Plan, results: Sequence[Result], folder: Path) -> None:
+    """Draw nees.png, coverage.png and divergence.png into a folder."""
+    for name, (title, quantities) in PICTURES.items():
+        figure = picture(plan, results, title, quantities)
+        notes = {"Software": f"ekfsim {VERSION}", "Description": told(plan)}
+        figure.savefig(folder / f"{name}.png", dpi=DPI, metadata=notes)
+
+
+def picture(plan: Plan, results: Sequence[Result], title: str, quantities: Sequence[Quantity]) -> Figure:
+    """One picture: lines over the steps where nothing is swept, over the values of one key, maps for more."""
+    if len(plan.keys) < 2:
+        figure = _sheet(8.0, 0.8 + 2.3 * len(quantities) + (1.2 if len(quantities) == 1 else 0))
+        rows = figure.subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
+        draw = _over_steps if not plan.keys else _over_values
+        for axes, quantity in zip(rows, quantities, strict=True):
+            draw(axes, plan, results, quantity)
+        rows[0].legend(loc="best", fontsize=8, framealpha=0.9)
+    else:
+        figure = _maps(plan, results, quantities)
+    figure.suptitle(title if not plan.keys else f"{title}, at the last step", fontsize=12)
+    figure.text(0.995, 0.004, drawable(told(plan)), fontsize=5.5, ha="right", va="bottom", color=GREY)
+    return figure
+
+
+def told(plan: Plan) -> str:
+    """What made a picture, in a line."""
+    request, scene = plan.request, plan.cases[0].scene
+    facts = [
+        f"ekfsim {VERSION}", f"world {scene.world_source}", f"commands {scene.commands_source}", f"{request.runs} runs",
+        f"seed {plan.seed}", f"filter {','.join(plan.filters)}", f"gate {scene.gate}", f"guard {scene.guard}",
+    ]  # fmt: skip
+    facts += [f"set {one}" for one in request.settings]
+    facts += [f"sweep {values[0].key}={','.join(one.value for one in values)}" for values in request.sweep]
+    swept = set(plan.keys)
+    return shortened(", ".join(f for f in facts if f.partition(" ")[0] not in swept and not f.endswith(" None")), 190)
+
+
+def _sheet(width: float, height: float) -> Figure:
+    """A figure that no window manages, with room for its foot. width, height : in"""
+    figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
+    FigureCanvasAgg(figure)
+    engine = figure.get_layout_engine()
+    assert isinstance(engine, ConstrainedLayoutEngine)
+    engine.set(rect=(0, FOOT / height, 1, 1 - FOOT / height))
+    return figure
+
+
+def _over_steps(axes: Axes, plan: Plan, results: Sequence[Result], quantity: Quantity) -> None:
+    """A line for each filter, its interval as a band."""
+    clocked = not math.isnan(results[0].last.t)
+    for result, colour in zip(results, COLOURS, strict=False):
+        x = [at.t if clocked else at.step for at in result.steps]
+        y = np.array([_numbers(quantity.of(at)) for at in result.steps])
+        marker = "o" if len(x) < 60 else ""
+        axes.plot(x, y[:, 0], color=colour, marker=marker, ms=3, lw=1.4, label=result.case.filter)
+        axes.fill_between(x, y[:, 1], y[:, 2], color=colour, alpha=0.2, lw=0)
+    _frame(axes, quantity)
+    if axes.get_subplotspec().is_last_row():  # type: ignore[union-attr]  # each has one
+        axes.set_xlabel("t (s)" if clocked else "step")
+
+
+def _over_values(axes: Axes, plan: Plan, results: Sequence[Result], quantity: Quantity) -> None:
+    """The last step over the swept values: a line for each filter, its intervals as bars."""
+    values = [one.value for one in plan.request.sweep[0]]
+    numbers = [scalar(value) for value in values]
+    metric = all(isinstance(n, int | float) for n in numbers)
+    for result_colour, name in zip(COLOURS, plan.filters, strict=False):
+        shares = [quantity.of(result.last) for result in results if result.case.filter == name]
+        y = np.array([_numbers(share) for share in shares])
+        x = np.array(numbers if metric else range(len(values)), float)
+        order = np.argsort(x)
+        bars = np.maximum(np.abs(y[order, 1:].T - y[order, 0]), 0.0)
+        axes.errorbar(x[order], y[order, 0], bars, color=result_colour, marker="o", ms=4, lw=1.4, capsize=3, label=name)
+    if metric and min(map(float, numbers)) > 0 and max(map(float, numbers)) / min(map(float, numbers)) > 20:  # type: ignore[arg-type]
+        axes.set_xscale("log")
+    if not metric or len(values) <= 8:
+        axes.set_xticks(numbers if metric else range(len(values)), values)  # type: ignore[arg-type]
+        axes.minorticks_off()
+    _frame(axes, quantity)
+    if axes.get_subplotspec().is_last_row():  # type: ignore[union-attr]
+        axes.set_xlabel(plan.keys[0])
+
+
+def _frame(axes: Axes, quantity: Quantity) -> None:
+    """Where the share should lie, and axes in percent from what is least to what is most."""
+    axes.axhline(quantity.meant, color=GREY, lw=1, ls="--", label=quantity.meant_words)
+    low, high = axes.get_ylim()
+    axes.set_ylim(max(low, -0.02), min(high, 1.02))
+    axes.set_title(quantity.title, fontsize=10, loc="left")
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.grid(True, color="#DDDDDD", lw=0.6)
+    axes.set_axisbelow(True)
+
+
+def _numbers(share: Share) -> tuple[float, float, float]:
+    return share.value, share.low, share.high
+
+
+def _maps(plan: Plan, results: Sequence[Result], quantities: Sequence[Quantity]) -> Figure:
+    """Heat maps of the last two swept keys: a row for each quantity, a column for each filter and other values."""
+    held = list(_columns(plan, results))
+    down, across = ([one.value for one in values] for values in plan.request.sweep[-2:])
+    shown = held[:MOST_MAPS]
+    wide, high = max(0.62 * len(across), 2.2) + 0.9, max(0.36 * len(down), 1.4) + 0.9
+    figure = _sheet(max(wide * len(shown) + 0.9, 6.0), high * len(quantities) + 0.7)
+    grid = figure.subplots(len(quantities), len(shown), squeeze=False, sharex=True, sharey=True)
+    for row, quantity in zip(grid, quantities, strict=True):
+        for axes, (name, cells) in zip(row, shown, strict=True):
+            shares = np.array([quantity.of(result.last).value for result in cells]).reshape(len(down), len(across))
+            _map(axes, shares, quantity)
+            axes.set_title(f"{name}: {quantity.title}", fontsize=9)
+            axes.set_xticks(range(len(across)), across, rotation=45 if len(across) > 6 else 0)
+            axes.set_yticks(range(len(down)), down)
+        row[0].set_ylabel(plan.keys[-2])
+    for axes in grid[-1]:
+        axes.set_xlabel(plan.keys[-1])
+    if len(held) > len(shown):
+        figure.text(0.005, 0.004, f"{len(shown)} of {len(held)} maps; summary.csv holds all", fontsize=7, va="bottom")
+    return figure
+
+
+def _columns(plan: Plan, results: Sequence[Result]) -> Iterator[tuple[str, list[Result]]]:
+    """The rows of each map, by the filter and the values of the keys before the last two."""
+    found: dict[str, list[Result]] = {}
+    for result in results:
+        name = ", ".join([result.case.filter, *map(str, result.case.values[:-2])])
+        found.setdefault(name, []).append(result)
+    yield from found.items()
+
+
+def _map(axes: Axes, shares: np.ndarray, quantity: Quantity) -> None:
+    """A heat map with its numbers: white is as it should be, red too many, blue too few."""
+    norm = TwoSlopeNorm(quantity.meant, vmin=0.0, vmax=1.0)
+    colours = "Reds" if quantity.at_most else "RdBu_r"
+    image = axes.imshow(shares, aspect="auto", cmap=colours, norm=None if quantity.at_most else norm, origin="lower")
+    if quantity.at_most:
+        image.set_clim(0.0, 1.0)
+    for i, j in np.ndindex(shares.shape):
+        value = shares[i, j]
+        text = "-" if math.isnan(value) else f"{100 * value:.3g}"
+        r, g, b, _ = image.cmap(image.norm(value))
+        dark = 0.299 * r + 0.587 * g + 0.114 * b < 0.5
+        axes.text(j, i, text, ha="center", va="center", fontsize=8, color="white" if dark else "black")
+    axes.figure.colorbar(image, ax=axes, format=PercentFormatter(1.0), shrink=0.9)

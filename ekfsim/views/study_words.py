@@ -1,0 +1,122 @@
+"""A study for a person: a table, a plain sentence for each row with its evidence, and how to see the runs behind it."""
+
+import math
+import shlex
+from collections.abc import Sequence
+
+from ekfsim.study.plan import Plan
+from ekfsim.study.results import AtStep, Result, Share
+from ekfsim.study.verdict import Word, agrees, covers, verdict
+from ekfsim.views.numbers import instant
+
+HEAD = ("filter", "position", "heading", "> 50 %", "> 95 %", "> 99.9 %", "ellipse", "cone", "lost", "NIS", "verdict")
+
+
+def conclude(plan: Plan, results: Sequence[Result]) -> str:
+    """All that is printed when a study is over."""
+    request = plan.request
+    lines = [
+        f"{request.commands_name}: {request.runs} runs of seed {plan.seed}, at the last step "
+        "(RMSE in m and degrees; shares of NEES above the quantiles of χ², inside ellipse and cone, and lost, in %)",
+        *table(plan, results),
+        "",
+    ]
+    for result in results:
+        lines += [f"{title(result)}: {sentence(result)}", *(f"  {line}" for line in plays(plan, result))]
+    return "\n".join(lines) + "\n"
+
+
+def table(plan: Plan, results: Sequence[Result]) -> list[str]:
+    """A row for each cell and filter, under one head."""
+    rows = [[*plan.keys, *HEAD], *map(_row, results)]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
+
+
+def _row(result: Result) -> list[str]:
+    last, nis = result.last, result.nis
+    shares = (last.above_50, last.above_95, last.above_999, last.ellipse, last.cone, last.lost)
+    return [
+        *(one.value for one in result.case.values),
+        result.case.filter,
+        f"{last.position_rmse:.3g}",
+        f"{math.degrees(last.heading_rmse):.3g}",
+        *map(percent, shares),
+        "-" if math.isnan(nis.value) else f"{nis.value:.3g}",
+        verdict(result).word.value,
+    ]
+
+
+def title(result: Result) -> str:
+    """Which row a sentence is about."""
+    return ", ".join([*map(str, result.case.values), result.case.filter])
+
+
+def sentence(result: Result) -> str:
+    """The verdict, since when, and the evidence."""
+    found, last = verdict(result), result.last
+    if found.word is Word.NO_EVIDENCE:
+        return f"{found.word.value}: at the last step no run is uncertain of anything"
+    since = "" if found.since is None else f" from {when(found.since)} on"
+    return f"{found.word.value}{since}: {'; '.join(evidence(last))}"
+
+
+def when(at: AtStep) -> str:
+    """How a person names a step."""
+    return f"step {at.step}" if math.isnan(at.t) else f"t = {instant(at.t)} s"
+
+
+def evidence(last: AtStep) -> list[str]:
+    """What the verdict rests on, each with its 95 % interval."""
+    told = [f"at the last step {shared(last.above_50)} of {last.runs} runs have a NEES above the median of χ²"]
+    told[0] += " (45 to 55 % agree)" if agrees(last.above_50) else ", where 45 to 55 % should"
+    if last.ellipse.of:
+        meant = "" if covers(last.ellipse) else ", where 93.4 to 97.4 % should"
+        told.append(f"{shared(last.ellipse)} are inside the 95.4 % ellipse{meant}")
+    told.append(
+        f"{shared(last.lost)} are lost" + (", where fewer than 2 % should be" if last.lost.value >= 0.02 else "")
+    )
+    return told
+
+
+def shared(share: Share) -> str:
+    """A share with its interval."""
+    return f"{percent(share)} % [{_percent(share.low)}, {_percent(share.high)}]"
+
+
+def percent(share: Share) -> str:
+    """A share in percent, a dash where there is none."""
+    return _percent(share.value) if share.of else "-"
+
+
+def _percent(value: float) -> str:
+    """A decimal, of what is small two; none where it is exact.
+
+    >>> _percent(0.5012), _percent(0.96), _percent(0.0004), _percent(0.0), _percent(1.0)
+    ('50.1', '96.0', '0.04', '0', '100')
+    """
+    if value in (0.0, 1.0):
+        return f"{100 * value:.0f}"
+    return f"{100 * value:.{1 if value >= 0.01 else 2}f}"
+
+
+def plays(plan: Plan, result: Result) -> list[str]:
+    """The commands that play the worst run and a typical one."""
+    worst = result.tally.worst
+    how = "its belief is impossible" if worst.impossible else f"its last NEES is {worst.nees:.3g}"
+    return [
+        f"the worst run: {played(plan, result, worst.run)}  # {how}",
+        f"a typical run: {played(plan, result, result.typical)}",
+    ]
+
+
+def played(plan: Plan, result: Result, run: int) -> str:
+    """The command that plays one run of a row."""
+    request, scene = plan.request, result.case.scene
+    words = ["ekfsim", "play", request.commands_name]
+    words += [] if request.world_name is None else ["--world", request.world_name]
+    words += ["--seed", str(scene.seed), "--run", str(run), "--filter", scene.filter]
+    words += [] if scene.reading == "corrected" else ["--reading", scene.reading]
+    for one in (*request.settings, *result.case.values):
+        words += ["--set", str(one)]
+    return shlex.join(words)
