@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ekfsim.errors import UsageError
 from ekfsim.figures.album import BLACK, BLUE, ORANGE, PURPLE, VERMILLION, Album, labelled, square
 from ekfsim.figures.gnss_runs import FILTER, RECIPE, Runs, length, pose_error
 from ekfsim.figures.track import Track, rmse, running_rmse
@@ -19,6 +20,9 @@ COLOURS = {GNSS: ORANGE, WHEELS: VERMILLION, FILTER: BLUE, RECIPE: PURPLE}
 def draw_gnss(scene: Scene, album: Album) -> None:
     """Draw them into an album."""
     runs = Runs.of(scene)
+    if len(runs.fixes.t) == 0:
+        source = scene.log_source or scene.commands_source
+        raise UsageError(f"{source}: it holds no GNSS fix, and so there is nothing to draw")
     paths(runs, album)
     headings(runs, album)
     if not runs.right.has_truth.any():

@@ -5,11 +5,12 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.ticker import MultipleLocator
 
+from ekfsim.errors import UsageError
 from ekfsim.figures.album import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILLION, Album, labelled, square
 from ekfsim.figures.pylon_innovations import innovations
 from ekfsim.figures.pylon_runs import Runs, by_the_letter, every_other, lidar_alone, timed
 from ekfsim.figures.track import Track, rmse, running_rmse
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.ellipse import outline
 from ekfsim.geometry.outline import path_error
 from ekfsim.models.layout import INERTIAL
@@ -19,7 +20,8 @@ from ekfsim.systems.document import DocumentReading
 LARGER = 100.0  # how many times figure 5 enlarges the authors' covariances
 PROBABILITY = 0.954  # of its ellipses
 INSIDE, OUTSIDE = 2.0, 0.7  # m, how far figure 5 reaches from the corner
-MEETING = 1.1  # times as large is nearly the same
+ENOUGH = 30  # readings
+MEETING = 1.2  # times as large is nearly the same
 FIRST = 40  # how many steps figures 6 and 7 show
 WHAT: dict[DocumentReading, str] = {
     "corrected": "corrected: the yaw error × the lever arm in R, dt from the stamps",
@@ -41,6 +43,9 @@ VARIANCES = (
 def draw_pylon(scene: Scene, album: Album) -> None:
     """Draw them into an album."""
     runs = Runs.of(scene)
+    if (seen := len(runs.track.readings)) < ENOUGH:
+        source = scene.log_source or scene.commands_source
+        raise UsageError(f"{source}: {seen} readings of the pylon are too few to draw; {ENOUGH} will do")
     paths(scene, runs, album)
     yaw(runs, album)
     tracking(runs, album)
@@ -130,11 +135,14 @@ def tracking(runs: Runs, album: Album) -> None:
 def ellipses(runs: Runs, album: Album) -> None:
     """Figure 5."""
     corner = runs.ring[np.argmin(runs.ring.sum(axis=1))]
+    if not any(len(_near(runs.tracks[reading], corner)) for reading, _, _ in CLAIMS):
+        album.note("Figure 5", "The run does not come near the south-west corner.")
+        return
     figure = album.figure(10.0, 5.4)
     widest = dict[str, float]()
     for axes, (reading, larger, title) in zip(figure.subplots(1, 2, sharex=True, sharey=True), CLAIMS, strict=True):
         track = runs.tracks[reading]
-        near = np.flatnonzero(np.abs(track.pose[:, :2] - corner).max(axis=1) < INSIDE)
+        near = _near(track, corner)
         labelled(axes, "x (m)", "y (m)")
         _ring(axes, runs.ring)
         P = track.pose_covariance[near, :2, :2]
@@ -208,6 +216,11 @@ def table_of_readings(runs: Runs, album: Album) -> None:
         f"{apart:.2g} m away from where it is (RMS), at another place of the square; eq. 11, which asks for the "
         "nearest side, hardly notices.",
     )
+
+
+def _near(track: Track, corner: Array) -> Integers:
+    """The instants that figure 5 shows."""
+    return np.flatnonzero(np.abs(track.pose[:, :2] - corner).max(axis=1) < INSIDE)
 
 
 def _row(runs: Runs, name: str, track: Track, reference: str) -> list[str]:

@@ -115,6 +115,21 @@ def by_the_letter(entries: Iterable[Entry]) -> Iterator[Entry]:
         yield entry
 
 
+def turned_by_the_yaw_of(entries: Iterable[Entry], later: int) -> Iterator[Entry]:
+    """The same log, each reading turned by the yaw of so many rows later, or earlier where that is negative."""
+    log = list(entries)
+    yaws = [float(entry.given.u[2]) for entry in log if isinstance(entry.given, Control)]
+    row = -1
+    for entry in log:
+        if isinstance(entry.given, Control):
+            row += 1
+        elif isinstance(entry.given, Reading):
+            turn = yaws[min(max(row + later, 0), len(yaws) - 1)] - yaws[row]
+            c, s = np.cos(turn), np.sin(turn)
+            entry = replace(entry, given=replace(entry.given, z=np.array([[c, -s], [s, c]]) @ entry.given.z))
+        yield entry
+
+
 def as_noisy(entries: Iterable[Entry], sigma: float) -> Iterator[Entry]:
     """The same log, the filter told another σ of the lidar, in m."""
     for entry in entries:

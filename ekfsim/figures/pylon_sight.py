@@ -79,14 +79,3 @@ class Innovations:
         """Where a reading comes after a gap : (K,)"""
         dt = np.diff(self.t)
         return np.concatenate([[False], dt > LONG * np.median(dt)])
-
-    def yaw_lead(self) -> tuple[float, float]:
-        """By how many seconds the yaw would have to be newer than the range for what is seen in turns; its correlation.
-
-        A yaw that is newer by τ turns the reading by θ̇ τ too far, sideways by distance · θ̇ τ.
-        """
-        fast = np.degrees(np.abs(self.turn_rate)) > TURNING[1]
-        lever, ν = (self.distance * self.turn_rate)[fast], self.sideways[fast]
-        if len(lever) < 3:
-            return float("nan"), float("nan")
-        return float(lever @ ν / (lever @ lever)), float(np.corrcoef(lever, ν)[0, 1])
