@@ -12,7 +12,7 @@ READINGS = ("printed", "coded", "corrected")  # of a document; told here again, 
 READING = click.option("--reading", type=click.Choice(READINGS), default="corrected", show_default=True,
                        help="Which to follow where a document's print, its code and the truth differ.")  # fmt: skip
 SET = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
-                   help="Another number in place of the world's, e.g. noise.rangeSigmaRatio=0.02; repeatable.")  # fmt: skip
+                   help="Overrule a number of the world, e.g. noise.rangeSigmaRatio=0.02; repeatable.")  # fmt: skip
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
 
 

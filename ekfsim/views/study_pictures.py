@@ -8,23 +8,25 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import TwoSlopeNorm
+from matplotlib.colors import Normalize, TwoSlopeNorm
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import PercentFormatter
 
 from ekfsim.files.marked import scalar
+from ekfsim.geometry import Array
 from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
 from ekfsim.study.verdict import MOST_LOST
 from ekfsim.version import VERSION
-from ekfsim.views.lettering import drawable, shortened
+from ekfsim.views.lettering import drawable, wrapped
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")  # of the filters
 GREY = "#666666"
 DPI = 120
 MOST_MAPS = 12  # of two swept keys, in one row of pictures
-FOOT = 0.16  # in, for the line that tells what made it
+FOOT, FOOT_LINES = 0.24, 2  # in, for the lines that tell what made it
 
 
 @dataclass(frozen=True)
@@ -35,10 +37,10 @@ class Quantity:
     of: Callable[[AtStep], Share]
     meant: float
     meant_words: str
-    at_most: bool = False  # whether less is as good
+    colours: str = "RdBu_r"  # of a map: red is over-confident, blue over-cautious
 
 
-LOST = Quantity("lost for good", lambda at: at.lost, MOST_LOST, "2 %: no longer consistent", at_most=True)
+LOST = Quantity("lost for good", lambda at: at.lost, MOST_LOST, "2 %: no longer consistent", "Reds")
 PICTURES: dict[str, tuple[str, tuple[Quantity, ...]]] = {
     "nees": (
         "Runs whose NEES lies above a quantile of χ²",
@@ -51,8 +53,8 @@ PICTURES: dict[str, tuple[str, tuple[Quantity, ...]]] = {
     "coverage": (
         "Runs whose truth lies inside the 95.4 % ellipse and cone",
         (
-            Quantity("position inside the ellipse", lambda at: at.ellipse, 0.954, "95.4 %"),
-            Quantity("heading inside the cone", lambda at: at.cone, 0.954, "95.4 %"),
+            Quantity("position inside the ellipse", lambda at: at.ellipse, 0.954, "95.4 %", "RdBu"),
+            Quantity("heading inside the cone", lambda at: at.cone, 0.954, "95.4 %", "RdBu"),
         ),
     ),
     "divergence": ("Runs that are lost", (LOST,)),
@@ -75,11 +77,15 @@ def picture(plan: Plan, results: Sequence[Result], title: str, quantities: Seque
         draw = _over_steps if not plan.keys else _over_values
         for axes, quantity in zip(rows, quantities, strict=True):
             draw(axes, plan, results, quantity)
-        rows[0].legend(loc="best", fontsize=8, framealpha=0.9)
+        marks, labels = rows[0].get_legend_handles_labels()
+        first = labels.index(quantities[0].meant_words)  # told last
+        order = [*(n for n in range(len(marks)) if n != first), first]
+        rows[0].legend([marks[n] for n in order], [labels[n] for n in order], loc="best", fontsize=8, framealpha=0.9)
     else:
         figure = _maps(plan, results, quantities)
     figure.suptitle(title if not plan.keys else f"{title}, at the last step", fontsize=12)
-    figure.text(0.995, 0.004, drawable(told(plan)), fontsize=5.5, ha="right", va="bottom", color=GREY)
+    lines = wrapped([drawable(told(plan))], int(21 * figure.get_figwidth()), FOOT_LINES)
+    figure.text(0.995, 0.004, "\n".join(lines), fontsize=5.5, ha="right", va="bottom", color=GREY)
     return figure
 
 
@@ -93,7 +99,7 @@ def told(plan: Plan) -> str:
     facts += [f"set {one}" for one in request.settings]
     facts += [f"sweep {values[0].key}={','.join(one.value for one in values)}" for values in request.sweep]
     swept = set(plan.keys)
-    return shortened(", ".join(f for f in facts if f.partition(" ")[0] not in swept and not f.endswith(" None")), 190)
+    return ", ".join(f for f in facts if f.partition(" ")[0] not in swept and not f.endswith(" None"))
 
 
 def _sheet(width: float, height: float) -> Figure:
@@ -148,7 +154,7 @@ def _frame(axes: Axes, quantity: Quantity) -> None:
     low, high = axes.get_ylim()
     axes.set_ylim(max(low, -0.02), min(high, 1.02))
     axes.set_title(quantity.title, fontsize=10, loc="left")
-    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0, symbol=" %"))
     axes.grid(True, color="#DDDDDD", lw=0.6)
     axes.set_axisbelow(True)
 
@@ -166,15 +172,16 @@ def _maps(plan: Plan, results: Sequence[Result], quantities: Sequence[Quantity])
     figure = _sheet(max(wide * len(shown) + 0.9, 6.0), high * len(quantities) + 0.7)
     grid = figure.subplots(len(quantities), len(shown), squeeze=False, sharex=True, sharey=True)
     for row, quantity in zip(grid, quantities, strict=True):
-        for axes, (name, cells) in zip(row, shown, strict=True):
-            shares = np.array([quantity.of(result.last).value for result in cells]).reshape(len(down), len(across))
-            _map(axes, shares, quantity)
+        shares = [np.array([quantity.of(result.last).value for result in cells]) for _, cells in shown]
+        norm = _norm(quantity, np.concatenate(shares))
+        for axes, (name, _), column in zip(row, shown, shares, strict=True):
+            image = _map(axes, column.reshape(len(down), len(across)), norm, quantity.colours)
             axes.set_title(f"{name}: {quantity.title}", fontsize=9)
             axes.set_xticks(range(len(across)), across, rotation=45 if len(across) > 6 else 0)
             axes.set_yticks(range(len(down)), down)
         row[0].set_ylabel(plan.keys[-2])
-    for axes in grid[-1]:
-        axes.set_xlabel(plan.keys[-1])
+        figure.colorbar(image, ax=row.tolist(), format=PercentFormatter(1.0, symbol=" %"))
+    figure.supxlabel(plan.keys[-1], fontsize=10)
     if len(held) > len(shown):
         figure.text(0.005, 0.004, f"{len(shown)} of {len(held)} maps; summary.csv holds all", fontsize=7, va="bottom")
     return figure
@@ -189,17 +196,21 @@ def _columns(plan: Plan, results: Sequence[Result]) -> Iterator[tuple[str, list[
     yield from found.items()
 
 
-def _map(axes: Axes, shares: np.ndarray, quantity: Quantity) -> None:
-    """A heat map with its numbers: white is as it should be, red too many, blue too few."""
-    norm = TwoSlopeNorm(quantity.meant, vmin=0.0, vmax=1.0)
-    colours = "Reds" if quantity.at_most else "RdBu_r"
-    image = axes.imshow(shares, aspect="auto", cmap=colours, norm=None if quantity.at_most else norm, origin="lower")
-    if quantity.at_most:
-        image.set_clim(0.0, 1.0)
-    for i, j in np.ndindex(shares.shape):
-        value = shares[i, j]
-        text = "-" if math.isnan(value) else f"{100 * value:.3g}"
-        r, g, b, _ = image.cmap(image.norm(value))
+def _norm(quantity: Quantity, shares: Array) -> Normalize:
+    """How shares become colours: white is as it should be, and the farthest of them as deep as can be."""
+    known = shares[~np.isnan(shares)].tolist()
+    if quantity.colours == "Reds":
+        return Normalize(0.0, max([2 * quantity.meant, *known]))
+    low, high = min([0.9 * quantity.meant, *known]), max([min(2 * quantity.meant, 1.0), *known])
+    return TwoSlopeNorm(quantity.meant, low if quantity.meant > 0.9 else 0.0, high)
+
+
+def _map(axes: Axes, shares: Array, norm: Normalize, colours: str) -> AxesImage:
+    """A heat map with its numbers in percent."""
+    image = axes.imshow(shares, aspect="auto", cmap=colours, norm=norm, origin="lower")
+    for (i, j), value in np.ndenumerate(shares):
+        r, g, b, _ = image.to_rgba(np.array(value))
         dark = 0.299 * r + 0.587 * g + 0.114 * b < 0.5
+        text = "-" if math.isnan(value) else f"{100 * value:.1f}"
         axes.text(j, i, text, ha="center", va="center", fontsize=8, color="white" if dark else "black")
-    axes.figure.colorbar(image, ax=axes, format=PercentFormatter(1.0), shrink=0.9)
+    return image

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
-from ekfsim.study.verdict import Word, agrees, covers, verdict
+from ekfsim.study.verdict import MOST_LOST, Word, agrees, covers, verdict
 from ekfsim.views.numbers import instant
 
 HEAD = ("filter", "position", "heading", "> 50 %", "> 95 %", "> 99.9 %", "ellipse", "cone", "lost", "NIS", "verdict")
@@ -73,9 +73,8 @@ def evidence(last: AtStep) -> list[str]:
     if last.ellipse.of:
         meant = "" if covers(last.ellipse) else ", where 93.4 to 97.4 % should"
         told.append(f"{shared(last.ellipse)} are inside the 95.4 % ellipse{meant}")
-    told.append(
-        f"{shared(last.lost)} are lost" + (", where fewer than 2 % should be" if last.lost.value >= 0.02 else "")
-    )
+    meant = ", where fewer than 2 % should be" if last.lost.value >= MOST_LOST else ""
+    told.append(f"{shared(last.lost)} are lost{meant}")
     return told
 
 
