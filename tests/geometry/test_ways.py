@@ -1,0 +1,142 @@
+"""What is particular to each way of following many beams; that all find the same is told in test_walls.py."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from wall_worlds import (
+    DESK,
+    ENGINES,
+    ROOM,
+    WORLDS,
+    assert_same,
+    beams,
+    by_brute_force,
+    near_beams,
+    stars,
+    town,
+    using,
+)  # fmt: skip
+
+from ekfsim.geometry import engine
+from ekfsim.geometry.broad import broad
+from ekfsim.geometry.cells import BORDER, PLAIN
+from ekfsim.geometry.fan import fan
+from ekfsim.geometry.walls import BLOCK, Walls
+
+needs_numba = pytest.mark.skipif("numba" not in ENGINES, reason="numba, the extra `fast`, is not installed")
+
+
+@pytest.mark.parametrize("name", WORLDS)
+def test_hardly_a_beam_is_left_in_doubt(name):
+    """Else every beam would be followed twice, and the quick ways would be no quicker."""
+    walls = Walls.of(WORLDS[name])
+    near = x, y, dx, dy, span = near_beams(walls, *beams(1000, seed=3))
+    ends = walls.segments.reshape(-1, 4)
+    assert len(broad(ends, *near)[2]) <= 5
+    assert len(fan(ends, x[0], y[0], dx, dy, span[0])[2]) <= 5
+
+
+@needs_numba
+@pytest.mark.parametrize("name", WORLDS)
+def test_hardly_a_beam_is_left_in_doubt_by_the_compiled_walk(name):
+    from ekfsim.geometry import compiled
+
+    walls = Walls.of(WORLDS[name])
+    *found, doubtful = compiled.walk(walls.cells, *near_beams(walls, *beams(1000, seed=3))[:4])
+    assert len(doubtful) <= 5
+    assert_same(found, by_brute_force(walls, *beams(1000, seed=3)), 1.0, but=doubtful)
+
+
+@needs_numba
+def test_walls_on_each_other_are_no_doubt_to_the_compiled_walk():
+    from ekfsim.geometry import compiled
+
+    rings = stars(40, 2)
+    walls = Walls.of({**rings, **{f"{name} again": ring for name, ring in rings.items()}})
+    near = near_beams(walls, *beams(1000, seed=3))
+    assert not len(compiled.walk(walls.cells, *near[:4])[2])
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_beam_in_a_batch_has_the_hit_that_it_has_alone(name):
+    """Whatever the batch: how many, from where, and what stands beside it."""
+    walls = Walls.of(town("houses", 5, 20.0))
+    origin, heading = beams(2 * BLOCK + 70, 6, 490, 530)
+    origin[7], heading[BLOCK + 1], origin[2 * BLOCK] = np.nan, np.inf, 1e13
+    with using(name):
+        hit = walls.cast(origin, heading)
+        for some in (slice(0, 70), slice(BLOCK - 40, BLOCK + 40), slice(2 * BLOCK - 10, None)):
+            part = walls.cast(origin[some], heading[some])
+            np.testing.assert_allclose(part.range, hit.range[some], rtol=1e-12, atol=1e-9)
+            np.testing.assert_array_equal(part.wall, hit.wall[some])
+    known = np.delete(np.arange(len(heading)), [7, BLOCK + 1])
+    assert_same((hit.range[known], hit.wall[known]), by_brute_force(walls, origin[known], heading[known]), 1e13)
+    assert (hit.wall[[7, BLOCK + 1]] == -1).all()
+    assert np.isnan(hit.range[[7, BLOCK + 1]]).all()
+
+
+SCANS = {
+    "a full turn": np.linspace(-np.pi, np.pi, 360, endpoint=False),
+    "a full turn, both ends": np.linspace(-np.pi, np.pi, 361),
+    "three quarters": np.linspace(-2.4, 2.4, 270) + 1.0,
+    "clockwise": np.linspace(9.0, 3.0, 200),
+    "uneven": np.sort(np.random.default_rng(1).uniform(-20, 20, 300)),
+    "in any order": np.random.default_rng(2).uniform(-3, 3, 300),
+    "all the same": np.full(100, 0.7),
+    "after many turns": np.linspace(0, 6, 300) + 1e9,
+    "one": np.array([0.3]),
+}
+
+
+@pytest.mark.parametrize("name", SCANS)
+@pytest.mark.parametrize("place", [(5.0, 4.0), (3.0, 2.5), (2.0, 2.0), (4.0, 2.7), (0.0, 0.0), (-3.0, 1.0), (5.0, 2.0)])
+def test_a_scan_however_its_beams_are_spaced(name, place):
+    """From the open, from inside the desk, from a corner, from a wall, from outside, from a wall's line."""
+    walls = Walls.of({"room": ROOM, "desk": DESK, **stars(8, 4, side=10.0)})
+    heading = SCANS[name]
+    x, y, dx, dy, span = near_beams(walls, np.tile(place, (len(heading), 1)), heading)
+    *found, doubtful = fan(walls.segments.reshape(-1, 4), x[0], y[0], dx, dy, span[0])
+    expected = by_brute_force(walls, np.stack([x, y], -1), heading)
+    assert_same(found, expected, 1.0, but=doubtful)
+    hit = walls.cast(np.array(place), heading)
+    assert_same((hit.range, hit.wall), expected, 1.0)
+
+
+def test_a_cell_of_a_town_lists_its_walls_or_names_the_grid_that_does():
+    cells = Walls.of(town("houses", 5, 10.0)).cells
+    assert set(range(1, len(cells.place))) | {PLAIN, BORDER} == set(cells.within.tolist())
+    assert np.diff(cells.start).max() <= 64
+    assert not np.diff(cells.start)[cells.within != PLAIN].any()
+
+
+def test_numpy_is_used_unless_numba_is_asked_for():
+    program = """
+import sys, numpy as np
+from ekfsim.geometry.walls import Walls
+Walls.of({"room": np.array([[0, 0], [9, 0], [9, 9], [0, 9.0]])}).cast(np.ones((500, 2)), np.linspace(0, 6, 500))
+print("numba" in sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+    assert engine.used() == "numpy"
+
+
+def test_an_engine_that_does_not_exist_or_is_not_installed(monkeypatch):
+    with pytest.raises(ValueError, match="'fortran' is no engine; there are numpy and numba"):
+        engine.use("fortran")
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(ModuleNotFoundError, match="numba is not installed; it comes with ekfsim's extra `fast`"):
+        engine.use("numba")
+    assert engine.used() == "numpy"
+
+
+@needs_numba
+def test_where_no_folder_can_be_written_the_walk_is_compiled_anew(monkeypatch):
+    from numba.core import caching
+
+    from ekfsim.geometry.compiled import compiled
+
+    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
+    assert compiled(lambda x: x + 1)(1) == 2
