@@ -2,21 +2,17 @@
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NoReturn
+from typing import Any, Literal, NoReturn
 
 import click
 
 from ekfsim import process
+from ekfsim.asked import engine_of, scene_of
 from ekfsim.errors import UsageError
 from ekfsim.options import FORCE, Result, scene_options, study_options
 from ekfsim.process import Program, heed, say, shown
 from ekfsim.progress import progress
 from ekfsim.version import VERSION
-
-if TYPE_CHECKING:
-    from ekfsim.scene import Scene
-    from ekfsim.study.engines import Engine
-    from ekfsim.systems.document import DocumentReading
 
 
 def main() -> NoReturn:
@@ -46,7 +42,7 @@ def play(show: str, out: Path, conditional: bool, force: bool, confidence: float
     from ekfsim.views.interactive import play_interactively
     from ekfsim.views.look import Look
 
-    play_interactively(_scene(**chosen), show, out, Look(confidence, conditional), force)
+    play_interactively(scene_of(**chosen), show, out, Look(confidence, conditional), force)
 
 
 @ekfsim.command()
@@ -66,7 +62,7 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
     from ekfsim.views import animation, limits
     from ekfsim.views.playback import Tally, views
 
-    scene, tally = _scene(**chosen), Tally()
+    scene, tally = scene_of(**chosen), Tally()
     extent = limits.of(scene, kept(steps_of(scene), [tally.write]), confidence)
     pictures = animation.number_of_pictures(tally.views, every)
     with click.progressbar(length=pictures, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
@@ -102,7 +98,7 @@ def run(
     from ekfsim.views.narrative import narrate
     from ekfsim.views.playback import views
 
-    scene = _scene(**chosen)
+    scene = scene_of(**chosen)
     result = Summary.of(scene)
     outputs = Outputs(trace, tum, csv, summary, force)
     with outputs.open(scene, confidence, result) as sinks:
@@ -123,7 +119,7 @@ def record(out: Path, force: bool, confidence: float, **chosen: Any) -> None:
     from ekfsim.files.logs import write_log
     from ekfsim.simulation import simulate
 
-    scene = _scene(**chosen)
+    scene = scene_of(**chosen)
     for remark in write_log(scene, simulate(scene), out, force):
         say(f"{shown(out)}: {remark}")
     click.echo(f"{shown(out)}: a {scene.world.system} log; run the filter on it with --log")
@@ -215,7 +211,7 @@ def figures(
     get_ready()
     from ekfsim.figures import draw_figures
 
-    scene = _scene(
+    scene = scene_of(
         "tour" if name == "classroom" else name if log is None else f"{name}_log",
         log=log, reading=reading, seed=seed,
     )  # fmt: skip
@@ -245,48 +241,8 @@ def study(out: Path, resume: bool, force: bool, workers: int, cluster: str | Non
     partial = out.with_name(f"{out.name}.partial")
     with journal_in(partial, plan, resume, force) as journal:
         with progress(plan, journal) as done:
-            do(plan, journal, _engine(workers, cluster), done)
+            do(plan, journal, engine_of(workers, cluster), done)
         results = results_of(plan, journal)
         write_study(plan, results, out, force)
     remove(partial)
     click.echo(shown(conclude(plan, results)), nl=False)
-
-
-def _scene(
-    commands: str, world: str | None = None, seed: int | None = None, run_number: int = 0,
-    filter_name: str | None = None, gate: float | None = None, guard: str | None = None, log: str | None = None,
-    reading: str = "corrected", settings: tuple[str, ...] = (),
-) -> "Scene":  # fmt: skip
-    """The scene of a commands file, overruled by the options that were given."""
-    from dataclasses import replace
-    from typing import cast
-
-    from ekfsim.files.load import read_scene
-    from ekfsim.files.packaged import resolve
-    from ekfsim.files.settings import setting
-    from ekfsim.filters import FILTERS
-
-    if filter_name is not None and filter_name not in FILTERS:
-        raise UsageError(f"--filter {filter_name}: there is no such filter; known: {', '.join(FILTERS)}")
-    world_file = None if world is None else resolve(world, "worlds")
-    overruling = [setting(text) for text in settings]
-    found = read_scene(resolve(commands, "commands"), world_file, log, cast("DocumentReading", reading), overruling)
-    for warning in found.warnings:
-        say(warning)
-    scene = found.get()
-    chosen: dict[str, Any] = {"seed": seed, "run": run_number, "filter": filter_name, "gate": gate, "guard": guard}
-    for name in ("world_source", "commands_source", "log_source"):  # every output holds them, in a line
-        source = getattr(scene, name)
-        chosen[name] = None if source is None else shown(source).replace("\n", "\\x0a")
-    return replace(scene, **{name: value for name, value in chosen.items() if value is not None})
-
-
-def _engine(workers: int, address: str | None) -> "Engine":
-    """Where the blocks of a study run."""
-    from ekfsim.study import engines
-
-    if address is not None:
-        from ekfsim.study.cluster import cluster
-
-        return cluster(address, say)
-    return engines.serial if workers == 1 else engines.pool(workers)

@@ -31,7 +31,7 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"views"},
     {"figures"},
     {"process", "options"},
-    {"progress"},
+    {"progress", "asked"},
     {"cli", "ekfsim"},
 )
 CORE = {"geometry", "models", "filters", "systems", "world", "records", "scene", "consistency", "summary", "provenance",

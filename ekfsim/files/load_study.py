@@ -11,11 +11,10 @@ from ekfsim.errors import InputError, Mistake, UsageError
 from ekfsim.files.marked import Node, field_of, parse
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import packaged, resolve
-from ekfsim.files.settings import OF_COMMANDS, Setting, fault_of, repeated, setting, swept
+from ekfsim.files.settings import OF_COMMANDS, Setting, fault_of, filters_in, repeated, setting, swept
 from ekfsim.files.source import text_of
 from ekfsim.files.study_file import StudyKeys
 from ekfsim.files.telling import at, tell
-from ekfsim.filters import FILTERS
 from ekfsim.systems.document import DocumentReading
 
 
@@ -64,12 +63,7 @@ def asked(
     set_apart = [(key, value) for key, value in (("gate", gate), ("guard", guard)) if value is not None]
     own = [*(setting(text) for text in settings), *(Setting(k, str(v), f"--{k} {v}") for k, v in set_apart)]
     request = request.overruled(tuple(own), tuple(map(swept, sweeps)))
-    watching = request.filters if filters is None else tuple(name.strip() for name in filters.split(","))
-    for n, one in enumerate(watching):
-        if one not in FILTERS:
-            raise UsageError(f"--filter {one}: there is no such filter; known: {', '.join(FILTERS)}")
-        if one in watching[:n]:
-            raise UsageError(f"--filter {filters}: '{one}' stands twice; delete one")
+    watching = request.filters if filters is None else filters_in(filters)
     return replace(
         request, filters=watching, runs=request.runs if runs is None else runs,
         seed=request.seed if seed is None else seed, reading=reading or request.reading,

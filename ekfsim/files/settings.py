@@ -60,6 +60,19 @@ def repeated(settings: Sequence[Setting]) -> Setting | None:
     return next((one for n, one in enumerate(settings) if values[n] in values[:n]), None)
 
 
+def filters_in(text: str, option: str = "--filter") -> tuple[str, ...]:
+    """The filters that NAME,… names. Raises UsageError where one of them is none, or stands twice."""
+    from ekfsim.filters import FILTERS
+
+    names = tuple(name.strip() for name in text.split(","))
+    for n, name in enumerate(names):
+        if name not in FILTERS:
+            raise UsageError(f"{option} {name}: there is no such filter; known: {', '.join(FILTERS)}")
+        if name in names[:n]:
+            raise UsageError(f"{option} {text}: '{name}' stands twice; delete one")
+    return names
+
+
 def kind_of(one: Setting) -> Kind:
     """Which of the two files a setting overrules."""
     return "commands" if one.key in OF_COMMANDS else "world"
