@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from ekfsim.errors import RunError, UsageError
-from ekfsim.study.engines import Done, Engine, Parcels, work
-from ekfsim.study.plan import Plan, Task
+from ekfsim.study.engines import Engine, Parcels, T, Work, do_packed
+from ekfsim.study.plan import Task
 
 PATIENCE = "10s"  # for a scheduler that does not answer
 RETRIES = 3  # of a block whose worker failed or died
@@ -21,15 +21,16 @@ def cluster(address: str, tell: Callable[[str], None]) -> Engine:
         import distributed
     except ImportError:
         raise UsageError("--cluster needs the package 'distributed': pip install 'ekfsim[cluster]'") from None
-    for name in ("distributed", "tornado", "asyncio"):  # they tell at length what we say in a line
-        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    for name in list(logging.root.manager.loggerDict):  # they tell at length what we say in a line
+        if name.partition(".")[0] in ("distributed", "tornado", "asyncio"):
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     limits = {"distributed.comm.timeouts.connect": PATIENCE, "distributed.comm.retry.count": 0}
 
-    def engine(plan: Plan, tasks: Iterable[Task]) -> Iterator[Done]:
+    def engine(work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
         with dask.config.set(limits):
             client = _connected(distributed, address)
             try:
-                yield from _done(distributed, client, plan, tasks, tell)
+                yield from _done(distributed, client, work, tasks, tell)
             except (distributed.client.FutureCancelledError, distributed.comm.core.CommClosedError, TimeoutError):
                 raise RunError(f"the scheduler at {address} is gone") from None
             except distributed.KilledWorker:
@@ -50,19 +51,19 @@ def _connected(distributed: Any, address: str) -> Any:
 
 
 def _done(
-    distributed: Any, client: Any, plan: Plan, tasks: Iterable[Task], tell: Callable[[str], None]
-) -> Iterator[Done]:
+    distributed: Any, client: Any, work: Work[T], tasks: Iterable[Task], tell: Callable[[str], None]
+) -> Iterator[tuple[Task, T]]:
     """The blocks as they are done, no more of them handed out than the workers need."""
     workers = len(client.scheduler_info(n_workers=-1)["workers"])
     if workers == 0:
         tell(f"no worker has come yet; start some with `dask worker {client.scheduler.address}`")
-    waiting, parcels = iter(tasks), Parcels(plan)
+    waiting, parcels = iter(tasks), Parcels(work)
     running: dict[str, Task] = {}
-    ready = distributed.as_completed(raise_errors=False)
+    ready = distributed.as_completed(loop=client.loop, raise_errors=False)
 
     def hand_out(many: int) -> None:
         for task in itertools.islice(waiting, many):
-            future = client.submit(work, *parcels(task), pure=False, retries=RETRIES)
+            future = client.submit(do_packed, *parcels(task), pure=False, retries=RETRIES)
             running[future.key] = task
             ready.add(future)
 

@@ -10,69 +10,80 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import active_children, connection, get_context, parent_process
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from ekfsim.errors import RunError
-from ekfsim.scene import Scene
-from ekfsim.study.block import run_block
-from ekfsim.study.plan import Plan, Task
-from ekfsim.study.tally import Tally
+from ekfsim.study.plan import Task
 from ekfsim.version import VERSION
 
-Done = tuple[Task, Tally]
-Engine = Callable[[Plan, Iterable[Task]], Iterator[Done]]
+T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
 AHEAD = 3  # blocks for each worker that are handed out at once, so that none waits
 
 
-def serial(plan: Plan, tasks: Iterable[Task]) -> Iterator[Done]:
+class Work(Protocol[T_co]):
+    """What is done in blocks of runs: a study, a comparison."""
+
+    def block(self, case: int) -> Callable[[int, int], T_co]:
+        """What becomes of runs of a case: a function of the first and of how many, that can be packed and sent."""
+
+
+class Engine(Protocol):
+    """Does blocks somewhere, and yields them as they are done."""
+
+    def __call__(self, work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
+        """What becomes of each task, in any order."""
+
+
+def serial(work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
     """One block after another, in this process."""
     for task in tasks:
-        yield task, run_block(plan.cases[task.case].scene, task.first, task.runs)
+        yield task, work.block(task.case)(task.first, task.runs)
 
 
-def work(packed: bytes, first: int, runs: int, version: str) -> Tally:
+def do_packed(packed: bytes, first: int, runs: int, version: str) -> Any:
     """A block, wherever this is called. Raises RunError where another version of ekfsim is installed."""
     if version != VERSION:
         raise RunError(f"a worker has ekfsim {VERSION}, and this is {version}; install the same version there")
-    return run_block(_unpacked(packed), first, runs)
+    return _unpacked(packed)(first, runs)
 
 
 @functools.lru_cache(maxsize=8)
-def _unpacked(packed: bytes) -> Scene:
-    """The scene in a parcel, unpacked once: its walls are made ready once for all of its blocks."""
-    scene: Scene = pickle.loads(packed)
-    return scene
+def _unpacked(packed: bytes) -> Callable[[int, int], Any]:
+    """What is in a parcel, unpacked once: the walls of its scene are made ready once for all of its blocks."""
+    block: Callable[[int, int], Any] = pickle.loads(packed)
+    return block
 
 
 class Parcels:
-    """The scenes of a plan, packed to be sent; those of the case in work are kept."""
+    """The cases of a work, packed to be sent; those that are done just now are kept."""
 
-    def __init__(self, plan: Plan) -> None:
-        self._packed = functools.lru_cache(maxsize=8)(lambda case: pickle.dumps(plan.cases[case].scene))
+    def __init__(self, work: Work[Any]) -> None:
+        self._packed = functools.lru_cache(maxsize=8)(lambda case: pickle.dumps(work.block(case)))
 
     def __call__(self, task: Task) -> tuple[bytes, int, int, str]:
-        """The arguments of `work` for a task."""
+        """The arguments of `do_packed` for a task."""
         return self._packed(task.case), task.first, task.runs, VERSION
 
 
 def pool(workers: int) -> Engine:
     """An engine of processes on this machine."""
 
-    def engine(plan: Plan, tasks: Iterable[Task]) -> Iterator[Done]:
+    def engine(work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
         before = set(active_children())
-        waiting, parcels = iter(tasks), Parcels(plan)
+        waiting, parcels = iter(tasks), Parcels(work)
         with _one_thread_each():
             executor = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_begin_worker)
         try:
-            running: dict[Future[Tally], Task] = {}
+            running: dict[Future[T], Task] = {}
             for task in itertools.islice(waiting, AHEAD * workers):
                 with _one_thread_each():  # processes are made as blocks come
-                    running[executor.submit(work, *parcels(task))] = task
+                    running[executor.submit(do_packed, *parcels(task))] = task
             while running:
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
                     yield running.pop(future), future.result()
                     for task in itertools.islice(waiting, 1):
-                        running[executor.submit(work, *parcels(task))] = task
+                        running[executor.submit(do_packed, *parcels(task))] = task
         except BrokenProcessPool:
             raise RunError("a worker process died: it was killed, or there is too little memory for so many") from None
         finally:

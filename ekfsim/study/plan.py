@@ -1,9 +1,10 @@
 """What is asked → what is to be done: every cell of the grid, watched by every filter, in blocks of runs."""
 
+import functools
 import hashlib
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -16,6 +17,8 @@ from ekfsim.files.settings import Setting
 from ekfsim.files.source import bytes_of, text_of
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import BLOCK
+from ekfsim.study.block import run_block
+from ekfsim.study.tally import Tally
 from ekfsim.version import VERSION
 
 MOST_CASES = 10_000
@@ -95,6 +98,10 @@ class Plan:
         """Every block of one case, in order."""
         runs = self.request.runs
         return (Task(case, b, b * BLOCK, min(BLOCK, runs - b * BLOCK)) for b in range(self.blocks))
+
+    def block(self, case: int) -> Callable[[int, int], Tally]:
+        """What becomes of runs of a case: a function of the first and of how many."""
+        return functools.partial(run_block, self.cases[case].scene)
 
     @property
     def blocks(self) -> int:
