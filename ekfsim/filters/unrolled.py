@@ -1,8 +1,9 @@
 """The extended Kalman filter of many runs, entry by entry: the twin of the readable one, a few times as fast.
 
 A product of N matrices of 3 × 3 is slow in numpy, the same sums over entries that lie side by side are not. Here every
-array has its entries in front, (3, 3, …), and the runs behind. What needs care (a reading that is nan, an H P Hᵀ that may
-be rounding, a sensor far sharper than the belief) is left to the readable text, run by run. A test holds the two equal.
+array has its entries in front, (3, 3, N), and the runs behind. What needs care (a reading that is nan, an H P Hᵀ that
+may be rounding, a sensor far sharper than the belief) is left to the readable text, for those runs alone. A test holds
+the two equal.
 """
 
 from typing import NamedTuple
@@ -51,8 +52,9 @@ def predicted(P: Array, F: Array, G: Array, M: Array, Q: Array | float) -> Array
             for j in range(i, 3):
                 if reaches[j][k]:
                     new[i, j] += shared * g[j, k]
-    if np.ndim(Q):
-        new += front(Q) if np.ndim(Q) == 3 else np.asarray(Q)[..., None]
+    Q = np.asarray(Q)
+    if Q.ndim:
+        new += front(Q) if Q.ndim == 3 else Q[..., None]
     new[1, 0], new[2, 0], new[2, 1] = new[0, 1], new[0, 2], new[1, 2]
     return back(new)
 
@@ -91,15 +93,15 @@ def updated(
         mean[heading] = wrap(mean[heading])
         covariance = P - PHt[:, None] * PHt * per_s
         nis = ν * ν * per_s
-    refused = (
-        np.where(skip, np.int64(Refused.GUARD), np.int64(Refused.NOT)) if np.any(skip) else np.zeros(len(s), np.int64)
-    )
-    limit = np.inf if gate is None else quantile(gate, 1)
-    refused[(refused == Refused.NOT) & (nis > limit)] = Refused.GATE
+    refused = np.full(len(s), np.int64(Refused.NOT))
+    if gate is not None:
+        refused[nis > quantile(gate, 1)] = Refused.GATE
+    if skip is not False:
+        refused[np.broadcast_to(skip, refused.shape)] = Refused.GUARD
     posterior = Gaussian(back(mean, 1), back(covariance))
     correction = Correction(at.h, at.innovation, at.R, s[:, None, None], at.H, back(K, 1)[..., None], nis, refused)
-    if refused.any():
-        kept = refused != Refused.NOT
+    kept = refused != Refused.NOT
+    if kept.any():
         np.copyto(mean, x, where=kept)
         np.copyto(covariance, P, where=kept)
     if not all_clear:

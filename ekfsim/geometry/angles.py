@@ -15,6 +15,8 @@ def wrap(angle: Array) -> Array:
     >>> float(wrap(np.radians(270.0)) * 180 / np.pi)
     -90.0
     """
+    if np.ndim(angle) and np.all((angle > -np.pi) & (angle <= np.pi)):
+        return np.array(angle)
     rest = np.fmod(angle, 2 * np.pi)  # exact, as are the sums below: no rounding leads out of the range
     return np.where(rest > np.pi, rest - 2 * np.pi, np.where(rest <= -np.pi, rest + 2 * np.pi, rest))
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from ekfsim.geometry import Array, Integers, engine
 from ekfsim.geometry.broad import broad
+from ekfsim.geometry.bundle import bundle
 from ekfsim.geometry.cells import Cells
 from ekfsim.geometry.fan import fan
 from ekfsim.geometry.grid import Grid
@@ -26,6 +27,7 @@ RECENT = 8  # beams that are remembered
 FEW = 64  # beams that are sooner followed one by one than all at once
 FEW_COMPILED = 16  # the same where compiled code follows them
 FEW_WALLS = 150  # walls that are sooner all tried than searched
+FEWER_WALLS = 48  # and that are so even where the beams lie close together
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,6 +133,8 @@ class Walls:
             ranges, walls, doubtful = compiled.walk(self.cells, x, y, dx, dy, span)
         elif len(x) and (x == x[0]).all() and (y == y[0]).all():
             ranges, walls, doubtful = fan(ends, x[0], y[0], heading, dx, dy, span[0])
+        elif len(ends) > FEWER_WALLS and (together := bundle(ends, x, y, dx, dy, span)) is not None:
+            ranges, walls, doubtful = together
         elif len(ends) <= FEW_WALLS:
             ranges, walls, doubtful = broad(ends, x, y, dx, dy, span)
         else:
@@ -139,6 +143,15 @@ class Walls:
             beams = (each[doubtful] for each in (x, y, dx, dy, span))
             ranges[doubtful], walls[doubtful] = march(self.cells, *beams)
         return ranges, walls
+
+    def near(self, low: Array, high: Array) -> Integers:
+        """The walls whose bounding boxes touch a box from its corner `low` (2,) to `high` (2,)."""
+        first, last = self._boxes
+        return np.flatnonzero(((first <= high) & (last >= low)).all(axis=-1))
+
+    @cached_property
+    def _boxes(self) -> tuple[Array, Array]:
+        return self.segments.min(axis=1), self.segments.max(axis=1)
 
     @cached_property
     def grid(self) -> Grid | None:

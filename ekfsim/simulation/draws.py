@@ -23,6 +23,7 @@ class Draws:
     def __init__(self, seed: int, runs: Integers) -> None:
         self._seed = seed
         self._runs = runs
+        self._neighbours = _neighbours(runs)
 
     def normals(self, i: int) -> Sequence[Array]:
         """The four standard normals of draw i : (…) each"""
@@ -39,16 +40,24 @@ class Draws:
     def _draw(self, i: int, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
         if self._runs.ndim == 0:
             return self._draw_one(i, *divmod(int(self._runs), BLOCK), uniforms)
+        if self._neighbours is not None:
+            return self._draw_neighbours(i, *self._neighbours, uniforms)
         normals_of, uniforms_of = np.empty((4, *self._runs.shape)), np.empty((2, *self._runs.shape))
         blocks = self._runs // BLOCK
-        for b in np.unique(blocks):
+        for b in np.unique(blocks).tolist():
             here = blocks == b
             rows = self._runs[here] % BLOCK
-            generator = self._generator(i, int(b))
+            generator = self._generator(i, b)
             normals_of[:, here] = generator.standard_normal((BLOCK, 4))[rows].T
             if uniforms:
                 uniforms_of[:, here] = generator.random((BLOCK, 2))[rows].T
         return tuple(normals_of), tuple(uniforms_of)
+
+    def _draw_neighbours(self, i: int, b: int, rows: slice, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
+        """The same for runs that follow one another in one block, as those of a study do."""
+        generator = self._generator(i, b)
+        normals = generator.standard_normal((BLOCK if uniforms else rows.stop, 4))[rows]
+        return tuple(normals.T), tuple(generator.random((BLOCK, 2))[rows].T) if uniforms else ()
 
     def _draw_one(self, i: int, b: int, row: int, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
         """The same for one run: of the normals no more than is needed, for the uniforms stand behind all of them."""
@@ -78,6 +87,15 @@ class Stream:
         """The next ones : (rows, …, columns)"""
         drawn = np.stack([generator.standard_normal((rows, columns)) for generator in self._generators], axis=1)
         return drawn.reshape(rows, *self._axes, columns)
+
+
+def _neighbours(runs: Integers) -> tuple[int, slice] | None:
+    """The block that holds all of these runs, and their rows in it, where they follow one another; otherwise None."""
+    if runs.ndim != 1 or not runs.size:
+        return None
+    b, row = divmod(int(runs[0]), BLOCK)
+    end = row + len(runs)
+    return (b, slice(row, end)) if end <= BLOCK and (np.diff(runs) == 1).all() else None
 
 
 def true_start(world: World, draws: Draws) -> Array:
