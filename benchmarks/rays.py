@@ -1,26 +1,33 @@
-"""One beam against 40, 4 000 and 40 000 walls: ekfsim, ir-sim's lidar and shapely side by side.
+"""One beam, a scan, and beams from different places: ekfsim, ir-sim's lidar and shapely side by side.
 
-python benchmarks/rays.py [--quick]
+python benchmarks/rays.py [--quick] [one|scan|places ...]
+
+Many beams are timed with NumPy alone and, where it is installed, with Numba (the extra `fast`). All on one processor.
 """
 
 import argparse
 import math
-from collections.abc import Callable, Iterator
+import os
+from collections.abc import Callable, Iterator, Mapping
 from itertools import cycle
 from types import SimpleNamespace
 from typing import Any
 
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # before NumPy is there: what two threads do is no one's merit
+
 import numpy as np
 import shapely
-from timing import optional, ratios
+from timing import Task, optional, ratios
 
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, engine
 from ekfsim.geometry.walls import Walls
 
 SIDE = 100.0  # m
 REACH = 150.0  # m, more than the map's diagonal: the peers' beams have an end
 CORNERS = 5
 DIFFERENT = 64  # beams that take turns
+SCAN = 360  # beams of a scan
+SOME = {400: 1000, 40: 2000}  # by the number of walls, of 100 000 beams those that a slow peer is timed with, else 200
 
 Beam = tuple[float, float, float]  # x, y in m, heading in rad
 Cast = Callable[[float, float, float], float]
@@ -28,19 +35,103 @@ Cast = Callable[[float, float, float], float]
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="fewer and shorter rounds, and not the largest map")
-    quick = parser.parse_args().quick
-    for count in (40, 4000) if quick else (40, 4000, 40000):
-        rings = world(count)
-        walls = Walls.of(rings)
-        beams = free_beams(rings)
-        casts = {"shapely STRtree": by_tree(walls), "shapely, one union": by_union(walls), **by_irsim(rings)}
-        check(walls, casts, beams)
-        print(f"{count} walls")
-        ours = turns(walls.first, beams)
-        peers = {name: turns(cast, beams) for name, cast in casts.items()}
-        for ratio in ratios(ours, peers, *((3, 0.005) if quick else (9, 0.02))):
+    parser.add_argument("--quick", action="store_true", help="fewer and shorter rounds, and not the largest maps")
+    parser.add_argument("what", nargs="*", default=["one", "scan", "places"], help="one, scan, places; all if not said")
+    options = parser.parse_args()
+    effort = (3, 0.005) if options.quick else (9, 0.02)
+    if "one" in options.what:
+        for count in (40, 4000) if options.quick else (40, 4000, 40000):
+            one_beam(count, effort)
+    if "scan" in options.what:
+        for count in (400,) if options.quick else (40, 400, 4000):
+            scan(count, effort)
+    if "places" in options.what:
+        for count, beams in ((40, 1000), (400, 1000)) if options.quick else PLACES:
+            places(count, beams, effort)
+
+
+PLACES = ((40, 1000), (400, 1000), (40, 7000), (400, 7000), (40, 100_000), (400, 100_000), (40_000, 100_000))
+
+
+def one_beam(count: int, effort: tuple[int, float]) -> None:
+    """One beam at a time."""
+    rings = world(count)
+    walls = Walls.of(rings)
+    beams = free_beams(rings)
+    casts = {"shapely STRtree": by_tree(walls), "shapely, one union": by_union(walls), **by_irsim(rings)}
+    check(walls, casts, beams)
+    print(f"one beam, {count} walls")
+    peers = {name: turns(cast, beams) for name, cast in casts.items()}
+    for ratio in ratios(turns(walls.first, beams), peers, *effort):
+        print(ratio)
+
+
+def scan(count: int, effort: tuple[int, float]) -> None:
+    """A scan from one place; times are those of one of its beams."""
+    rings = world(count)
+    walls = Walls.of(rings)
+    x, y, heading = free_beams(rings)[0]
+    lidar = irsim_lidar(rings, SCAN)
+    angles = heading + np.linspace(-np.pi, np.pi, SCAN)
+    peers: dict[str, Task] = {}
+    if lidar is not None:
+        pose = np.array([[x], [y], [heading]])
+        peers[f"ir-sim Lidar2D.step, {SCAN} beams"] = lambda: lidar.step(pose)
+        lidar.step(pose)
+        agree(walls.cast(np.array([x, y]), heading + lidar.angle_list).range, lidar.range_data)
+    compare(f"a scan of {SCAN} beams, {count} walls", walls, np.array([x, y]), angles, peers, {}, effort)
+
+
+def places(count: int, beams: int, effort: tuple[int, float]) -> None:
+    """As many beams from as many places; times are those of one of them. Slow peers get fewer."""
+    rings = world(count)
+    walls = Walls.of(rings)
+    random = np.random.default_rng(2)
+    origins = free_places(rings, beams, seed=3)
+    angles = random.uniform(-np.pi, np.pi, beams)
+    some = min(beams, SOME.get(count, 200))
+    edges = shapely.linestrings(walls.segments)
+    tree = shapely.STRtree(edges)
+    casts: dict[str, Callable[[], Array]] = {
+        "shapely STRtree, all beams in one query": lambda: all_by_tree(tree, edges, origins[:some], angles[:some])
+    }
+    module: Any = optional("irsim.lib.algorithm.ray_casting_2d")
+    if module is not None:
+        casts["ir-sim's kernel cast_ray_segments, a call a place"] = lambda: by_kernel(
+            module.cast_ray_segments, walls, origins[:some], angles[:some]
+        )
+    for cast in casts.values():
+        agree(walls.cast(origins[:some], angles[:some]).range, cast())
+    title = f"{beams} beams from different places, {count} walls"
+    compare(title, walls, origins, angles, casts, dict.fromkeys(casts, beams / some), effort)
+
+
+def compare(
+    title: str,
+    walls: Walls,
+    origins: Array,
+    angles: Array,
+    peers: Mapping[str, Task],
+    calls: Mapping[str, float],
+    effort: tuple[int, float],
+) -> None:
+    """Print how both engines fare; first that they answer alike."""
+    plain = walls.cast(origins, angles)
+    for name in engine.ENGINES:
+        if name == "numba" and optional("numba") is None:
+            continue
+        engine.use(name)
+        hit = walls.cast(origins, angles)
+        np.testing.assert_allclose(hit.range, plain.range, rtol=1e-12, atol=1e-12)
+        print(f"{title}, {name}")
+        for ratio in ratios(lambda: walls.cast(origins, angles), peers, *effort, calls, len(angles)):
             print(ratio)
+    engine.use("numpy")
+
+
+def agree(ours: Array, theirs: Array) -> None:
+    """Who answers another question is no peer."""
+    np.testing.assert_allclose(theirs, np.where(np.isnan(ours), REACH, ours), atol=1e-6)
 
 
 def world(count: int, seed: int = 0) -> dict[str, Array]:
@@ -59,12 +150,21 @@ def world(count: int, seed: int = 0) -> dict[str, Array]:
 
 def free_beams(rings: dict[str, Array], seed: int = 1) -> list[Beam]:
     """Beams from places outside all polygons."""
+    free = free_places(rings, DIFFERENT, seed).tolist()
+    headings = np.random.default_rng(seed + 1).uniform(-3.1, 3.1, DIFFERENT).tolist()
+    return [(x, y, heading) for (x, y), heading in zip(free, headings, strict=True)]
+
+
+def free_places(rings: dict[str, Array], count: int, seed: int) -> Array:
+    """Places outside all polygons : (count, 2)"""
     random = np.random.default_rng(seed)
     tree = shapely.STRtree(shapely.polygons(list(rings.values())))
-    origins = random.uniform(2, SIDE - 2, (50 * DIFFERENT, 2))
-    inside = tree.query(shapely.points(origins), predicate="intersects")[0]
-    free = np.delete(origins, inside, 0)[:DIFFERENT]
-    return [(x, y, h) for (x, y), h in zip(free.tolist(), random.uniform(-3.1, 3.1, len(free)).tolist(), strict=True)]
+    found = np.empty((0, 2))
+    while len(found) < count:
+        origins = random.uniform(2, SIDE - 2, (count, 2))
+        inside = tree.query(shapely.points(origins), predicate="intersects")[0]
+        found = np.concatenate([found, np.delete(origins, inside, 0)])
+    return found[:count]
 
 
 def turns(cast: Callable[[float, float, float], object], beams: list[Beam]) -> Callable[[], object]:
@@ -111,11 +211,42 @@ def by_union(walls: Walls) -> Cast:
     return cast
 
 
+def all_by_tree(tree: shapely.STRtree, edges: Any, origins: Array, angles: Array) -> Array:
+    """GEOS's tree asked for all beams at once, then the nearest of each beam's crossings."""
+    ends = origins + REACH * np.stack([np.cos(angles), np.sin(angles)], -1)
+    rays = shapely.linestrings(np.stack([origins, ends], 1))
+    ray, wall = tree.query(rays, predicate="intersects")
+    crossings = shapely.intersection(rays[ray], edges[wall])
+    ranges = np.full(len(origins), REACH)
+    np.minimum.at(ranges, ray, shapely.distance(shapely.points(origins)[ray], crossings))
+    return ranges
+
+
+def by_kernel(kernel: Callable[..., tuple[Array, Array]], walls: Walls, origins: Array, angles: Array) -> Array:
+    """ir-sim's kernel knows one origin at a time."""
+    directions = np.stack([np.cos(angles), np.sin(angles)], -1)[:, None]
+    a, b = walls.segments[:, 0], walls.segments[:, 1]
+    return np.array([kernel(o, d, a, b, REACH)[0][0] for o, d in zip(origins, directions, strict=True)])
+
+
 def by_irsim(rings: dict[str, Array]) -> dict[str, Cast]:
-    """ir-sim's own lidar with one beam, in an environment reduced to what that lidar asks of it."""
+    """ir-sim's own lidar with one beam."""
+    lidar = irsim_lidar(rings, 1)
+    if lidar is None:
+        return {}
+
+    def cast(x: float, y: float, heading: float) -> float:
+        lidar.step(np.array([[x], [y], [heading]]))
+        return float(lidar.range_data[0])
+
+    return {"ir-sim Lidar2D.step, one beam": cast}
+
+
+def irsim_lidar(rings: dict[str, Array], beams: int) -> Any:
+    """ir-sim's own lidar in an environment reduced to what that lidar asks of it; None where it is not installed."""
     module: Any = optional("irsim.world.sensors.lidar2d")
     if module is None:
-        return {}
+        return None
     polygons = [shapely.Polygon(ring) for ring in rings.values()]
     for polygon in polygons:
         shapely.prepare(polygon)
@@ -124,14 +255,9 @@ def by_irsim(rings: dict[str, Array]) -> dict[str, Cast]:
         for i, polygon in enumerate(polygons, start=1)
     ]
     parameters = SimpleNamespace(objects=objects, GeometryTree=shapely.STRtree(polygons))
-    lidar = module.Lidar2D(np.zeros((3, 1)), obj_id=0, range_max=REACH, number=1)
+    lidar = module.Lidar2D(np.zeros((3, 1)), obj_id=0, range_max=REACH, number=beams, angle_range=2 * np.pi)
     lidar.parent = SimpleNamespace(_env=SimpleNamespace(_env_param=parameters))
-
-    def cast(x: float, y: float, heading: float) -> float:
-        lidar.step(np.array([[x], [y], [heading]]))
-        return float(lidar.range_data[0])
-
-    return {"ir-sim Lidar2D.step, one beam": cast}
+    return lidar
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from statistics import median
 from time import process_time
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 
 SLICE = 0.02  # s that a candidate runs in each round: long against the clock's tick, short against a neighbour's burst
 
@@ -22,24 +22,37 @@ class Ratio:
 
     peer: str
     ratio: float  # the peer's time over ours, median over the rounds: 10 says that we are ten times as fast
-    seconds: float  # s that one call of the peer takes, median
+    seconds: float  # s that the peer takes for the same work, median
     ours: float  # s that one call of ours takes, median
 
     def __str__(self) -> str:
-        return f"{self.ratio:9.1f} × {self.peer:50s} {self.seconds * 1e6:12.2f} µs, ours {self.ours * 1e6:10.2f} µs"
+        return f"{self.ratio:9.1f} × {self.peer:50s} {self.seconds * 1e6:12.3f} µs, ours {self.ours * 1e6:10.3f} µs"
 
 
-def ratios(ours: Task, peers: Mapping[str, Task], rounds: int = 9, seconds: float = SLICE) -> list[Ratio]:
+def ratios(
+    ours: Task,
+    peers: Mapping[str, Task],
+    rounds: int = 9,
+    seconds: float = SLICE,
+    calls: Mapping[str, float] = MappingProxyType({}),
+    parts: int = 1,
+) -> list[Ratio]:
     """Time `ours` and each of the peers in turn, `rounds` times over, and compare within each round.
 
-    Each is called once to warm up, then as often in a round as fills `seconds` of processor time.
+    Each is called once to warm up, then as often in a round as fills `seconds` of processor time. `calls` tells how
+    many calls of a peer do the work of one of ours, where it is not one; `parts`, of how many alike that work is made:
+    the times are those of a part.
     """
+    weights = [1 / parts, *(calls.get(peer, 1.0) / parts for peer in peers)]
     tasks = [ours, *peers.values()]
     repeats = [_repeats(task, seconds) for task in tasks]
     collecting = gc.isenabled()
     gc.disable()
     try:
-        times = [[_time(task, n) for task, n in zip(tasks, repeats, strict=True)] for _ in range(rounds)]
+        times = [
+            [weight * _time(task, n) for task, n, weight in zip(tasks, repeats, weights, strict=True)]
+            for _ in range(rounds)
+        ]
     finally:
         if collecting:
             gc.enable()

@@ -18,6 +18,7 @@ PLAIN, BORDER = -1, -2  # a cell that lists its walls itself; one where every wa
 class Cells:
     """All cells of a `Grid`; the outermost grid has the number 0, its cells the first numbers."""
 
+    grid: Grid  # the outermost
     ends: Array  # (listed, 4) m: x, y of the first and of the second end of each listed wall, cell after cell
     walls: Integers  # (listed,) the index that each of them has on the map
     start: Integers  # (cells + 1,): cell c lists walls[start[c] : start[c + 1]]
@@ -45,6 +46,7 @@ class Cells:
             listed.append(grid.numbers[grid.walls[kept]])
         walls = np.concatenate(listed)
         return cls(
+            outermost,
             np.ascontiguousarray(outermost.segments[walls].reshape(-1, 4)),
             walls,
             np.concatenate([[0], np.cumsum(np.concatenate(counts))]),

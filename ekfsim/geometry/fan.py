@@ -20,29 +20,26 @@ HALF = 3.0  # rad: a wall that covers more lies at the origin's feet, and its si
 TURN = 2 * np.pi
 
 
-def fan(
-    ends: Array, x: float, y: float, heading: Array, dx: Array, dy: Array, span: float
-) -> tuple[Array, Integers, Integers]:
-    """Ranges and walls of beams from (x, y) m towards `heading` (n,) rad, and which beams are left in doubt.
+def fan(ends: Array, x: float, y: float, dx: Array, dy: Array, span: float) -> tuple[Array, Integers, Integers]:
+    """Ranges and walls of beams from (x, y) m in the unit directions (dx, dy), all (n,), and which are in doubt.
 
-    ends : (W, 4) m: x, y of the first and of the second end of each wall; dx, dy : (n,), the unit directions;
-    span : m, the coordinates' size
+    ends : (W, 4) m: x, y of the first and of the second end of each wall; span : m, the coordinates' size
     """
     ax, ay, bx, by = (ends - [x, y, x, y]).T
     area = ay * bx - ax * by
     unsure = np.abs(area) <= 4 * FINE * span * span  # the origin is near the wall's line, or the wall is tiny
-    wall, beam = _covered(ax, ay, bx, by, heading, unsure, PAD * span)
+    wall, beam = _covered(ax, ay, bx, by, np.arctan2(dy, dx), unsure, PAD * span)
     with np.errstate(divide="ignore", invalid="ignore"):
         r = area[wall] / ((bx - ax)[wall] * dy[beam] - (by - ay)[wall] * dx[beam])
     always = np.flatnonzero(unsure[wall]) if unsure.any() else beam[:0]
     r[always] = np.inf
-    nearest = np.full(len(heading), np.inf)
+    nearest = np.full(len(dx), np.inf)
     np.minimum.at(nearest, beam, r)
     blur = BLUR * span
     r[always] = -np.inf
     near = np.flatnonzero(r <= (nearest + 2 * blur)[beam])
     wall, beam = wall[near], beam[near]
-    spans = np.full(len(heading), span)
+    spans = np.full(len(dx), span)
     exact = measure(ends[wall], np.array(x), np.array(y), dx[beam], dy[beam], spans[beam])
     ranges, walls = first_of(beam, wall, exact, spans, len(ends))
     return ranges, walls, np.flatnonzero((nearest < np.inf) & ~(ranges <= nearest + blur))
@@ -52,17 +49,35 @@ def _covered(
     ax: Array, ay: Array, bx: Array, by: Array, heading: Array, unsure: Booleans, pad: float
 ) -> tuple[Integers, Integers]:
     """All pairs of a wall and a beam that it covers, or that passes within `pad` m of its ends, wall after wall."""
-    heading = heading % TURN
-    order = np.argsort(heading)
-    twice = np.concatenate([heading[order], heading[order] + TURN])
+    ahead = heading - heading[0]
+    ahead = np.where(ahead < 0, ahead + TURN, ahead)
+    order = np.argsort(ahead)
     to_a, to_b = np.arctan2(ay, ax), np.arctan2(by, bx)
-    sweep = (to_b - to_a + np.pi) % TURN - np.pi
+    sweep = to_b - to_a
+    sweep -= TURN * np.rint(sweep / TURN)
     width = np.abs(sweep)
     distance = np.minimum(np.maximum(np.abs(ax), np.abs(ay)), np.maximum(np.abs(bx), np.abs(by)))
-    beside = np.where(distance > pad, pad / np.maximum(distance, pad), np.pi) + PAD
+    beside = np.where(distance > pad, pad / np.maximum(distance, pad), np.pi) + 2 * PAD
     beside = np.where(unsure & (width > HALF), np.pi, beside)
-    low = (np.where(sweep >= 0, to_a, to_b) - beside) % TURN
-    begin = np.searchsorted(twice, low)
-    end = np.searchsorted(twice, low + width + 2 * beside, side="right")
-    wall, nth = spread(np.minimum(end - begin, len(heading)))
-    return wall, order[(begin[wall] + nth) % len(heading)]
+    low = np.where(sweep >= 0, to_a, to_b) - beside - heading[0]
+    low -= TURN * np.floor(low / TURN)
+    begin, end = _between(ahead[order], low, low + width + 2 * beside)
+    counts = np.minimum(end - begin, len(order))
+    wall, nth = spread(counts)
+    return wall, np.concatenate([order, order])[np.repeat(begin % len(order), counts) + nth]
+
+
+def _between(heading: Array, low: Array, high: Array) -> tuple[Integers, Integers]:
+    """Which of the sorted headings is the first from `low` on, and which the first past `high`, counted on for a turn.
+
+    Of evenly spaced headings a division tells.
+    """
+    count = len(heading)
+    step = heading[-1] / max(1, count - 1)
+    if step > 0 and np.abs(heading - step * np.arange(count)).max() <= PAD:
+        turns = [np.where(angle < TURN, 0, 1) for angle in (low, high)]
+        first = np.minimum(np.ceil((low - TURN * turns[0]) / step), count)
+        past = np.minimum(np.floor((high - TURN * turns[1]) / step) + 1, count)
+        return first.astype(np.int64) + count * turns[0], past.astype(np.int64) + count * turns[1]
+    twice = np.concatenate([heading, heading + TURN])
+    return np.searchsorted(twice, low), np.searchsorted(twice, high, side="right")

@@ -12,19 +12,10 @@ from ekfsim.geometry.grid import spread
 from ekfsim.geometry.meeting import TIE
 from ekfsim.geometry.pairs import first_of, measure
 
-BLOCK = 4096  # beams that march together
 
-
-def march(cells: Cells, x: Array, y: Array, dx: Array, dy: Array, span: Array) -> tuple[Array, Integers]:
-    """Ranges and walls of many beams, all (n,); span : (n,) m, the size of the coordinates at each."""
-    ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
-    for first in range(0, len(x), BLOCK):
-        part = slice(first, first + BLOCK)
-        ranges[part], walls[part] = _march(cells, x[part], y[part], dx[part], dy[part], span[part])
-    return ranges, walls
-
-
-def _march(cells: Cells, x: Array, y: Array, dx: Array, dy: Array, span: Array) -> tuple[Array, Integers]:
+def march(cells: Cells, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
+    """Ranges and walls of many beams, all (n,)."""
+    span = cells.grid.size + np.abs(x) + np.abs(y)
     beams = np.stack([x, y, dx, dy, span])
     tie = TIE * span
     limit = np.full(len(x), np.inf)  # nothing farther matters: the nearest range so far, and a tie more
@@ -73,10 +64,10 @@ def _enter(cells: Cells, beams: Array, beam: Integers, grid: Integers) -> tuple[
     )
     u, v = (x - left) / cell, (y - bottom) / cell
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        to_x = np.sort([(1 - u) / dx, (columns - 1 - u) / dx], axis=0)  # where dx is 0: -inf and inf inside, nan or
-        to_y = np.sort([(1 - v) / dy, (rows - 1 - v) / dy], axis=0)  # both alike outside
-        enter = np.maximum(np.maximum(to_x[0], to_y[0]), 0.0)
-        comes = np.flatnonzero(enter <= np.minimum(to_x[1], to_y[1]))
+        west, east, south, north = (1 - u) / dx, (columns - 1 - u) / dx, (1 - v) / dy, (rows - 1 - v) / dy
+        enter = np.maximum(np.maximum(np.minimum(west, east), np.minimum(south, north)), 0.0)
+        leave = np.minimum(np.maximum(west, east), np.maximum(south, north))
+        comes = np.flatnonzero(enter <= leave)  # where dx is 0: -inf and inf inside; nan or both alike outside
         beam, u, v, dx, dy, enter, cell, columns, rows, first = (
             each[comes] for each in (beam, u, v, dx, dy, enter, cell, columns, rows, first)
         )

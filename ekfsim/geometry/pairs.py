@@ -9,8 +9,6 @@ import numpy as np
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.meeting import REACH, TIE, meet
 
-CHUNK = 1 << 16  # beams × walls that are held in memory at a time: few enough for a processor's cache
-
 
 def measure(ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array) -> Array:
     """(n,): the range in m at which beams meet walls, pair by pair, inf where not: the same as `meet`, only sooner.

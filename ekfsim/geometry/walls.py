@@ -6,7 +6,7 @@ its way, whosesoever it is. What a beam through a corner, along a wall or from a
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from math import cos, isfinite, nan, sin
 from typing import Self
 
@@ -14,20 +14,19 @@ import numpy as np
 
 from ekfsim.geometry import Array, Integers, engine
 from ekfsim.geometry.broad import broad
-from ekfsim.geometry.bundle import bundle
 from ekfsim.geometry.cells import Cells
 from ekfsim.geometry.fan import fan
 from ekfsim.geometry.grid import Grid
 from ekfsim.geometry.march import march
 from ekfsim.geometry.meeting import REACH, TIE, meet, see
-from ekfsim.geometry.pairs import CHUNK
 
 COLLINEAR = 1e-9  # rad, and of the polygon's size: edges that differ by less lie on one line
 RECENT = 8  # beams that are remembered
 FEW = 64  # beams that are sooner followed one by one than all at once
 FEW_COMPILED = 16  # the same where compiled code follows them
+CHUNK = 1 << 18  # beams × walls that are held in memory at a time
+BLOCK = 4096  # beams that are followed together: few enough for a processor's cache
 FEW_WALLS = 150  # walls that are sooner all tried than searched
-FEWER_WALLS = 48  # and that are so even where the beams lie close together
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,48 +109,46 @@ class Walls:
         return float(r[0]), int(wall[0])
 
     def _all(self, x: Array, y: Array, heading: Array) -> tuple[Array, Integers]:
-        """`first` of many beams, all (n,), by the way that is quickest for them."""
+        """`first` of many beams, all (n,): quickly, and those that are left in doubt once more by a sure way."""
         ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
-        if self.grid is None:
-            return ranges, walls
-        far = np.abs(x) + np.abs(y)
-        near = np.isfinite(heading) & (far < self.grid.horizon)
-        if near.all():
-            return self._near(x, y, heading, self.grid.size + far)
-        distant = np.isfinite(heading + far) & ~near
-        ranges[near], walls[near] = self._near(x[near], y[near], heading[near], self.grid.size + far[near])
-        d = np.cos(heading[distant]), np.sin(heading[distant])
-        ranges[distant], walls[distant] = brute_force(self.segments, x[distant], y[distant], *d)
+        for start in range(0, len(x) if self.grid else 0, BLOCK):
+            part = slice(start, start + BLOCK)
+            with np.errstate(invalid="ignore"):
+                beams = x[part], y[part], np.cos(heading[part]), np.sin(heading[part])
+            ranges[part], walls[part], doubtful = self._quickly(*beams)
+            if doubtful.size:
+                ranges[start + doubtful], walls[start + doubtful] = self._surely(*(each[doubtful] for each in beams))
         return ranges, walls
 
-    def _near(self, x: Array, y: Array, heading: Array, span: Array) -> tuple[Array, Integers]:
-        """The same from places where rounding is small against a grid's cells. span : (n,) m, the coordinates' size."""
-        ends, dx, dy = self.segments.reshape(-1, 4), np.cos(heading), np.sin(heading)
+    def _quickly(self, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers, Integers]:
+        """Ranges and walls by the way that suits these beams best, and which of them are in doubt."""
+        grid, ends = self.cells.grid, self.segments.reshape(-1, 4)
         if engine.used() == "numba":
             from ekfsim.geometry import compiled
 
-            ranges, walls, doubtful = compiled.walk(self.cells, x, y, dx, dy, span)
-        elif len(x) and (x == x[0]).all() and (y == y[0]).all():
-            ranges, walls, doubtful = fan(ends, x[0], y[0], heading, dx, dy, span[0])
-        elif len(ends) > FEWER_WALLS and (together := bundle(ends, x, y, dx, dy, span)) is not None:
-            ranges, walls, doubtful = together
-        elif len(ends) <= FEW_WALLS:
-            ranges, walls, doubtful = broad(ends, x, y, dx, dy, span)
-        else:
-            return march(self.cells, x, y, dx, dy, span)
-        if doubtful.size:
-            beams = (each[doubtful] for each in (x, y, dx, dy, span))
-            ranges[doubtful], walls[doubtful] = march(self.cells, *beams)
+            return compiled.walk(self.cells, x, y, dx, dy)
+        far = np.abs(x) + np.abs(y)
+        if not (np.isfinite(dx) & (far < grid.horizon)).all():
+            return np.full(x.shape, np.nan), np.full(x.shape, -1), np.arange(len(x))
+        span = grid.size + far
+        if (x == x[0]).all() and (y == y[0]).all():
+            return fan(ends, x[0], y[0], dx, dy, span[0])
+        if len(ends) <= FEW_WALLS:
+            return broad(ends, x, y, dx, dy, span)
+        return *march(self.cells, x, y, dx, dy), np.empty(0, np.int64)
+
+    def _surely(self, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
+        """Cell by cell where rounding is small against a cell, by trying all walls from beyond."""
+        ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
+        far = np.abs(x) + np.abs(y)
+        near = far < self.cells.grid.horizon
+        finite = np.isfinite(far + dx)
+        for some, find in (
+            (finite & near, partial(march, self.cells)),
+            (finite & ~near, partial(brute_force, self.segments)),
+        ):
+            ranges[some], walls[some] = find(x[some], y[some], dx[some], dy[some])
         return ranges, walls
-
-    def near(self, low: Array, high: Array) -> Integers:
-        """The walls whose bounding boxes touch a box from its corner `low` (2,) to `high` (2,)."""
-        first, last = self._boxes
-        return np.flatnonzero(((first <= high) & (last >= low)).all(axis=-1))
-
-    @cached_property
-    def _boxes(self) -> tuple[Array, Array]:
-        return self.segments.min(axis=1), self.segments.max(axis=1)
 
     @cached_property
     def grid(self) -> Grid | None:
@@ -160,9 +157,8 @@ class Walls:
 
     @cached_property
     def cells(self) -> Cells:
-        """The same as arrays, for many beams."""
-        assert self.grid is not None, "there are walls"
-        return Cells.of(self.grid)
+        """The same for many beams, where there is a wall."""
+        return Cells.of(Grid.over(self.segments) if self.grid is None else self.grid)
 
 
 def brute_force(segments: Array, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
