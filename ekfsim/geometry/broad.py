@@ -15,7 +15,7 @@ import numpy as np
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.pairs import first_of, measure
 
-CHUNK = 1 << 14  # beams × walls that are held in memory at a time: few enough for a processor's cache
+ROUGH = 3 << 12  # beams × walls that are held in memory at a time: what a processor has at hand
 FINE = 1e-6  # of the coordinates' size: a wall that looks this short to a beam is not judged in broad strokes
 BLUR = 1e-8  # of the coordinates' size: what a range in broad strokes may be off, and to spare; rounding / FINE is 1e-9
 
@@ -25,26 +25,28 @@ def broad(ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array) ->
 
     ends : (W, 4) m: x, y of the first and of the second end of each wall; span : (n,) m, the coordinates' size
     """
-    ranges, walls, doubtful = np.empty(x.shape), np.empty(x.shape, np.int64), np.empty(x.shape, bool)
     ax, ay, bx, by = ends.T
-    ones = np.ones_like(ax)
+    ones = np.ones(len(ends))
     to_a, to_b = np.stack([ax, ay, ones], -1), np.stack([bx, by, ones], -1)
     to_area = np.stack([by - ay, ax - bx, ay * bx - ax * by], -1)
     aims, origins = np.stack([dy, -dx, y * dx - x * dy]), np.stack([x, y, np.ones_like(x)])
-    step = max(1, CHUNK // len(ends))
+    blur, nearest, side = BLUR * span, np.empty(x.shape), np.empty(x.shape)
+    pairs = []
+    step = max(1, ROUGH // len(ends))
     for first in range(0, len(x), step):
         part = slice(first, first + step)
-        across_a, across_b, r = to_a @ aims[:, part], to_b @ aims[:, part], to_area @ origins[:, part]
-        blur = BLUR * span[part]
+        across_a, across_b, r = to_a @ aims[:, part], to_b @ aims[:, part], to_area @ origins[:, part]  # (W, step)
         with np.errstate(divide="ignore", invalid="ignore"):
-            r /= across_b - across_a
-        sides = across_a * across_b
-        np.copyto(r, np.inf, where=(sides >= 0) | (r < -blur))
-        nearest = r.min(0)
-        wall, which = np.divmod(np.flatnonzero((r <= nearest + 2 * blur) & (r < np.inf)), r.shape[1])
-        beam = which + first
-        exact = measure(ends[wall], x[beam], y[beam], dx[beam], dy[beam], span[beam])
-        ranges[part], walls[part] = first_of(which, wall, exact, span[part], len(ends))
-        unborne = (nearest < np.inf) & ~(ranges[part] <= nearest + blur)
-        doubtful[part] = unborne | (np.abs(sides).min(0) <= (FINE * span[part]) ** 2)
-    return ranges, walls, np.flatnonzero(doubtful)
+            r /= np.subtract(across_b, across_a)
+        sides = np.multiply(across_a, across_b, out=across_a)
+        r = np.where((sides >= 0) | (r < -blur[part]), np.inf, r)
+        least = r.min(0, out=nearest[part])
+        near = np.flatnonzero(r <= np.where(least < np.inf, least + 2 * blur[part], -1))
+        np.abs(sides, out=sides).min(0, out=side[part])
+        wall, beam = np.divmod(near, len(least))
+        pairs.append((wall, beam + first))
+    wall, beam = pairs[0] if len(pairs) == 1 else (np.concatenate(each) for each in zip(*pairs, strict=True))
+    exact = measure(ends[wall], x[beam], y[beam], dx[beam], dy[beam], span[beam])
+    ranges, walls = first_of(beam, wall, exact, span, len(ends))
+    doubtful = (nearest < np.inf) & ~(ranges <= nearest + blur)
+    return ranges, walls, np.flatnonzero(doubtful | (side <= (FINE * span) ** 2))

@@ -14,6 +14,7 @@ import numpy as np
 
 from ekfsim.geometry import Array, Integers, engine
 from ekfsim.geometry.broad import broad
+from ekfsim.geometry.bundle import bundle
 from ekfsim.geometry.cells import Cells
 from ekfsim.geometry.fan import fan
 from ekfsim.geometry.grid import Grid
@@ -27,6 +28,7 @@ FEW_COMPILED = 16  # the same where compiled code follows them
 CHUNK = 1 << 18  # beams × walls that are held in memory at a time
 BLOCK = 4096  # beams that are followed together: few enough for a processor's cache
 FEW_WALLS = 150  # walls that are sooner all tried than searched
+FEWER_WALLS = 48  # and that are so even where the beams lie close together
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +135,8 @@ class Walls:
         span = grid.size + far
         if (x == x[0]).all() and (y == y[0]).all():
             return fan(ends, x[0], y[0], dx, dy, span[0])
+        if len(ends) > FEWER_WALLS and (together := bundle(ends, x, y, dx, dy, span)) is not None:
+            return together
         if len(ends) <= FEW_WALLS:
             return broad(ends, x, y, dx, dy, span)
         return *march(self.cells, x, y, dx, dy), np.empty(0, np.int64)
@@ -149,6 +153,15 @@ class Walls:
         ):
             ranges[some], walls[some] = find(x[some], y[some], dx[some], dy[some])
         return ranges, walls
+
+    def near(self, low: Array, high: Array) -> Integers:
+        """The walls whose bounding boxes touch a box from its corner `low` (2,) to `high` (2,)."""
+        first, last = self._boxes
+        return np.flatnonzero(((first <= high) & (last >= low)).all(axis=-1))
+
+    @cached_property
+    def _boxes(self) -> tuple[Array, Array]:
+        return self.segments.min(axis=1), self.segments.max(axis=1)
 
     @cached_property
     def grid(self) -> Grid | None:
