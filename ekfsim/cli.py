@@ -2,17 +2,22 @@
 
 import sys
 from pathlib import Path
-from typing import Any, Literal, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import click
 
 from ekfsim import process
 from ekfsim.asked import engine_of, scene_of
-from ekfsim.errors import UsageError
+from ekfsim.errors import RunError, UsageError
 from ekfsim.options import FORCE, Result, scene_options, study_options
 from ekfsim.process import Program, heed, say, shown
-from ekfsim.progress import progress
+from ekfsim.progress import blocks_bar, progress
 from ekfsim.version import VERSION
+
+if TYPE_CHECKING:
+    from ekfsim.study.engines import Engine
+    from ekfsim.study.plan import Plan
+    from ekfsim.study.results import Result as StudyResult
 
 
 def main() -> NoReturn:
@@ -221,28 +226,54 @@ def figures(
 
 @ekfsim.command()
 @study_options
-def study(out: Path, resume: bool, force: bool, workers: int, cluster: str | None, **asked: Any) -> None:
+def study(
+    out: Path | None, resume: bool, force: bool, workers: int, cluster: str | None, expect: bool, **asked: Any
+) -> None:
     """Run COMMANDS, or what a study file tells, many times: how often is it lost, and is the filter honest?"""
-    from ekfsim.views.look import get_ready
-
-    get_ready()
     from ekfsim.files import load_study
-    from ekfsim.files.writing import refuse_existing_folder
-    from ekfsim.study.doing import do, results_of
-    from ekfsim.study.journal import journal_in, remove
+    from ekfsim.study.doing import total
+    from ekfsim.study.expectation import promised, verified
     from ekfsim.study.plan import Plan
-    from ekfsim.views.study_folder import FILES, write_study
+    from ekfsim.study.results import Result as StudyResult
+    from ekfsim.views.promise_words import broken, verify
     from ekfsim.views.study_words import conclude
 
+    if out is None and (resume or not expect):
+        raise click.MissingParameter(param_hint="'--out' / '-o'", param_type="option")
     plan = Plan.of(load_study.asked(**asked))
     for warning in plan.warnings:
         say(warning)
+    plan, engine = promised(plan, asked["runs"]) if expect else plan, engine_of(workers, cluster)
+    if out is None:
+        with blocks_bar(plan.blocks) as done:
+            results = [StudyResult(plan.cases[0], total(plan, plan.tasks(), engine, done))]
+    else:
+        results = _into_folder(plan, engine, out, resume, force)
+    if not expect:
+        click.echo(shown(conclude(plan, results)), nl=False)
+        return
+    found = verified(results[0])
+    click.echo(shown(verify(plan, found)), nl=False)
+    if told := broken(plan, found):
+        raise RunError(told)
+
+
+def _into_folder(plan: "Plan", engine: "Engine", out: Path, resume: bool, force: bool) -> "list[StudyResult]":
+    """Do a study, each block safe as soon as it is done, and write its tables and pictures."""
+    from ekfsim.views.look import get_ready
+
+    get_ready()
+    from ekfsim.files.writing import refuse_existing_folder
+    from ekfsim.study.doing import do, results_of
+    from ekfsim.study.journal import journal_in, remove
+    from ekfsim.views.study_folder import FILES, write_study
+
     refuse_existing_folder(out, *FILES, force=force)
     partial = out.with_name(f"{out.name}.partial")
     with journal_in(partial, plan, resume, force) as journal:
         with progress(plan, journal) as done:
-            do(plan, journal, engine_of(workers, cluster), done)
+            do(plan, journal, engine, done)
         results = results_of(plan, journal)
         write_study(plan, results, out, force)
     remove(partial)
-    click.echo(shown(conclude(plan, results)), nl=False)
+    return results

@@ -91,7 +91,10 @@ def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
                      help="Processes on this machine."),
         click.option("--cluster", metavar="ADDRESS", help="The scheduler of a Dask cluster, e.g. tcp://10.0.0.1:8786."),
         click.option("--resume", is_flag=True, help="Go on with a study that did not end."),
-        click.option("--out", "-o", type=Result(), required=True, help="A folder for tables and pictures."),
+        click.option("--expect", is_flag=True,
+                     help="Verify what COMMANDS promises under `expect`: status 1 where it is not kept."),
+        click.option("--out", "-o", type=Result(),
+                     help="A folder for tables and pictures; may be left out with --expect."),
         FORCE,
     ]  # fmt: skip
     for option in reversed(options):

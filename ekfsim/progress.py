@@ -46,6 +46,18 @@ def progress(plan: "Plan", journal: "Journal") -> Iterator[Callable[["Task", "Ta
             raise
 
 
+@contextmanager
+def blocks_bar(total: int) -> Iterator[Callable[[object, object], None]]:
+    """A bar for blocks of which none is kept."""
+    with click.progressbar(length=total, label="blocks", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
+
+        def done(task: object, found: object) -> None:
+            heed()
+            bar.update(1)
+
+        yield done
+
+
 def kept(journal: "Journal", total: int) -> str:
     """What is kept of a study that ends early, and the way on."""
     if not len(journal):
