@@ -13,7 +13,7 @@ from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion, Sensor
 
-CONVERGED = 1e-9  # standard deviations; an iteration that moves every entry by less is the last
+CONVERGED = 1e-12  # standard deviations; an iteration that moves every entry by less is the last
 
 
 @dataclass(frozen=True)

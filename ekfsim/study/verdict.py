@@ -48,7 +48,7 @@ def word_at(at: AtStep) -> Word:
 
 def agrees(above: Share) -> bool:
     """Whether as many runs lie above the median as there should."""
-    return abs(above.value - MEDIAN) <= MEDIAN_WITHIN
+    return MEDIAN - MEDIAN_WITHIN <= above.value <= MEDIAN + MEDIAN_WITHIN
 
 
 def covers(inside: Share) -> bool:
