@@ -25,6 +25,8 @@ def broad(ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array) ->
 
     ends : (W, 4) m: x, y of the first and of the second end of each wall; span : (n,) m, the coordinates' size
     """
+    if not len(ends) or not len(x):
+        return np.full(x.shape, np.nan), np.full(x.shape, -1), np.empty(0, np.int64)
     ax, ay, bx, by = ends.T
     ones = np.ones(len(ends))
     to_a, to_b = np.stack([ax, ay, ones], -1), np.stack([bx, by, ones], -1)

@@ -54,7 +54,7 @@ def bundle(
         ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
         ranges[some], walls[some], doubtful = broad(ends[before], *(each[some] for each in (x, y, dx, dy, span)))
         doubtful = np.concatenate([some[doubtful], lone])
-    return ranges, np.where(walls < 0, -1, before[walls]), doubtful
+    return ranges, np.append(before, -1)[walls], doubtful
 
 
 def _before(ends: Array, ux: float, uy: float, ρ: float, tan_δ: float) -> Integers:

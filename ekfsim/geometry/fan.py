@@ -50,15 +50,15 @@ def _covered(
 ) -> tuple[Integers, Integers]:
     """All pairs of a wall and a beam that it covers, or that passes within `pad` m of its ends, wall after wall."""
     ahead = heading - heading[0]
-    ahead = np.where(ahead < 0, ahead + TURN, ahead)
+    ahead[ahead < 0] += TURN
     order = np.argsort(ahead)
     to_a, to_b = np.arctan2(ay, ax), np.arctan2(by, bx)
     sweep = to_b - to_a
     sweep -= TURN * np.rint(sweep / TURN)
     width = np.abs(sweep)
-    distance = np.minimum(np.maximum(np.abs(ax), np.abs(ay)), np.maximum(np.abs(bx), np.abs(by)))
-    beside = np.where(distance > pad, pad / np.maximum(distance, pad), np.pi) + 2 * PAD
-    beside = np.where(unsure & (width > HALF), np.pi, beside)
+    distance = np.minimum(np.abs(ax) + np.abs(ay), np.abs(bx) + np.abs(by))  # too long by √2 at most
+    beside = np.minimum(4 * pad / np.maximum(distance, pad) + 2 * PAD, np.pi)
+    beside[unsure & (width > HALF)] = np.pi
     low = np.where(sweep >= 0, to_a, to_b) - beside - heading[0]
     low -= TURN * np.floor(low / TURN)
     begin, end = _between(ahead[order], low, low + width + 2 * beside)
@@ -75,9 +75,9 @@ def _between(heading: Array, low: Array, high: Array) -> tuple[Integers, Integer
     count = len(heading)
     step = heading[-1] / max(1, count - 1)
     if step > 0 and np.abs(heading - step * np.arange(count)).max() <= PAD:
-        turns = [np.where(angle < TURN, 0, 1) for angle in (low, high)]
-        first = np.minimum(np.ceil((low - TURN * turns[0]) / step), count)
-        past = np.minimum(np.floor((high - TURN * turns[1]) / step) + 1, count)
-        return first.astype(np.int64) + count * turns[0], past.astype(np.int64) + count * turns[1]
+        again = high >= TURN
+        first, past = np.ceil(low / step), np.floor((high - TURN * again) / step) + 1
+        first, past = np.minimum(first, count), np.minimum(past, count) + count * again
+        return first.astype(np.int64), past.astype(np.int64)
     twice = np.concatenate([heading, heading + TURN])
     return np.searchsorted(twice, low), np.searchsorted(twice, high, side="right")

@@ -68,9 +68,10 @@ def _enter(cells: Cells, beams: Array, beam: Integers, grid: Integers) -> tuple[
         enter = np.maximum(np.maximum(np.minimum(west, east), np.minimum(south, north)), 0.0)
         leave = np.minimum(np.maximum(west, east), np.maximum(south, north))
         comes = np.flatnonzero(enter <= leave)  # where dx is 0: -inf and inf inside; nan or both alike outside
-        beam, u, v, dx, dy, enter, cell, columns, rows, first = (
-            each[comes] for each in (beam, u, v, dx, dy, enter, cell, columns, rows, first)
-        )
+        if len(comes) < len(beam):
+            beam, u, v, dx, dy, enter, cell, columns, rows, first = (
+                each[comes] for each in (beam, u, v, dx, dy, enter, cell, columns, rows, first)
+            )
         i = np.clip((u + enter * dx).astype(np.int64), 1, columns - 2)
         j = np.clip((v + enter * dy).astype(np.int64), 1, rows - 2)
         x_exit = np.where(dx == 0, np.inf, (i + (dx > 0) - u) * cell / dx)

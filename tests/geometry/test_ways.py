@@ -21,6 +21,7 @@ from wall_worlds import (
 
 from ekfsim.geometry import engine
 from ekfsim.geometry.broad import broad
+from ekfsim.geometry.bundle import bundle
 from ekfsim.geometry.cells import BORDER, PLAIN
 from ekfsim.geometry.fan import fan
 from ekfsim.geometry.walls import BLOCK, Walls
@@ -102,6 +103,26 @@ def test_a_scan_however_its_beams_are_spaced(name, place):
     assert_same(found, expected, 1.0, but=doubtful)
     hit = walls.cast(np.array(place), heading)
     assert_same((hit.range, hit.wall), expected, 1.0)
+
+
+@pytest.mark.parametrize("name", WORLDS)
+@pytest.mark.parametrize("spread", [1e-3, 0.1, 2.0])
+def test_beams_that_lie_close_together(name, spread):
+    """And some that do not; where they spread too far there is no bundle."""
+    walls, random = Walls.of(WORLDS[name]), np.random.default_rng(3)
+    formed = 0
+    for origin, heading in zip(*beams(20, seed=4), strict=True):
+        origins = origin + random.normal(0, spread, (200, 2))
+        headings = heading + random.normal(0, spread / 20, 200)
+        origins[:10] += random.uniform(-50, 50, (10, 2))
+        near = near_beams(walls, origins, headings)
+        found = bundle(walls.segments.reshape(-1, 4), *near)
+        if found is not None:
+            formed += 1
+            assert_same(found[:2], by_brute_force(walls, origins, headings), 1.0, but=found[2])
+        hit = walls.cast(origins, headings)
+        assert_same((hit.range, hit.wall), by_brute_force(walls, origins, headings), 1.0)
+    assert formed or name == "stars that overlap" or spread > 1
 
 
 def test_a_cell_of_a_town_lists_its_walls_or_names_the_grid_that_does():
