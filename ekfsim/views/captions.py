@@ -25,8 +25,8 @@ ARROWS = "→↗↑↖←↙↓↘"
 def title(view: View, total: int) -> str:
     """The command and its number, or the instant and what was measured: "3 of 12: move 1.75 m, turn 90°"."""
     entry, inputs = view.step.entry, view.inputs
-    if entry.t is not None:
-        return f"t = {instants(view.since, entry.t)} s: {_measured(entry, inputs)}"
+    if view.span is not None:
+        return f"t = {instants(*view.span)} s: {_measured(entry, inputs)}"
     if entry.command is None and entry.index > 0:
         return f"{entry.index}: {_measured(entry, inputs)}"
     number = f"{entry.index} of {total}" if total else str(entry.index)

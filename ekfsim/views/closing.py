@@ -1,10 +1,18 @@
 """What is said when a run is over: what was done, how far off it ended, and one plain verdict with its evidence."""
 
 from ekfsim.consistency import BAND, LOST, Evidence, Verdict
+from ekfsim.filters.belief import Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.records import Nees
 from ekfsim.summary import Errors, Summary
 from ekfsim.views.numbers import number, turn
+
+REASONS = {
+    Refused.NO_ECHO: "without an echo",
+    Refused.NO_WALL: "where no wall was predicted",
+    Refused.GUARD: "left out by the guard",
+    Refused.GATE: "refused by the gate",
+}
 
 
 def conclude(summary: Summary) -> str:
@@ -29,9 +37,10 @@ def _errors(summary: Summary) -> list[str]:
         return []
     if summary.position.rmse is None or summary.heading.rmse is None:
         return ["The errors are unknown: the estimate is no number"]
+    alone = "by odometry alone" if summary.duration is None else "by the motion inputs alone"
     return [
-        f"Position error: {_metres(summary.position)}; by odometry alone {_metres(summary.reckoned_position)}",
-        f"Heading error: {_degrees(summary.heading)}; by odometry alone {_degrees(summary.reckoned_heading)}",
+        f"Position error: {_metres(summary.position)}; {alone} {_metres(summary.reckoned_position)}",
+        f"Heading error: {_degrees(summary.heading)}; {alone} {_degrees(summary.reckoned_heading)}",
     ]
 
 
@@ -80,7 +89,7 @@ def _nees(measured: Nees) -> str:
 
 
 def _readings(summary: Summary) -> str:
-    refused = ", ".join(f"{n} {reason.word}" for reason, n in sorted(summary.refused.items()))
+    refused = ", ".join(f"{n} {REASONS[reason]}" for reason, n in sorted(summary.refused.items()))
     told = f"; {_count(sum(summary.refused.values()), 'reading')} not used ({refused})" if refused else ""
     return f"{_count(summary.updates, 'update')}{told}"
 

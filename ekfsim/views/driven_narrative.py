@@ -23,14 +23,19 @@ FIX = "A position was recorded that the filter is not given: (x, y) = (%.6g, %.6
 
 
 def started(view: View, probability: float) -> str:
-    """The first belief, and in which units it is told."""
+    """The first belief, and in which units it is told, and since when times are."""
     names = view.layout.names
     headings = " and ".join(names[i] for i in view.layout.headings)
+    clock = f"Times are told in s since the start, which the log stamps {instant(view.start)}\n" if view.start else ""
     return (
-        f"The state is ({', '.join(names)}): {headings} in degrees, all else and the matrices in m, s and rad\n"
-        f"First state estimate is {state(view.belief.mean, view.layout)}\n"
-        f"First state covariance matrix is:\n{matrix(view.belief.covariance)}\n"
-    ) + _beside_truth(view, probability)
+        clock
+        + (
+            f"The state is ({', '.join(names)}): {headings} in degrees, all else and the matrices in m, s and rad\n"
+            f"First state estimate is {state(view.belief.mean, view.layout)}\n"
+            f"First state covariance matrix is:\n{matrix(view.belief.covariance)}\n"
+        )
+        + _beside_truth(view, probability)
+    )
 
 
 def moved(view: View, probability: float) -> str:
@@ -52,7 +57,7 @@ def read(view: View, guarded: bool) -> str:
     assert isinstance(given, Reading)
     nothing = all(map(math.isnan, given.z.tolist()))
     told = "nothing came back" if nothing else quantities(given.sensor.outputs, given.z, directions=True)
-    at = "" if view.step.entry.t is None else f"At t = {instant(view.step.entry.t)} s "
+    at = "" if view.span is None else f"At t = {instant(view.span[1])} s "
     return f"==>{at}{given.name} was read: {told}\n{doubts(view.step, guarded)}"
 
 
@@ -115,9 +120,9 @@ def _beside_truth(view: View, probability: float) -> str:
 
 def _span(view: View) -> str:
     """When the inputs of a view came, and how many there were."""
-    first, last = view.since, view.step.entry.t
-    if first is None or last is None:
+    if view.span is None:
         return "The motion input was" if view.inputs == 1 else f"{view.inputs} motion inputs; the last"
+    first, last = view.span
     if view.inputs == 1:
         return f"At t = {instant(last)} s the motion input was"
     return f"From t = {instant(first)} s to {instant(last)} s: {view.inputs} motion inputs; the last"

@@ -3,11 +3,15 @@
 import math
 from collections.abc import Iterable, Sequence
 
+import numpy as np
+
 from ekfsim.geometry import Array
 from ekfsim.models.layout import Layout
 from ekfsim.models.protocols import Quantity
 
 NOISE = 1e-15  # what is smaller is a rounding error of metres, radians or their squares
+GRAIN = 1e-11  # m, degrees: of a pose, what is smaller is what sums of many steps make of 0
+ROUNDING = 1e-14  # of the largest number of a matrix: the same of its others
 MANY = 8  # numbers of a reading, rows and columns of a matrix; of more only so many are told
 UNITS = {"rad": "degrees", "rad/s": "degrees/s"}  # what a person reads in place of it
 
@@ -46,17 +50,21 @@ def heading(angle: float) -> float:
     ('90', '180')
     """
     degrees = math.degrees(angle)
-    return degrees + 360 if degrees <= -179.9995 else degrees
+    return degrees + 360 if degrees <= -179.9995 else _grained(degrees)
 
 
 def pose(state: Iterable[float]) -> tuple[float, float, float]:
     """x and y in m, θ in degrees.
 
-    >>> pose([1.0, 2.5, math.pi])
-    (1.0, 2.5, 180.0)
+    >>> pose([1.0, 2.5, math.pi]), pose([1e-14, -0.5, -1e-14])
+    ((1.0, 2.5, 180.0), (0.0, -0.5, 0.0))
     """
     x, y, θ = state
-    return x, y, heading(θ)
+    return _grained(x), _grained(y), heading(θ)
+
+
+def _grained(value: float) -> float:
+    return 0.0 if abs(value) < GRAIN else value
 
 
 def instant(t: float) -> str:
@@ -113,8 +121,11 @@ def matrix(A: Array) -> str:
     >>> print(matrix(np.array([[1.0, 0.5], [0.25, 1 / 3]])), end="")
     [[1 0.5]
     [0.25 0.333333]]
+    >>> print(matrix(np.array([[1.0, -6.97e-15]])), end="")
+    [[1 0]]
     """
     rows, columns = A.shape
+    A = np.where(np.abs(A) < ROUNDING * np.nanmax(np.abs(A), initial=0.0), 0.0, A)
     lines = [
         f"[{' '.join([*map(number, row[:MANY]), *(['…'] if columns > MANY else [])])}]" for row in A[:MANY].tolist()
     ]

@@ -30,7 +30,8 @@ class View:
     inputs: int = 1  # how many steps the view gathers
     before: Belief | None = None  # the belief before the first of them, where more than one may be gathered
     layout: Layout = POSE  # of the state that is estimated
-    since: float | None = None  # s, the instant of the first of the steps
+    since: float | None = None  # s, the instant of the first of the steps, as stamped
+    start: float = 0.0  # s, the stamp of the start
 
     @property
     def belief(self) -> Belief:
@@ -42,6 +43,12 @@ class View:
         """What that belief says of the pose, which is drawn : (3,), (3, 3)"""
         return posed(self.belief, self.layout)
 
+    @property
+    def span(self) -> tuple[float, float] | None:
+        """The first and the last instant of its steps, in s since the start; None where there is no clock."""
+        last = self.step.entry.t
+        return None if last is None else ((last if self.since is None else self.since) - self.start, last - self.start)
+
     def path(self) -> Array:
         """All estimated positions from the start to the one that is drawn : (n, 2) m"""
         return np.array([*self.settled[: self.corners], _position(self.belief, self.layout)])
@@ -50,14 +57,15 @@ class View:
 def views(steps: Iterable[Step], layout: Layout = POSE) -> Iterator[View]:
     """Every view of a run, in order. Until the next motion the path's last corner moves with each revised estimate."""
     settled: list[Array] = []
-    number = itertools.count()
+    number, start = itertools.count(), None
     for first, step, inputs in _seen(steps):
+        start = first.entry.t or 0.0 if start is None else start
         before = first.prior if _gathered(first) else None
         if before is not None or isinstance(step.entry.command, Move):
             settled.append(_position(first.prior, layout))
         if isinstance(step.entry.given, Reading):
-            yield View(next(number), step, True, settled, len(settled), layout=layout)
-        yield View(next(number), step, False, settled, len(settled), inputs, before, layout, first.entry.t)
+            yield View(next(number), step, True, settled, len(settled), layout=layout, start=start)
+        yield View(next(number), step, False, settled, len(settled), inputs, before, layout, first.entry.t, start)
 
 
 def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, Step, int]]:

@@ -122,13 +122,17 @@ def seconds(t: float) -> str:
     return (text[:-1] if text.endswith("0") else text).replace("-", "−")
 
 
-def instants(since: float | None, t: float) -> str:
+def instants(first: float, last: float) -> str:
     """What a view covers, in s.
 
-    >>> instants(None, 14.0), instants(12.01, 14.0)
-    ('14.00', '12.01–14.00')
+    >>> instants(14.0, 14.0), instants(12.01, 14.0), instants(0.105, 0.2)
+    ('14.00', '12.01–14.00', '0.105–0.200')
     """
-    return seconds(t) if since is None or since == t else f"{seconds(since)}–{seconds(t)}"
+    begin, end = seconds(first), seconds(last)
+    if first == last:
+        return end
+    digits = max(len(begin.partition(".")[2]), len(end.partition(".")[2]))
+    return f"{first:.{digits}f}–{last:.{digits}f}".replace("-", "−")
 
 
 def in_units(value: float, unit: str) -> str:

@@ -172,7 +172,7 @@ def _title(view: View, world: World) -> str:
             what = f"{name}, {outcome(step, view.beam)}"
         case _:
             what = f"the start in {world.name}"
-    return f"{entry.index if entry.t is None else f't = {instants(view.since, entry.t)} s'}: {what}"
+    return f"{entry.index if view.span is None else f't = {instants(*view.span)} s'}: {what}"
 
 
 def _scale(limits: Bounds) -> str:

@@ -64,5 +64,8 @@ def crowd(belief: Belief) -> str:
     """How many of the particles count, where the belief is a crowd: 1/Σ wᵢ² alike ones say as much."""
     if not isinstance(belief, Particles):
         return ""
-    alike = 1 / float(np.sum(belief.weights**2))
-    return f"The particles were weighed by the reading; the {len(belief.weights)} say as much as {alike:.0f} alike\n"
+    weights = belief.weights
+    if np.all(weights == weights[0]):
+        return f"The particles were weighed by the reading, and {len(weights)} alike ones drawn anew by their weights\n"
+    alike = 1 / float(np.sum(weights**2))
+    return f"The particles were weighed by the reading; the {len(weights)} say as much as {alike:.0f} alike\n"

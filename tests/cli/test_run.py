@@ -78,7 +78,7 @@ def test_the_seed_of_the_file_is_overruled(place):
 
 
 def test_a_gate_refuses_readings():
-    assert "not used (1 gate)" in told("short.yaml", "-q", "--gate", "1e-9")
+    assert "not used (1 refused by the gate)" in told("short.yaml", "-q", "--gate", "1e-9")
     assert "not used" not in told("short.yaml", "-q", "--gate", "0.999999999")
 
 
@@ -86,7 +86,7 @@ def test_a_guard_leaves_ambiguous_beams_out(place):
     (place / "corner.yaml").write_text("world: world.yaml\ncommands: [{sense: {angle: 26}}]")  # past the desk's corner
     assert "This beam is ambiguous" in told("corner.yaml")
     assert "This beam is ambiguous" not in told("corner.yaml", "--guard", "off")
-    assert "not used (1 guard)" in told("corner.yaml", "--guard", "skip")
+    assert "not used (1 left out by the guard)" in told("corner.yaml", "--guard", "skip")
 
 
 def test_confidence_scales_the_ellipse():

@@ -58,7 +58,7 @@ def test_the_closing_lines():
         evidence=Evidence(0.5, 1, nis_readings=1),
     )  # fmt: skip
     assert conclude(summary) == (
-        "The run is over after 5 commands: 1 update; 3 readings not used (1 no echo, 2 gate)\n"
+        "The run is over after 5 commands: 1 update; 3 readings not used (1 without an echo, 2 refused by the gate)\n"
         "Position error: RMSE 0.353553 m, at most 0.4 m; by odometry alone RMSE 1 m, at most 1 m\n"
         "Heading error: RMSE 5.72958 degrees, at most 5.72958 degrees; "
         "by odometry alone RMSE 11.4592 degrees, at most 11.4592 degrees\n"
@@ -71,7 +71,8 @@ def test_a_run_with_a_clock_counts_its_inputs_and_readings():
         steps=7, inputs=4, updates=2, refused={Refused.GATE: 1}, path=of(0.3, -0.4), first_t=2.0, last_t=3.5
     )
     assert conclude(summary) == (
-        "The run is over after 4 motion inputs and 3 readings over 1.5 s: 2 updates; 1 reading not used (1 gate)\n"
+        "The run is over after 4 motion inputs and 3 readings over 1.5 s: 2 updates; "
+        "1 reading not used (1 refused by the gate)\n"
         "Distance to the expected path: RMSE 0.353553 m, at most 0.4 m\n"
         "Verdict: no evidence: not one reading could be held against a prediction\n"
     )

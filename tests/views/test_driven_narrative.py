@@ -9,11 +9,13 @@ from recordings import BEAM, FIRST, MARKER, entry, recording, speeds, wheels
 
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Correction, Refused
+from ekfsim.filters.pf import PF
 from ekfsim.localization import play
 from ekfsim.models.echo import Echo
 from ekfsim.records import Entry, Reading, Step
 from ekfsim.version import VERSION
 from ekfsim.views.narrative import narrate
+from ekfsim.views.numbers import matrix, pose
 from ekfsim.views.playback import View, views
 
 GOLDEN = Path(__file__).with_name("recorded_narrative.txt")
@@ -40,7 +42,7 @@ def test_every_filter_can_be_told(made, filter):
 def test_the_start_says_what_should_be_known_of_the_filter():
     remark = "The filter kf: linearised once, at the first belief\n"
     assert remark in told(recording(filter="kf"))[0]
-    assert "The filter pf: 500 particles\n" in told(recording(filter="pf"))[0]
+    assert f"The filter pf: {PF.count} particles\n" in told(recording(filter="pf"))[0]
     assert "The filter" not in told(recording())[0]
 
 
@@ -52,7 +54,12 @@ def test_the_start_says_which_reading_of_the_document_is_followed():
 def test_particles_are_weighed_in_place_of_a_gain():
     story = "".join(told(recording(filter="pf")))
     assert "Kalman gain" not in story
-    assert re.search(r"The particles were weighed by the reading; the 500 say as much as \d+ alike\n", story)
+    weighed = re.findall(r"The particles were weighed by the reading(.*)\n", story)
+    assert len(weighed) > 1
+    for how in weighed:
+        assert how == f", and {PF.count} alike ones drawn anew by their weights" or re.fullmatch(
+            rf"; the {PF.count} say as much as \d+ alike", how
+        )
 
 
 def test_a_larger_state_is_told_by_its_names():
@@ -80,10 +87,19 @@ def test_an_entry_without_a_clock():
     assert told(standing(None, None))[1].startswith("==>The motion input was: left = 0.1 m, ")
 
 
-def test_instants_of_a_clock_that_began_long_ago_can_be_told_apart():
+def test_instants_of_a_clock_that_began_long_ago_are_told_since_the_start():
     t = 1248272272.841
-    text = told(standing(t, t + 0.01, t + 0.02))[1]
-    assert text.startswith("==>From t = 1248272272.851 s to 1248272272.861 s: 2 motion inputs;")
+    start, text = told(standing(t, t + 0.01, t + 0.02))
+    assert "Times are told in s since the start, which the log stamps 1248272272.841\n" in start
+    assert text.startswith("==>From t = 0.01 s to 0.02 s: 2 motion inputs;")
+    assert "Times" not in told(standing(0.0, 0.01))[0]
+
+
+def test_zeros_that_are_sums_of_many_steps_are_told_as_zeros():
+    numbers = np.array([[0.5, 3e-15], [-3e-15, 0.0]])
+    assert matrix(numbers) == "[[0.5 0]\n[0 0]]\n"
+    assert matrix(np.array([[2e-13, 0.0], [0.0, 1e-13]])) == "[[2e-13 0]\n[0 1e-13]]\n"
+    assert pose([1e-13, -1e-13, -1e-14]) == (0.0, 0.0, 0.0)
 
 
 def test_a_direction_is_told_above_minus_180_and_a_difference_as_it_is():
