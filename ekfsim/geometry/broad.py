@@ -7,7 +7,7 @@ origin to both ends, a beam crosses the wall at
 
 All three are linear in what is known of the beam, (x, y, dx, dy, x dy − y dx), so a matrix product gives each for all
 pairs. Rounding may spoil the last digits: the walls that come out nearest, within `BLUR`, are looked at closely, and a
-beam for which the close look does not bear out the broad one is followed anew by trying all walls.
+beam for which the close look does not bear out the broad one is left in doubt, to be followed by a surer way.
 """
 
 import numpy as np
