@@ -7,7 +7,7 @@ import numpy as np
 
 from ekfsim.filters.belief import Belief, Gaussian, Refused, posed
 from ekfsim.filters.chi_square import band, quantile
-from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.geometry import Array, Booleans, Integers, engine
 from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.geometry.ellipse import cone_factor, radius_factor
 from ekfsim.geometry.lanes import front
@@ -85,8 +85,13 @@ def _squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
 def _squared_errors(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
     """The same for many runs, by P = L D Lᵀ where P is clearly of full rank. Held equal to the above by a test."""
     n = e.shape[-1]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        value, clear = _full_rank_squares(front(e, 1), front(P))
+    if n == 3 and engine.used() == "numba":
+        from ekfsim.filters.compiled import squares
+
+        value, clear = squares(front(e, 1), front(P), ROUNDING**2, CLEAR)
+    else:
+        with np.errstate(all="ignore"):
+            value, clear = _full_rank_squares(front(e, 1), front(P))
     rank, impossible = np.full(len(e), n), np.zeros(len(e), bool)
     if not clear.all():
         rest = ~clear

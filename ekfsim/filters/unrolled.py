@@ -14,7 +14,7 @@ from ekfsim.filters.algebra import ROUNDING
 from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.correcting import corrected
-from ekfsim.geometry import Array, Booleans
+from ekfsim.geometry import Array, Booleans, engine
 from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.lanes import back, front
 
@@ -30,33 +30,43 @@ def predicted(P: Array, F: Array, G: Array, M: Array, Q: Array | float) -> Array
     """
     if F.ndim != 3 or F.shape[-1] != 3 or len(F) < MANY or not len(P) == len(G) == len(M) == len(F):
         return None
-    p, f, g, m = front(P), front(F), front(G), front(M)
-    drawn_in = m.any(axis=-1)
-    if not ((f[:, :2] == STILL).all() and (f[2, 2] == 1).all() and not (drawn_in & ~np.eye(len(m), dtype=bool)).any()):
+    propagated = _propagated
+    if engine.used() == "numba":
+        from ekfsim.filters.compiled import propagated
+    new = propagated(front(P), front(F), front(G), front(M))
+    if new is None:
         return None
-    (a, b, c), (_, d, e), (_, _, v) = p
-    α, β = f[0, 2], f[1, 2]
-    new = np.empty((3, 3, len(F)))
+    if np.ndim(Q):
+        Q = np.asarray(Q)
+        new += front(Q) if Q.ndim == 3 else Q[..., None]
+    return back(new)
+
+
+def _propagated(P: Array, F: Array, G: Array, M: Array) -> Array | None:
+    """F P Fᵀ + G M Gᵀ : (3, 3, N)"""
+    drawn_in = M.any(axis=-1)
+    if not ((F[:, :2] == STILL).all() and (F[2, 2] == 1).all() and not (drawn_in & ~np.eye(len(M), dtype=bool)).any()):
+        return None
+    (a, b, c), (_, d, e), (_, _, v) = P
+    α, β = F[0, 2], F[1, 2]
+    new = np.empty(P.shape)
     new[0, 2] = c + α * v
     new[1, 2] = e + β * v
     new[0, 0] = a + α * (c + new[0, 2])
     new[0, 1] = b + β * c + α * new[1, 2]
     new[1, 1] = d + β * (e + new[1, 2])
     new[2, 2] = v
-    reaches = (g.any(axis=-1) & np.diagonal(drawn_in)).tolist()
-    for k in range(len(m)):
+    reaches = (G.any(axis=-1) & np.diagonal(drawn_in)).tolist()
+    for k in range(len(M)):
         for i in range(3):
             if not reaches[i][k]:
                 continue
-            shared = g[i, k] * m[k, k]
+            shared = G[i, k] * M[k, k]
             for j in range(i, 3):
                 if reaches[j][k]:
-                    new[i, j] += shared * g[j, k]
-    Q = np.asarray(Q)
-    if Q.ndim:
-        new += front(Q) if Q.ndim == 3 else Q[..., None]
+                    new[i, j] += shared * G[j, k]
     new[1, 0], new[2, 0], new[2, 1] = new[0, 1], new[0, 2], new[1, 2]
-    return back(new)
+    return new
 
 
 class Linearized(NamedTuple):
@@ -78,21 +88,12 @@ def updated(
     prior: Gaussian, at: Linearized, skip: Booleans | bool, gate: float | None, heading: int
 ) -> tuple[Gaussian, Correction]:
     """K = P⁻ Hᵀ/S      x = x⁻ + K ν      P = P⁻ − P⁻ Hᵀ H P⁻/S          of one number in N runs"""
+    revised = _revised
+    if engine.used() == "numba":
+        from ekfsim.filters.compiled import revised
     x, P, H = front(prior.mean, 1), front(prior.covariance), front(at.H)[0]
-    r, ν = at.R[..., 0, 0], at.innovation[..., 0]
-    PHt = _summed(P * H)
-    p = _summed(H * PHt)
-    s = p + r
-    doubtful = 2 * ROUNDING * _summed(H * H) * (P[0, 0] + P[1, 1] + P[2, 2])
-    clear = (p > doubtful) & (r > SHARP * s) & (ν == ν)
-    all_clear = bool(clear.all())
-    with np.errstate(divide="ignore", invalid="ignore"):
-        per_s = 1 / s
-        K = PHt * per_s
-        mean = x + K * ν
-        mean[heading] = wrap(mean[heading])
-        covariance = P - PHt[:, None] * PHt * per_s
-        nis = ν * ν * per_s
+    s, K, mean, covariance, nis, clear = revised(x, P, H, at.R[..., 0, 0], at.innovation[..., 0], ROUNDING, SHARP)
+    mean[heading] = wrap(mean[heading])
     refused = np.full(len(s), np.int64(Refused.NOT))
     if gate is not None:
         refused[nis > quantile(gate, 1)] = Refused.GATE
@@ -104,9 +105,24 @@ def updated(
     if kept.any():
         np.copyto(mean, x, where=kept)
         np.copyto(covariance, P, where=kept)
-    if not all_clear:
+    if not clear.all():
         _with_care(~clear, prior, at, skip, gate, heading, posterior, correction)
     return posterior, correction
+
+
+def _revised(
+    x: Array, P: Array, H: Array, r: Array, ν: Array, rounding: float, sharp: float
+) -> tuple[Array, Array, Array, Array, Array, Booleans]:
+    """S, K, x, P and NIS, and for which runs they may be trusted."""
+    PHt = _summed(P * H)
+    p = _summed(H * PHt)
+    s = p + r
+    doubtful = 2 * rounding * _summed(H * H) * (P[0, 0] + P[1, 1] + P[2, 2])
+    clear = (p > doubtful) & (r > sharp * s) & (ν == ν)
+    with np.errstate(all="ignore"):
+        per_s = 1 / s
+        K = PHt * per_s
+        return s, K, x + K * ν, P - PHt[:, None] * PHt * per_s, ν * ν * per_s, clear
 
 
 def _with_care(

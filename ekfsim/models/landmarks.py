@@ -41,10 +41,18 @@ class _Landmark:
         """Unit vector to the landmark, distance and bearing. At the landmark: no vector, and no distance."""
         px, py, θ = self.layout.places
         dx, dy = self.x - x[..., px], self.y - x[..., py]
+        return *self._away(x), wrap(np.arctan2(dy, dx) - x[..., θ])
+
+    def _away(self, x: Array) -> tuple[Array, Array, Array]:
+        """The same without the bearing."""
+        px, py, _ = self.layout.places
+        dx, dy = self.x - x[..., px], self.y - x[..., py]
         d = np.hypot(dx, dy)
         away = d > AT_IT
+        if np.all(away):
+            return dx / d, dy / d, d
         ex, ey = (np.divide(part, d, out=np.zeros_like(d), where=away) for part in (dx, dy))
-        return ex, ey, np.where(away, d, 0.0), wrap(np.arctan2(dy, dx) - x[..., θ])
+        return ex, ey, np.where(away, d, 0.0)
 
     def _placed(self, x: Array, rows: list[list[Array | float]]) -> Array:
         """Derivatives by x, y, θ, a row for each entry of z, as H : (…, k, n)"""
@@ -176,7 +184,7 @@ class RangeOnly(_Landmark):
 
     def linearize(self, x: Array) -> tuple[Array, Array, Array]:
         """h (…, 1), H (…, 1, n) and R (…, 1, 1): r = |p_B − p|, ∂r/∂p = −eᵀ, e the unit vector to the landmark."""
-        ex, ey, r, _ = self._polar(x)
+        ex, ey, r = self._away(x)
         return r[..., None], self._placed(x, [[-ex, -ey, 0.0]]), alike(independent(self.sigma), x.shape[:-1])
 
     def residual(self, z: Array, h: Array) -> Array:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.geometry import Array, Booleans, Integers, engine
 from ekfsim.geometry.lanes import back, front, lanes
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.protocols import Quantity
@@ -64,6 +64,10 @@ class Laser:
             return self._linearize_one(*x.tolist())
         direction = x[..., 2] + self.bearing
         hit = self.walls.cast(x[..., :2], direction)
+        if direction.ndim == 1 and engine.used() == "numba":
+            from ekfsim.models.compiled import beamed
+
+            return beamed(direction, hit.range, hit.wall, self.walls.normals, self.range_ratio, ALONG)
         (nx, ny), c, s = front(self._normal(hit.wall), 1), np.cos(direction), np.sin(direction)
         n_d = nx * c + ny * s
         met = np.abs(n_d) > ALONG

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, engine
 from ekfsim.geometry.angles import wrap, wrap_one
-from ekfsim.geometry.lanes import lanes
+from ekfsim.geometry.lanes import back, lanes
 from ekfsim.models.protocols import Quantity
 
 
@@ -28,7 +28,7 @@ class MoveTurn:
         if x.ndim == u.ndim == 1:
             return self._f_one(*x.tolist(), *u.tolist())
         θ, d = x[..., 2], u[..., 0]
-        return np.stack([x[..., 0] + d * np.cos(θ), x[..., 1] + d * np.sin(θ), wrap(θ + u[..., 1])], axis=-1)
+        return back(np.stack([x[..., 0] + d * np.cos(θ), x[..., 1] + d * np.sin(θ), wrap(θ + u[..., 1])]), 1)
 
     def F(self, x: Array, u: Array) -> Array:
         """J_x = ∂Φ/∂x : (…, 3, 3)          eq. 6.  Only the heading bends the way: ∂x/∂θ = −d sin θ, ∂y/∂θ = d cos θ"""
@@ -63,6 +63,10 @@ class MoveTurn:
         """f, F, G, M and Q at once, the sine and cosine taken once; held equal to the above by a test."""
         if x.ndim == u.ndim == 1:
             return self._linearize_one(*x.tolist(), *u.tolist())
+        if len(x) == len(u) and x.ndim == u.ndim == 2 and engine.used() == "numba":
+            from ekfsim.models.compiled import moved
+
+            return *moved(x, u, self.distance_ratio, self.angle_ratio), 0.0
         axes = np.broadcast_shapes(x.shape[:-1], u.shape[:-1])
         x_new, F, G, M = lanes(axes, 3), lanes(axes, 3, 3), lanes(axes, 3, 2), lanes(axes, 2, 2)
         θ, d, a = x[..., 2], u[..., 0], u[..., 1]

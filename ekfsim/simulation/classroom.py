@@ -7,6 +7,7 @@ import numpy as np
 
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
+from ekfsim.geometry.lanes import back
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.laser import Laser
 from ekfsim.models.move_turn import MoveTurn
@@ -114,4 +115,4 @@ def _measure(world: World, pose: Array, bearing: float, draws: Draws, i: int) ->
 
 def _paired(d: Array, a: Array) -> Array:
     """(d, a) as a motion input : (…, 2)"""
-    return np.array([d, a]) if np.ndim(d) == 0 else np.stack(np.broadcast_arrays(d, a), axis=-1)
+    return np.array([d, a]) if np.ndim(d) == 0 else back(np.stack(np.broadcast_arrays(d, a)), 1)

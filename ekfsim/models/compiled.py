@@ -1,0 +1,74 @@
+"""The classroom's motion and sensor, linearised for many runs by Numba: the extra `fast`.
+
+Imported only where geometry/engine.py has been told to use it. All arrays have their entries in front and the runs
+behind: x : (3, N), F : (3, 3, N).
+"""
+
+import math
+
+import numpy as np
+
+from ekfsim.geometry import Array, Integers
+from ekfsim.geometry.compiled import compiled
+from ekfsim.geometry.lanes import back, front, lanes
+
+
+def moved(x: Array, u: Array, distance_ratio: float, angle_ratio: float) -> tuple[Array, Array, Array, Array]:
+    """f, F, G and M of `MoveTurn` for x : (N, 3) and u : (N, 2)"""
+    N = len(x)
+    new = np.empty((3, N)), np.empty((3, 3, N)), np.empty((3, 2, N)), np.empty((2, 2, N))
+    x, u = (np.ascontiguousarray(front(each, 1)) for each in (x, u))
+    _move_turn(x, u, distance_ratio, angle_ratio, *new)
+    f, F, G, M = new
+    return back(f, 1), back(F), back(G), back(M)
+
+
+def beamed(
+    direction: Array, r: Array, wall: Integers, normals: Array, range_ratio: float, along: float
+) -> tuple[Array, Array, Array]:
+    """h, H and R of `Laser` for beams (N,) whose first walls are known"""
+    h, H, R = np.empty(r.shape), lanes(r.shape, 1, 3), np.empty(r.shape)
+    _beam(direction, r, wall, normals, range_ratio, along, h, front(H)[0], R)
+    return h[:, None], H, R[:, None, None]
+
+
+@compiled
+def _move_turn(
+    x: Array, u: Array, distance_ratio: float, angle_ratio: float, f: Array, F: Array, G: Array, M: Array
+) -> None:
+    for n in range(x.shape[1]):
+        θ, d, a = x[2, n], u[0, n], u[1, n]
+        c, s = math.cos(θ), math.sin(θ)
+        f[0, n], f[1, n] = x[0, n] + d * c, x[1, n] + d * s
+        θ += a
+        if not -math.pi < θ <= math.pi:
+            θ = np.fmod(θ, 2 * math.pi)
+            if θ > math.pi:
+                θ -= 2 * math.pi
+            elif θ <= -math.pi:
+                θ += 2 * math.pi
+        f[2, n] = θ
+        F[0, 2, n], F[1, 2, n] = -d * s, d * c
+        G[0, 0, n], G[1, 0, n] = c, s
+        M[0, 0, n], M[1, 1, n] = (distance_ratio * d) ** 2, (angle_ratio * a) ** 2
+    F[0, 0] = F[1, 1] = F[2, 2] = G[2, 1] = 1.0
+    F[0, 1] = F[1, 0] = F[2, 0] = F[2, 1] = G[0, 1] = G[1, 1] = G[2, 0] = M[0, 1] = M[1, 0] = 0.0
+
+
+@compiled
+def _beam(
+    direction: Array, r: Array, wall: Integers, normals: Array, range_ratio: float, along: float,
+    h: Array, H: Array, R: Array,
+) -> None:  # fmt: skip
+    for n in range(len(r)):
+        h[n] = R[n] = math.nan
+        H[0, n] = H[1, n] = H[2, n] = 0.0
+        if wall[n] < 0:
+            continue
+        c, s = math.cos(direction[n]), math.sin(direction[n])
+        nx, ny = normals[wall[n]]
+        n_d = nx * c + ny * s
+        if abs(n_d) <= along:
+            continue
+        h[n], R[n] = r[n], (range_ratio * r[n]) ** 2
+        H[0, n], H[1, n], H[2, n] = -nx / n_d, -ny / n_d, -r[n] * (ny * c - nx * s) / n_d
