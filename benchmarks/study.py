@@ -1,12 +1,13 @@
 """1 000 runs side by side, 100 predictions and updates each, against filterpy in a Python loop over the runs.
 
-Without rays both are handed the same odometry, readings and truth: a range of a landmark after every move. Ours keeps
-every Step with the NEES after the move and after the reading; filterpy keeps nothing and works out one NEES per pair.
+Without rays both are handed the same odometry, readings and truth: a range of a landmark after every move; both judge
+every prediction and every update by its NEES. Ours makes a Step of each, filterpy keeps nothing but a sum.
 With rays both play the classroom's game among 400 walls: draw, drive, measure, predict, update, judge. filterpy's
 ranges come from shapely's STRtree, its Jacobian from the wall that was hit; it does not look whether a wall stands in
 the robot's way, which ours does.
 
-The peers are timed on a part of the runs: a loop over more of them takes as much longer.
+The peers are timed on a part of the runs: a loop over all of them takes as much longer. Ours is timed with NumPy, and
+with compiled code where the extra `fast` is installed.
 
 python benchmarks/study.py [--quick]
 """
@@ -14,7 +15,6 @@ python benchmarks/study.py [--quick]
 import argparse
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from timing import Task, optional, ratios
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.ekf import EKF
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, engine
 from ekfsim.geometry.angles import wrap_one
 from ekfsim.localization import localize, play
 from ekfsim.models.landmarks import RangeOnly
@@ -49,39 +49,34 @@ def main() -> None:
     quick = parser.parse_args().quick
     if optional("filterpy") is None:
         return
-    log, scene = recorded(), among_pillars()
-    some = np.arange(10 if quick else 25)
-    last = None
-    for step in localize(log.entries, EKF(), log.first):
-        last = step
-    assert last is not None
-    theirs = np.array([filtered(log, int(run))[0] for run in some])
-    print(f"no rays: largest difference from filterpy {np.abs(last.posterior.mean[some] - theirs).max():.1e}")
-    compare(
-        "no rays", lambda: every(localize(log.entries, EKF(), log.first)), lambda: filter_all(log, some), some, quick
-    )
-    print(f"rays: {len(scene.world.map.walls.segments)} walls, mean NEES {nees_of(play(scene, np.arange(RUNS)))}")
-    trees = Trees(scene.world.map)
-    compare("rays", lambda: every(play(scene, np.arange(RUNS))), lambda: play_all(scene, trees, some), some, quick)
+    log, scene, some = recorded(), among_pillars(), list(range(10 if quick else 25))
+    trees, all_runs = Trees(scene.world.map), np.arange(RUNS)
+    for name in ("numpy", "numba"):
+        if name == "numba" and optional("numba") is None:
+            continue
+        engine.use(name)
+        *_, last = localize(log.entries, EKF(), log.first)
+        difference = max(np.abs(last.posterior.mean[run] - filtered(log, run)[0]).max() for run in some)
+        print(f"{name}, no rays; largest difference from filterpy {difference:.1e}")
+        compare(lambda: every(localize(log.entries, EKF(), log.first)), lambda: filter_all(log, some), some, quick)
+        *_, last = play(scene, all_runs)
+        ours, theirs = np.median(last.nees.value), np.median([played(scene, trees, run)[1] for run in range(100)])
+        print(
+            f"{name}, {len(scene.world.map.walls.segments)} walls; median NEES at the end {ours:.1f} and {theirs:.1f}"
+        )
+        compare(lambda: every(play(scene, all_runs)), lambda: play_all(scene, trees, some), some, quick)
 
 
-def compare(name: str, ours: Task, peer: Task, some: Array, quick: bool) -> None:
+def compare(ours: Task, peer: Task, some: list[int], quick: bool) -> None:
     """Print how a study compares with a loop over all its runs, of which the peer does some."""
-    for ratio in ratios(ours, {f"filterpy in a loop, {name}": peer}, 3 if quick else 7):
-        many = RUNS / len(some)
-        print(replace(ratio, ratio=ratio.ratio * many, seconds=ratio.seconds * many))
+    loop = "filterpy in a Python loop"
+    for ratio in ratios(ours, {loop: peer}, 3 if quick else 7, calls={loop: RUNS / len(some)}):
+        print(ratio)
 
 
 def every(steps: Iterator[Step]) -> int:
     """Go through a study as one that reduces it does; how many steps that is."""
     return sum(1 for _ in steps)
-
-
-def nees_of(steps: Iterator[Step]) -> str:
-    """The median and the mean NEES at the end."""
-    *_, last = steps
-    assert last.nees is not None
-    return f"{np.nanmedian(last.nees.value):.2f} (median), {np.nanmean(last.nees.value):.2f} (mean) at the end"
 
 
 def recorded(seed: int = 0) -> Log:
@@ -155,6 +150,7 @@ def filtered(log: Log, run: int) -> tuple[Array, float]:
     entries = iter(log.entries[1:])
     for move, reading in zip(entries, entries, strict=True):
         one.predict(move.given.u[run].tolist())
+        total += nees_one(one.x, one.P, move.truth[run])
         x_b, y_b = reading.given.sensor.x, reading.given.sensor.y
 
         def h(x: Array, x_b: float = x_b, y_b: float = y_b) -> Array:
@@ -171,8 +167,8 @@ def filtered(log: Log, run: int) -> tuple[Array, float]:
     return one.x, total
 
 
-def filter_all(log: Log, runs: Array) -> float:
-    return sum(filtered(log, run)[1] for run in runs.tolist())
+def filter_all(log: Log, runs: list[int]) -> float:
+    return sum(filtered(log, run)[1] for run in runs)
 
 
 class Trees:
@@ -197,11 +193,12 @@ class Trees:
         return float(ranges[first]), int(near[first])
 
 
-def played(scene: Scene, trees: Trees, run: int) -> float:
-    """One run of the classroom by filterpy and shapely; the sum of its NEES."""
+def played(scene: Scene, trees: Trees, run: int) -> tuple[float, float]:
+    """One run of the classroom by filterpy and shapely: the sum of its NEES, and the last."""
     commands = [command for repeat in scene.commands for command in repeat.commands] * STEPS
     random = np.random.default_rng([scene.seed, run]).standard_normal((STEPS, 5)).tolist()
     world, noise, one, total, limit = scene.world, NOISE, robot(), 0.0, quantile(GATE, 1)
+    last = math.nan
     one.x, one.P = world.told.start.copy(), np.diag(world.told.sigma**2)
     x, y, θ = (world.start + world.start_sigma * np.array(random[0][:3])).tolist()
     for k, (n1, n2, n3, n4, n5) in enumerate(random):
@@ -209,25 +206,27 @@ def played(scene: Scene, trees: Trees, run: int) -> float:
         d, a = move.distance * (1 + noise.execution_distance * n1), move.angle * (1 + noise.execution_angle * n2)
         x, y, θ = x + d * math.cos(θ), y + d * math.sin(θ), wrap_one(θ + a)
         one.predict((d * (1 + noise.odometry_distance * n3), a * (1 + noise.odometry_angle * n4)))
+        truth = np.array([x, y, θ])
+        total += nees_one(one.x, one.P, truth)
         z = trees.cast(x, y, θ + sense.angle)[0] * (1 + noise.range * n5)
         px, py, pθ = one.x.tolist()
         direction = pθ + sense.angle
         r, wall = trees.cast(px, py, direction)
-        if wall < 0 or math.isnan(z):
-            continue
-        c, s = math.cos(direction), math.sin(direction)
-        nx, ny = trees.normals[wall]
-        n_d = nx * c + ny * s
-        H = np.array([[-nx / n_d, -ny / n_d, -r * (ny * c - nx * s) / n_d]])
-        one.R = np.array([[(noise.range * r) ** 2]])
-        if (z - r) ** 2 <= limit * float((H @ one.P @ H.T + one.R)[0, 0]):
-            one.update(np.array([z]), lambda x, H=H: H, lambda x, r=r: np.array([r]))
-        total += nees_one(one.x, one.P, np.array([x, y, θ]))
-    return total
+        if wall >= 0 and not math.isnan(z):
+            c, s = math.cos(direction), math.sin(direction)
+            nx, ny = trees.normals[wall]
+            n_d = nx * c + ny * s
+            H = np.array([[-nx / n_d, -ny / n_d, -r * (ny * c - nx * s) / n_d]])
+            one.R = np.array([[(noise.range * r) ** 2]])
+            if (z - r) ** 2 <= limit * float((H @ one.P @ H.T + one.R)[0, 0]):
+                one.update(np.array([z]), lambda x, H=H: H, lambda x, r=r: np.array([r]))
+        last = nees_one(one.x, one.P, truth)
+        total += last
+    return total, last
 
 
-def play_all(scene: Scene, trees: Trees, runs: Array) -> float:
-    return sum(played(scene, trees, run) for run in runs.tolist())
+def play_all(scene: Scene, trees: Trees, runs: list[int]) -> float:
+    return sum(played(scene, trees, run)[0] for run in runs)
 
 
 if __name__ == "__main__":
