@@ -32,7 +32,7 @@ class EKF:
         """x⁻ = f(x, u)      P⁻ = F P Fᵀ + G M Gᵀ + Q          eqs 4, 7; u : (…, m) in the motion's units"""
         x, P = belief
         f, F, G, M, Q = motion.linearize(x, u)
-        P_new = unrolled.predicted(P, F, G, M, Q)
+        P_new = unrolled.predicted(P, F, G, M, Q) if F.ndim == 3 else None
         if P_new is None:
             P_new = symmetric(F @ P @ F.mT + G @ M @ G.mT + Q)
         return Gaussian(f, P_new), Prediction(F, G)

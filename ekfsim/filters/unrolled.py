@@ -28,7 +28,7 @@ def predicted(P: Array, F: Array, G: Array, M: Array, Q: Array | float) -> Array
 
     F = [1 0 α; 0 1 β; 0 0 1], as that of any robot which moves alike wherever it stands; M diagonal.
     """
-    if F.ndim != 3 or F.shape[-1] != 3 or len(F) < MANY or not len(P) == len(G) == len(M) == len(F):
+    if F.shape[-1] != 3 or len(F) < MANY or not len(P) == len(G) == len(M) == len(F):
         return None
     propagated = _propagated
     if engine.used() == "numba":

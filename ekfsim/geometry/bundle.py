@@ -30,16 +30,18 @@ def bundle(
     """
     if len(x) < FEWEST:
         return None
-    mx, my, ux, uy = (float(each.sum()) / len(x) for each in (x, y, dx, dy))
-    length = np.hypot(ux, uy)
-    if length < np.cos(SPREAD):
-        return None
-    ux, uy = ux / length, uy / length
     apart = APART * float(np.ptp(ends))
-    from_x, from_y, cosine = np.abs(x - mx), np.abs(y - my), dx * ux + dy * uy
-    close = np.maximum(from_x, from_y) <= apart
-    close &= cosine >= np.cos(SPREAD)
-    lone = np.flatnonzero(~close)
+    for middle in (np.mean, np.median):  # some that stray far move the mean, but not the median
+        mx, my, ux, uy = (float(middle(each)) for each in (x, y, dx, dy))
+        length = np.hypot(ux, uy)
+        if length == 0:
+            return None
+        ux, uy = ux / length, uy / length
+        from_x, from_y, cosine = np.abs(x - mx), np.abs(y - my), dx * ux + dy * uy
+        close = (from_x <= apart) & (from_y <= apart) & (cosine >= np.cos(SPREAD))
+        lone = np.flatnonzero(~close)
+        if not len(lone):
+            break
     if len(lone) > LONE * len(x):
         return None
     ρ = float(np.hypot(from_x.max(where=close, initial=0.0), from_y.max(where=close, initial=0.0)) + SAFE * span.max())
