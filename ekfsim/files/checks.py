@@ -193,6 +193,7 @@ def angle_warnings(file: Sound) -> Iterator[str]:
     """Angles that are hardly meant as degrees."""
     for path, node in file.root.walk():
         is_angle, is_rate = path[-1:] in (("theta",), ("angle",)), path[-1:] in (("omega",), ("turnRate",))
+        is_angle = is_angle or "bearings" in path
         number = file.value(*path) if is_angle or is_rate else None
         if not isinstance(number, int | float):
             continue

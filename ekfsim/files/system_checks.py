@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 
+import numpy as np
 from pydantic import BaseModel
 
 from ekfsim.errors import Mistake
@@ -16,11 +17,26 @@ from ekfsim.files.sensor_file import SensorKeys
 from ekfsim.files.system_file import RobotKeys, fields_of, robot_fields
 from ekfsim.files.telling import at, example, meant
 from ekfsim.systems.drives import DRIVES, Circle, Drive, Spiral, Square, Stretches
-from ekfsim.systems.instruments import Infrared, Instrument, Ultrasonic
+from ekfsim.systems.instruments import (
+    Bearings,
+    Infrared,
+    Instrument,
+    Markers,
+    Pylon,
+    RangeBearings,
+    Ranges,
+    Ultrasonic,
+)
 from ekfsim.world import World
 
 BEAMS: dict[str, type[Ultrasonic] | type[Infrared]] = {"ultrasonic": Ultrasonic, "infrared": Infrared}
-OF_LANDMARKS = ("markers", "rangeBearing", "bearing", "range", "pylon")
+NARROW = 2 * math.pi  # degrees: no bound of a field of view is larger, where radians are written
+LOOKING = (Markers, RangeBearings, Bearings, Ranges, Pylon)
+OF_LANDMARKS = tuple(kind.name for kind in LOOKING)
+ALL_IN_ONE = {  # how one sensor does the work of two
+    **dict.fromkeys(BEAMS, ", with the 'bearings' of both"),
+    **dict.fromkeys(OF_LANDMARKS, ", with the 'views' of both"),
+}
 
 
 def aliases(model: type[BaseModel]) -> dict[str, str]:
@@ -79,8 +95,10 @@ def check_robot(file: Sound, system: str) -> Iterator[Mistake]:
 
 
 def check_sensors(file: Sound) -> Iterator[Mistake]:
-    """Items that hold no sensor or two, and beams that can measure nothing."""
-    yield from check_items(file, ("sensors",), list(aliases(SensorKeys).values()), "sensor")
+    """Items that hold no sensor or two, a second sensor of a kind, and beams that can measure nothing."""
+    kinds = list(aliases(SensorKeys).values())
+    yield from check_items(file, ("sensors",), kinds, "sensor")
+    yield from check_kinds(file, kinds)
     for index in range(file.count("sensors")):
         for kind, document in BEAMS.items():
             path = ("sensors", index, kind)
@@ -89,6 +107,20 @@ def check_sensors(file: Sound) -> Iterator[Mistake]:
                 if near >= far:
                     wrong = f"nothing lies between its nearest {near:g} m and its range of {far:g} m"
                     yield file.mistake(path, wrong, "write a range that is more than the nearest")
+
+
+def check_kinds(file: Sound, kinds: list[str]) -> Iterator[Mistake]:
+    """A second sensor of a kind: its readings would go by the names of the first one's."""
+    lines = dict[str, int]()
+    for index in range(file.count("sensors")):
+        item = file.root.at(("sensors", index))
+        kind = next(iter(item.keys)) if item is not None and len(item.keys) == 1 else ""
+        if item is None or kind not in kinds:
+            continue
+        if kind in lines:
+            wrong = f"the sensor '{kind}' on line {lines[kind]} goes by the same name"
+            yield file.mistake(("sensors", index, kind), wrong, f"keep one of them{ALL_IN_ONE.get(kind, '')}")
+        lines.setdefault(kind, item.keys[kind][0])
 
 
 def system_warnings(file: Sound, world: World, logged: bool) -> Iterator[str]:
@@ -107,6 +139,8 @@ def doubts(instrument: Instrument, world: World, logged: bool) -> Iterator[tuple
         yield f"the sensor '{name}' sees landmarks, and the world has none", "list them under 'landmarks'"
     if name in BEAMS and not any(world.map.rings()):
         yield f"the sensor '{name}' sees walls, and the world has none", "write a 'boundary' or 'obstacles'"
+    if isinstance(instrument, LOOKING) and np.abs(instrument.views).max() < math.radians(NARROW):
+        yield f"the sensor '{name}' sees a few degrees only", "'views' are in degrees: [-30, 30] looks ahead"
     if robot is not None and instrument.rate > robot.rate:
         wrong = f"the sensor '{name}' is to be read at {instrument.rate:g} Hz, the robot moves at {robot.rate:g} Hz"
         yield wrong, "it is read once at each motion"

@@ -204,8 +204,10 @@ def spaced(number: float) -> str:
 def noun(schema: Schema) -> str:
     """What belongs at a place."""
     title = str(schema.get("title", ""))
+    if title.startswith(("a ", "an ")):
+        return title
     kinds = [schema["type"]] if isinstance(schema["type"], str) else schema["type"]
-    return title if title.startswith(("a ", "an ")) else " or ".join(NOUNS[kind] for kind in kinds)
+    return " or ".join(NOUNS[kind] for kind in kinds)
 
 
 def example(schema: Schema) -> str:

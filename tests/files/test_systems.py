@@ -296,6 +296,16 @@ ROOMS = {
             "8:22: sensors[3].bearing.views: an empty list stands here; write e.g. [[-35, 35]]",
         ],
     ),
+    "two of a kind": (
+        GNSS + "sensors:\n  - gnss: {}\n  - markers: {}\n  - gnss: {sigma: 1}\n  - markers: {}\n  - ultrasonic: {}\n"
+        "  - {ultrasonic: {rate: -1}}\n",
+        [
+            "7:11: sensors[2].gnss: the sensor 'gnss' on line 5 goes by the same name; keep one of them",
+            "8:14: sensors[3].markers: the sensor 'markers' on line 6 goes by the same name; keep one of them, with the 'views' of both",
+            "10:18: sensors[5].ultrasonic: the sensor 'ultrasonic' on line 9 goes by the same name; keep one of them, with the 'bearings' of both",
+            "10:25: sensors[5].ultrasonic.rate: -1 is negative; write more than 0",
+        ],
+    ),
     "nothing between": (
         HEAD + "system: pioneer\nsensors:\n  - ultrasonic: {nearest: 2}\n  - infrared: {range: 0.05}\n",
         [
@@ -336,6 +346,9 @@ SCENES = {
         "commands: []\n",
         ["2:11: commands: the robot of the system 'mower' obeys no commands; write 'drive' or 'recording', or name a world of the classroom"],
     ),
+    "a misspelt way": ("mower", "drivs: {path: square}\nfilter: lkf\n", ["2:1: unknown key 'drivs'; did you mean 'drive'?", "3:9: filter: 'lkf' is not known here; did you mean 'kf'?"]),
+    "no way": ("mower", "seed: 3\n", ["1:1: the file says nothing to do; write one of commands, drive, recording"]),
+    "a word for a way": ("mower", "drive: square\n", ["2:8: drive: 'square' is text where a drive belongs; write e.g. {path: spiral, width: 50, length: 75, spacing: 4, duration: 549}"]),
     "two ways": (
         "mower",
         "drive: {path: spiral}\nrecording: {format: mower}\n",
@@ -541,6 +554,15 @@ def test_warnings(worlds):
     lines = told(MOWER, "drive: [{v: 1, omega: 1.5708, for: 1}, {v: 1, omega: -400, for: 1}]\n")
     radians = "1.5708 looks like radians; turn rates are in degrees per second: write 90"
     assert lines == [f"f.yaml:2:23: drive[0].omega: {radians}"]
+    narrow = MOWER + "sensors:\n  - markers: {views: [[-0.5, 0.5], [3, 6.2]]}\n  - bearing: {views: [[-7, 7]]}\n"
+    of_views = "the sensor 'markers' sees a few degrees only; 'views' are in degrees: [-30, 30] looks ahead"
+    assert told(narrow) == [f"world.yaml:6:14: sensors[0].markers: {of_views}"]
+    beams = (
+        HEAD
+        + "system: pioneer\nboundary: [[0, 0], [4, 0], [4, 4]]\nsensors: [{infrared: {bearings: [0, 0.785, 45]}}]\n"
+    )
+    of_beams = "0.785 looks like radians; angles are in degrees: write 45"
+    assert told(beams, "drive: {path: square}\n")[-1] == f"world.yaml:5:37: sensors[0].infrared.bearings[1]: {of_beams}"
 
 
 @pytest.mark.parametrize("name", ["mower", "pioneer", "gnss", "pylon", "landmarks", "ranges"])

@@ -92,7 +92,7 @@ def _samples(
     """What each row tells of a landmark, once for each instrument of the world."""
     instruments = of_landmarks(world, reading, landmarks, (RangeBearings, Bearings, Ranges))
     known, samples = {mark.id for mark in landmarks}, list[Sample]()
-    left_out: dict[str, list[int]] = {"of other robots": [], "of no known barcode": [], "of no known landmark": []}
+    left_out: dict[str, list[int]] = {"of another robot": [], "of no known barcode": [], "of no known landmark": []}
     for row, (t, barcode, r, φ) in enumerate(seen.values.tolist()):
         subject = subject_of.get(int(barcode)) if barcode == int(barcode) else None
         if subject in known:
@@ -102,11 +102,11 @@ def _samples(
         elif subject is None:
             left_out["of no known barcode"].append(row)
         else:
-            left_out["of other robots" if subject in ROBOTS else "of no known landmark"].append(row)
+            left_out["of another robot" if subject in ROBOTS else "of no known landmark"].append(row)
     for whose, rows in left_out.items():
         if rows:
-            count = "1 measurement is" if len(rows) == 1 else f"{len(rows)} measurements are"
-            warnings.append(f"{seen.at(rows[0])}: {count}, from here on, {whose}: left out")
+            more = f", and so are {len(rows) - 1} more" if len(rows) > 1 else ""
+            warnings.append(f"{seen.at(rows[0])}: this measurement is {whose}{more}: left out")
     return samples
 
 

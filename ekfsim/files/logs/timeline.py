@@ -96,6 +96,8 @@ class Timeline:
         if missed := len(self.samples) - len(kept):
             readings = "1 reading lies" if missed == 1 else f"{missed} readings lie"
             warnings.append(f"{self.name}: {readings} before or after the motion: left out")
+        if not kept:
+            warnings.append(f"{self.name}: no reading is left: the filter follows the motion alone")
         return kept
 
 

@@ -42,9 +42,11 @@ def _writer_of(scene: Scene) -> Writer:
     if scene.log is not None:
         raise UsageError(f"{scene.commands_source}: is a recorded log already; name a simulated drive")
     if scene.world.robot is None or scene.drive is None:
-        raise UsageError(f"{scene.commands_source}: only driven systems are recorded: {known}; this is a classroom")
+        wrong = "the classroom has no clock and cannot be recorded"
+        raise UsageError(f"{scene.commands_source}: {wrong}; runs of {known} can")
     if scene.world.system not in WRITERS:
-        raise UsageError(f"{scene.commands_source}: no log of system: {scene.world.system} is written; known: {known}")
+        wrong = f"a run of the system '{scene.world.system}' cannot be recorded"
+        raise UsageError(f"{scene.commands_source}: {wrong}; runs of {known} can")
     return WRITERS[scene.world.system]
 
 

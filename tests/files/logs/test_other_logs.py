@@ -123,8 +123,8 @@ def test_a_row_of_mrclam_holds_until_the_next(tmp_path):
     np.testing.assert_allclose(found.log.first.mean, [0.1, 0, 0.1])
     np.testing.assert_allclose(found.log.first.covariance, np.eye(3) * 1e-4)
     assert told(found) == [
-        "/Robot3_Measurement.dat:2: 1 measurement is, from here on, of other robots: left out",
-        "/Robot3_Measurement.dat:4: 1 measurement is, from here on, of no known barcode: left out",
+        "/Robot3_Measurement.dat:2: this measurement is of another robot: left out",
+        "/Robot3_Measurement.dat:4: this measurement is of no known barcode: left out",
     ]
 
 

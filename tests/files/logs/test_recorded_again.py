@@ -142,8 +142,8 @@ def test_only_simulated_drives_are_recorded(tmp_path):
     classroom = Scene(replace(mower.world, robot=None, system="classroom"), (Sense(0.0),))
     write_log(mower, simulate(mower), tmp_path / "log", force=False)
     for scene, told in (
-        (classroom, f"commands: only driven systems are recorded: {known}; this is a classroom"),
-        (landmarks, f"commands: no log of system: landmarks is written; known: {known}"),
+        (classroom, f"commands: the classroom has no clock and cannot be recorded; runs of {known} can"),
+        (landmarks, f"commands: a run of the system 'landmarks' cannot be recorded; runs of {known} can"),
         (again(mower, tmp_path / "log")[0], "commands: is a recorded log already; name a simulated drive"),
     ):
         with pytest.raises(UsageError) as refused:

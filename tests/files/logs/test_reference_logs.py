@@ -151,7 +151,7 @@ def test_landmarks_of_mrclam(filter, instrument, expected):
     assert len(errors(steps, scene.world.layout)) == 25006
     assert rmse(steps, scene) == pytest.approx(expected, abs=1e-3)
     assert sum(step.correction is not None for step in steps) == 613
-    assert any("176 measurements are, from here on, of other robots: left out" in told for told in warnings)
+    assert any("this measurement is of another robot, and so are 175 more: left out" in told for told in warnings)
     assert [mark.id for mark in scene.world.landmarks] == list(range(6, 21))
 
 
