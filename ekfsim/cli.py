@@ -9,7 +9,7 @@ import click
 from ekfsim import process
 from ekfsim.asked import engine_of, scene_of
 from ekfsim.errors import RunError, UsageError
-from ekfsim.options import FORCE, Result, scene_options, study_options
+from ekfsim.options import FORCE, Result, Source, scene_options, study_options
 from ekfsim.process import Program, heed, say, shown
 from ekfsim.progress import blocks_bar, progress
 from ekfsim.version import VERSION
@@ -202,7 +202,7 @@ def new(file: Path, kind: str | None, force: bool) -> None:
 @click.option("--out", "-o", type=Result(), required=True, help="A folder for the figures, tables and captions.md.")
 @click.option("--format", "formats", type=click.Choice(["png", "svg", "pdf"]), multiple=True, default=("png",),
               show_default=True, help="May be given several times.")  # fmt: skip
-@click.option("--log", help="A recorded log in place of the simulated twin.")
+@click.option("--log", type=Source(), metavar="PATH", help="A recorded log in place of the simulated twin.")
 @click.option("--reading", type=click.Choice(["printed", "coded", "corrected"]), default="corrected",
               show_default=True, help="Which reading of the document, where its print and its code are wrong.")  # fmt: skip
 @click.option("--seed", type=click.IntRange(min=0), help="In place of the scene's seed.")

@@ -16,6 +16,16 @@ SET = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
 
 
+class Source(click.Path):
+    """The name of something that is to be read."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """A name. Fails for the empty one that an unset variable leaves: it would be the folder one stands in."""
+        if value == "":
+            self.fail("the name is empty.", param, ctx)
+        return super().convert(value, param, ctx)
+
+
 class Probability(click.FloatRange):
     """A number between 0 and 1, and neither of them."""
 
@@ -57,7 +67,8 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
         click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names."),
         click.option("--seed", type=click.IntRange(min=0), help="In place of the file's seed."),
         click.option("--run", "run_number", type=click.IntRange(0, MOST), default=0, help="Which run of the seed."),
-        click.option("--log", metavar="PATH", help="A recorded log in place of the one that COMMANDS names."),
+        click.option("--log", type=Source(), metavar="PATH",
+                     help="A recorded log in place of the one that COMMANDS names."),
         READING,
         click.option("--filter", "filter_name", help="In place of the file's filter: kf, ekf, iekf, ukf or pf."),
         GATE,

@@ -258,8 +258,9 @@ def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
 
 
 def kind_of_tree(root: Node) -> Kind:
-    """The kind of a file, by its keys."""
-    return "world" if root.keys.keys().isdisjoint(WAYS) else "commands"
+    """The kind of a file, by its keys; one that names its world is none, even if it says nothing to do."""
+    keys = root.keys.keys()
+    return "world" if keys.isdisjoint(WAYS) and ("world" not in keys or keys & ONLY_IN_WORLDS) else "commands"
 
 
 def in_order_of_place(mistake: Mistake) -> tuple[int, int]:
