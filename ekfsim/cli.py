@@ -2,22 +2,17 @@
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NoReturn
+from typing import Any, Literal, NoReturn
 
 import click
 
 from ekfsim import process
 from ekfsim.asked import engine_of, scene_of
 from ekfsim.errors import RunError, UsageError
-from ekfsim.options import FORCE, Result, Source, scene_options, study_options
+from ekfsim.options import FORCE, Result, Source, compare_options, scene_options, study_options
 from ekfsim.process import Program, heed, say, shown
-from ekfsim.progress import blocks_bar, progress
+from ekfsim.progress import blocks_bar, study_into
 from ekfsim.version import VERSION
-
-if TYPE_CHECKING:
-    from ekfsim.study.engines import Engine
-    from ekfsim.study.plan import Plan
-    from ekfsim.study.results import Result as StudyResult
 
 
 def main() -> NoReturn:
@@ -234,7 +229,7 @@ def study(
     from ekfsim.study.doing import total
     from ekfsim.study.expectation import promised, verified
     from ekfsim.study.plan import Plan
-    from ekfsim.study.results import Result as StudyResult
+    from ekfsim.study.results import Result as OfCase
     from ekfsim.views.promise_words import broken, verify
     from ekfsim.views.study_words import conclude
 
@@ -246,9 +241,9 @@ def study(
     plan, engine = promised(plan, asked["runs"]) if expect else plan, engine_of(workers, cluster)
     if out is None:
         with blocks_bar(plan.blocks) as done:
-            results = [StudyResult(plan.cases[0], total(plan, plan.tasks(), engine, done))]
+            results = [OfCase(plan.cases[0], total(plan, plan.tasks(), engine, done))]
     else:
-        results = _into_folder(plan, engine, out, resume, force)
+        results = study_into(plan, engine, out, resume, force)
     if not expect:
         click.echo(shown(conclude(plan, results)), nl=False)
         return
@@ -258,22 +253,30 @@ def study(
         raise RunError(told)
 
 
-def _into_folder(plan: "Plan", engine: "Engine", out: Path, resume: bool, force: bool) -> "list[StudyResult]":
-    """Do a study, each block safe as soon as it is done, and write its tables and pictures."""
-    from ekfsim.views.look import get_ready
-
-    get_ready()
+@ekfsim.command()
+@compare_options
+def compare(
+    a: str | None, b: str | None, out: Path | None, force: bool, workers: int, cluster: str | None, **asked: Any
+) -> None:
+    """Put two settings of COMMANDS side by side, each run under both on the same draws."""
+    from ekfsim.files import load_study
     from ekfsim.files.writing import refuse_existing_folder
-    from ekfsim.study.doing import do, results_of
-    from ekfsim.study.journal import journal_in, remove
-    from ekfsim.views.study_folder import FILES, write_study
+    from ekfsim.study.comparison import Comparison, with_sides
+    from ekfsim.study.doing import total
+    from ekfsim.views.compare_words import conclude
 
-    refuse_existing_folder(out, *FILES, force=force)
-    partial = out.with_name(f"{out.name}.partial")
-    with journal_in(partial, plan, resume, force) as journal:
-        with progress(plan, journal) as done:
-            do(plan, journal, engine, done)
-        results = results_of(plan, journal)
-        write_study(plan, results, out, force)
-    remove(partial)
-    return results
+    comparison = Comparison.of(with_sides(load_study.asked(**asked, sweeps=()), a, b))
+    for warning in comparison.warnings:
+        say(warning)
+    if out is not None:
+        from ekfsim.views.look import get_ready
+
+        get_ready()
+        from ekfsim.views.compare_folder import FILES, write_comparison
+
+        refuse_existing_folder(out, *FILES, force=force)
+    with blocks_bar(comparison.a.blocks) as done:
+        found = total(comparison, comparison.tasks(), engine_of(workers, cluster), done)
+    if out is not None:
+        write_comparison(comparison, found, out, force)
+    click.echo(shown(conclude(comparison, found)), nl=False)

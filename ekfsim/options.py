@@ -111,3 +111,31 @@ def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
     for option in reversed(options):
         command = option(command)
     return command
+
+
+def compare_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of a comparison: which two settings, of which runs, made where."""
+    options = [
+        click.argument("commands", metavar="COMMANDS|COMPARE.yaml"),
+        click.option("--a", "a", metavar="KEY=VALUE,…",
+                     help="What one side sets: numbers of the world, gate, guard, filter; nothing where left out."),
+        click.option("--b", "b", metavar="KEY=VALUE,…", help="What the other side sets."),
+        click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names."),
+        click.option("--runs", type=click.IntRange(1, 10**9), metavar="N",
+                     help="How many runs; 10000 where nothing says otherwise."),
+        click.option("--seed", type=click.IntRange(0, MOST), help="In place of the file's seed."),
+        click.option("--filter", "filters", metavar="NAME", help="In place of the file's filter, on both sides."),
+        SET,
+        GATE,
+        GUARD,
+        click.option("--reading", type=click.Choice(READINGS),
+                     help="Which to follow where a document's print, its code and the truth differ."),
+        click.option("--workers", type=click.IntRange(1, 1024), default=1, show_default=True, metavar="N",
+                     help="Processes on this machine."),
+        click.option("--cluster", metavar="ADDRESS", help="The scheduler of a Dask cluster, e.g. tcp://10.0.0.1:8786."),
+        click.option("--out", "-o", type=Result(), help="A folder for a table, a picture and what repeats them."),
+        FORCE,
+    ]  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command

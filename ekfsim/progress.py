@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -11,8 +12,10 @@ from ekfsim.errors import RunError
 from ekfsim.process import heed, say
 
 if TYPE_CHECKING:
+    from ekfsim.study.engines import Engine
     from ekfsim.study.journal import Journal
     from ekfsim.study.plan import Plan, Task
+    from ekfsim.study.results import Result
     from ekfsim.study.tally import Tally
 
 
@@ -63,3 +66,24 @@ def kept(journal: "Journal", total: int) -> str:
     if not len(journal):
         return ""
     return f"; {len(journal)} of {total} blocks are kept in {journal.path.parent}, --resume goes on with the rest"
+
+
+def study_into(plan: "Plan", engine: "Engine", out: Path, resume: bool, force: bool) -> "list[Result]":
+    """Do a study, each block safe as soon as it is done, and write its tables and pictures."""
+    from ekfsim.views.look import get_ready
+
+    get_ready()
+    from ekfsim.files.writing import refuse_existing_folder
+    from ekfsim.study.doing import do, results_of
+    from ekfsim.study.journal import journal_in, remove
+    from ekfsim.views.study_folder import FILES, write_study
+
+    refuse_existing_folder(out, *FILES, force=force)
+    partial = out.with_name(f"{out.name}.partial")
+    with journal_in(partial, plan, resume, force) as journal:
+        with progress(plan, journal) as done:
+            do(plan, journal, engine, done)
+        results = results_of(plan, journal)
+        write_study(plan, results, out, force)
+    remove(partial)
+    return results

@@ -15,7 +15,11 @@ from ekfsim.files.settings import OF_COMMANDS, Setting, fault_of, filters_in, re
 from ekfsim.files.source import text_of
 from ekfsim.files.study_file import StudyKeys
 from ekfsim.files.telling import at, tell
+from ekfsim.filters import FILTERS
 from ekfsim.systems.document import DocumentReading
+
+SIDES = ("a", "b")  # of a comparison
+FILTER = "filter"  # a key that only they have
 
 
 @dataclass(frozen=True)
@@ -30,6 +34,8 @@ class Request:
     settings: tuple[Setting, ...] = ()  # for all cells
     sweep: tuple[tuple[Setting, ...], ...] = ()  # for each swept key one setting for each of its values
     reading: DocumentReading = "corrected"
+    a: tuple[Setting, ...] = ()  # of a comparison: what one side sets, its filter included
+    b: tuple[Setting, ...] = ()
     written_by: str = ""  # the version that wrote the study file
     commands_name: str = ""  # as a person writes them on a command line
     world_name: str | None = None
@@ -85,13 +91,15 @@ def read_request(name: str) -> Request:
         mistakes += tell(error, "study", root, str(path))
     else:
         mistakes += setting_mistakes(root, keys, str(path))
+        mistakes += side_mistakes(root, str(path))
     if mistakes:
         raise InputError(sorted(mistakes, key=lambda mistake: (mistake.place.line, mistake.place.column)))
     commands, commands_name = beside(path, keys.study, "commands", root)
     world, world_name = (None, None) if keys.world is None else beside(path, keys.world, "worlds", root)
+    a, b = (tuple(side_of(root, side, str(path))) for side in SIDES)
     return Request(
         commands, world, keys.runs, keys.seed, tuple(keys.filters or ()), tuple(settings_of(root, keys, str(path))),
-        tuple(map(tuple, sweep_of(root, keys, str(path)))), keys.reading, keys.ekfsim,
+        tuple(map(tuple, sweep_of(root, keys, str(path)))), keys.reading, a, b, keys.ekfsim,
         commands_name, world_name,
     )  # fmt: skip
 
@@ -132,6 +140,12 @@ def sweep_of(root: Node, keys: StudyKeys, file: str) -> Iterator[list[Setting]]:
         yield [setting_at(root, ("sweep", key, n), key, file) for n in range(len(values))]
 
 
+def side_of(root: Node, side: str, file: str) -> Iterator[Setting]:
+    """What a comparison's file sets for one of its sides, a or b."""
+    for key in node.keys if (node := root.at((side,))) else ():
+        yield setting_at(root, (side, key), key, file)
+
+
 def setting_at(root: Node, path: tuple[str | int, ...], key: str, file: str) -> Setting:
     """The setting that stands at a place of a study file."""
     node = root.nearest(path)
@@ -154,6 +168,17 @@ def setting_mistakes(root: Node, keys: StudyKeys, file: str) -> Iterator[Mistake
             place: Route = (*path, values.index(second))
             yield at(file, root.nearest(place).mark, place, f"{second.value} stands twice", "delete one")
         told[key] = field_of(path)
+
+
+def side_mistakes(root: Node, file: str) -> Iterator[Mistake]:
+    """Keys that no file has in what the sides of a comparison set, and filters that there are not."""
+    for side in SIDES:
+        for one in side_of(root, side, file):
+            if one.key == FILTER and one.value not in FILTERS:
+                right = f"known: {', '.join(FILTERS)}"
+                yield at(file, root.nearest((side, FILTER)).mark, (side, FILTER), f"'{one.value}' is no filter", right)
+            elif one.key != FILTER and (fault := fault_of(one)):
+                yield at(file, root.nearest((side,)).keys[one.key], (side,), *fault)
 
 
 def paths_of(root: Node, keys: StudyKeys) -> Iterator[tuple[str, ...]]:

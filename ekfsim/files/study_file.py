@@ -10,6 +10,7 @@ from ekfsim.files.fields import Name, Strict, Text
 
 MAX_RUNS = 1_000_000_000
 SWEEP: dict[str, Any] = {"noise.rangeSigmaRatio": [0.005, 0.01, 0.02], "guard": ["warn", "skip"]}
+SIDE: dict[str, Any] = {"guard": "skip", "gate": 0.99, "filter": "ukf"}
 SET: dict[str, Any] = {"noise.rangeSigmaRatio": 0.02}
 
 
@@ -26,6 +27,7 @@ Value = Annotated[
     WithJsonSchema({"title": "a number or a word", "type": ["number", "string"], "examples": [0.02]}),
 ]
 Values = Annotated[list[Value], Field(title="a list of values", min_length=1, examples=[[0.005, 0.01, 0.02]])]
+Side = dict[str, Value]
 FilterName = Annotated[
     str,
     WithJsonSchema({"type": "string", "enum": ["kf", "ekf", "iekf", "ukf", "pf"], "examples": ["ekf"]}),
@@ -69,6 +71,8 @@ class StudyKeys(Strict):
     reading: Literal["printed", "coded", "corrected"] = Field(
         "corrected", description="Which reading of the system's document the filter follows.", examples=["corrected"]
     )
+    a: Side = Field({}, description="What one side of `ekfsim compare` sets.", examples=[{"guard": "off"}])
+    b: Side = Field({}, description="What the other side sets. With a or b this file is a comparison.", examples=[SIDE])
     ekfsim: Text = Field("", description="The version that wrote this file.", examples=["0.1.0"])
 
     @field_validator("filters")

@@ -1,12 +1,13 @@
 """1024 runs side by side → a Tally. They are the unit of work: the runs of a block share their draws."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from ekfsim.consistency import LOST
+from ekfsim.consistency import LOST, error
 from ekfsim.filters.belief import Correction, posed
-from ekfsim.geometry import Integers
+from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.localization import play
 from ekfsim.records import Step, expanded_length
 from ekfsim.scene import Scene
@@ -15,6 +16,7 @@ from ekfsim.study.counting import (
     Judged,
     bounds,
     coverage_counts,
+    covered,
     error_squares,
     nees_counts,
     nees_sums,
@@ -25,8 +27,23 @@ from ekfsim.study.tally import AtSteps, Extreme, OfRuns, Tally, dtype_of
 MOST_STEPS = 1000  # of a longer run so many are told of, evenly spaced, and the last
 
 
+class Ends(NamedTuple):
+    """How each of N runs ended : (N,) each"""
+
+    lost: Booleans
+    inside: Booleans  # the truth is inside the ellipse
+    drawn: Booleans  # the ellipse has an area
+    position: Array  # m, from the truth to the estimate
+    heading: Array  # rad, without its sign
+
+
 def run_block(scene: Scene, first: int, runs: int) -> Tally:
     """What becomes of the runs first … first + runs − 1 of a scene."""
+    return watched(scene, first, runs).tally()
+
+
+def watched(scene: Scene, first: int, runs: int) -> "Watch":
+    """The same, each run told apart at its end."""
     watch = Watch(scene, np.arange(first, first + runs))
     before: Step | None = None
     for step in play(scene, watch.numbers):
@@ -37,7 +54,7 @@ def run_block(scene: Scene, first: int, runs: int) -> Tally:
         before = step
     assert before is not None
     watch.judge(before)
-    return watch.tally()
+    return watch
 
 
 def length_of(scene: Scene) -> int:
@@ -71,6 +88,7 @@ class Watch:
         self._nis, self._nis_dof = np.zeros(numbers.shape), np.zeros(numbers.shape, np.int64)
         self._readings = 0
         self._last: Judged | None = None
+        self._ended: Step | None = None
 
     def weigh(self, correction: Correction) -> None:
         """Take the NIS of a reading into account, refused or not."""
@@ -82,6 +100,7 @@ class Watch:
     def judge(self, step: Step) -> None:
         """Hold the beliefs after a step against the truth."""
         self._step += 1
+        self._ended = step
         now = self._last = Judged.of(step, self.numbers.shape)
         since = np.where(self._lost_from < 0, self._step, self._lost_from)
         self._lost_from = np.where(now.above(LOST), since, -1)
@@ -91,6 +110,17 @@ class Watch:
             counted = nees_counts(now), coverage_counts(pose, truth), nees_sums(now), error_squares(pose, truth)
             self._rows.append(sum(counted, ()))
             self._times.append(math.nan if step.entry.t is None else step.entry.t)
+
+    def ends(self) -> Ends:
+        """How each run ended."""
+        assert self._ended is not None
+        assert self._ended.entry.truth is not None
+        assert self._last is not None
+        pose = posed(self._ended.posterior, self._layout)
+        e = error(pose, self._ended.entry.truth)
+        return Ends(
+            self._last.above(LOST), *covered(e, pose.covariance), np.hypot(e[..., 0], e[..., 1]), abs(e[..., 2])
+        )
 
     def tally(self) -> Tally:
         """What is left when the runs are over."""

@@ -66,13 +66,17 @@ def nees_counts(now: Judged) -> tuple[int, ...]:
 def coverage_counts(pose: Gaussian, truth: Array) -> tuple[int, ...]:
     """Runs inside their ellipse, that have one, inside their cone, that have one. An impossible one is outside."""
     e, P = error(pose, truth), pose.covariance
-    square, rank, off = squared_error(e[..., :2], P[..., :2, :2])
-    off = off | ~np.isfinite(square) | ~np.isfinite(e[..., :2]).all(axis=-1)
-    drawn = (rank == 2) | off
-    inside = drawn & ~off & (square <= radius_factor(COVERAGE) ** 2)
     unsure = (P[..., 2, 2] > ROUNDING**2) | ~(abs(e[..., 2]) <= OUTSIDE)
     held = unsure & inside_cone(pose, truth, COVERAGE)
-    return tuple(int(np.count_nonzero(runs)) for runs in (inside, drawn, held, unsure))
+    return tuple(int(np.count_nonzero(runs)) for runs in (*covered(e, P), held, unsure))
+
+
+def covered(e: Array, P: Array) -> tuple[Booleans, Booleans]:
+    """Which runs are inside their ellipse, and which have one that has an area, or are impossible : (N,) each"""
+    square, rank, off = squared_error(e[..., :2], P[..., :2, :2])
+    off = off | ~np.isfinite(square) | ~np.isfinite(e[..., :2]).all(axis=-1)
+    drawn: Booleans = (rank == 2) | off
+    return drawn & ~off & (square <= radius_factor(COVERAGE) ** 2), drawn
 
 
 def nees_sums(now: Judged) -> tuple[float, ...]:

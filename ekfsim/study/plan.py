@@ -57,6 +57,8 @@ class Plan:
     @classmethod
     def of(cls, request: Request) -> Self:
         """The plan of what is asked. Raises UsageError or InputError where a cell of it is no sound scene."""
+        if request.a or request.b:
+            raise UsageError(f"{request.commands_name}: puts two settings side by side; run it with `ekfsim compare`")
         cells = math.prod(map(len, request.sweep))
         if cells * max(len(request.filters), 1) > MOST_CASES:
             wrong = f"the grid has {cells} cells for {max(len(request.filters), 1)} filters"

@@ -45,15 +45,15 @@ def study_lines(plan: Plan) -> Iterator[str]:
     if request.sweep:
         yield "sweep:"
         for values in request.sweep:
-            yield f"  {values[0].key}: [{', '.join(map(_written, values))}]"
+            yield f"  {values[0].key}: [{', '.join(map(written, values))}]"
     if request.settings:
         yield "set:"
-        yield from (f"  {one.key}: {_written(one)}" for one in request.settings)
+        yield from (f"  {one.key}: {written(one)}" for one in request.settings)
     yield f"reading: {request.reading}"
     yield f"ekfsim: '{VERSION}'"
 
 
-def _written(one: Setting) -> str:
+def written(one: Setting) -> str:
     """A value as YAML: numbers as they were written, words in quotes."""
     if isinstance(scalar(one.value), int | float):
         return one.value

@@ -72,7 +72,7 @@ def draw_study(plan: Plan, results: Sequence[Result], folder: Path) -> None:
 def picture(plan: Plan, results: Sequence[Result], title: str, quantities: Sequence[Quantity]) -> Figure:
     """One picture: lines over the steps where nothing is swept, over the values of one key, maps for more."""
     if len(plan.keys) < 2:
-        figure = _sheet(8.0, 0.8 + 2.3 * len(quantities) + (1.2 if len(quantities) == 1 else 0))
+        figure = sheet(8.0, 0.8 + 2.3 * len(quantities) + (1.2 if len(quantities) == 1 else 0))
         rows = figure.subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
         draw = _over_steps if not plan.keys else _over_values
         for axes, quantity in zip(rows, quantities, strict=True):
@@ -102,7 +102,7 @@ def told(plan: Plan) -> str:
     return ", ".join(f for f in facts if f.partition(" ")[0] not in swept and not f.endswith(" None"))
 
 
-def _sheet(width: float, height: float) -> Figure:
+def sheet(width: float, height: float) -> Figure:
     """A figure that no window manages, with room for its foot. width, height : in"""
     figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
     FigureCanvasAgg(figure)
@@ -169,7 +169,7 @@ def _maps(plan: Plan, results: Sequence[Result], quantities: Sequence[Quantity])
     down, across = ([one.value for one in values] for values in plan.request.sweep[-2:])
     shown = held[:MOST_MAPS]
     wide, high = max(0.62 * len(across), 2.2) + 0.9, max(0.36 * len(down), 1.4) + 0.9
-    figure = _sheet(max(wide * len(shown) + 0.9, 6.0), high * len(quantities) + 0.7)
+    figure = sheet(max(wide * len(shown) + 0.9, 6.0), high * len(quantities) + 0.7)
     grid = figure.subplots(len(quantities), len(shown), squeeze=False, sharex=True, sharey=True)
     for row, quantity in zip(grid, quantities, strict=True):
         shares = [np.array([quantity.of(result.last).value for result in cells]) for _, cells in shown]

@@ -9,6 +9,9 @@ from ekfsim.study.expectation import findings
 from ekfsim.study.results import Share
 
 
+NONE = Share(0, 100)
+
+
 @dataclass
 class Found:
     """What a study of 100 runs found, as far as a promise asks for it."""
@@ -17,8 +20,8 @@ class Found:
     nis_below: int = 0
     nees_above: int = 0
     nees_below: int = 0
-    lost: Share = Share(0, 100)
-    ellipse: Share = Share(0, 100)
+    lost: Share = NONE
+    ellipse: Share = NONE
     runs: int = 100
 
     @property

@@ -1,0 +1,65 @@
+"""The folder of a comparison: a table, a picture, and all that is needed to repeat it."""
+
+import csv
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TextIO
+
+from ekfsim.files.load_study import FILTER
+from ekfsim.files.source import bytes_of
+from ekfsim.files.writing import whole_folder
+from ekfsim.study.comparison import Comparison
+from ekfsim.study.pairs import Pairs
+from ekfsim.study.plan import world_of
+from ekfsim.version import VERSION
+from ekfsim.views.compare_picture import draw_comparison
+from ekfsim.views.compare_words import measures, settings
+from ekfsim.views.study_folder import written
+
+FILES = ("compare.csv", "compare.png", "compare.yaml", "commands.yaml", "world.yaml")
+HEAD = ("measure", "unit", "runs", "a", "b", "difference", "low", "high", "only_a", "only_b")
+ORIGIN = ("a_sets", "b_sets", "seed", "ekfsim")
+
+
+def write_comparison(comparison: Comparison, found: Pairs, out: Path, force: bool) -> None:
+    """Write the folder, whole or not at all."""
+    with whole_folder(out, *FILES, force=force) as folder:
+        with (folder / "compare.csv").open("w", newline="", encoding="utf-8") as file:
+            write_table(file, comparison, found)
+        draw_comparison(comparison, found, folder / "compare.png")
+        commands, world = comparison.request.commands, world_of(comparison.request)
+        (folder / "commands.yaml").write_bytes(bytes_of(commands, str(commands)))
+        (folder / "world.yaml").write_bytes(bytes_of(world, str(world)))
+        (folder / "compare.yaml").write_text("".join(f"{line}\n" for line in lines(comparison)), encoding="utf-8")
+
+
+def write_table(file: TextIO, comparison: Comparison, found: Pairs) -> None:
+    """A row for each measure, in SI units; no date and no path."""
+    table = csv.writer(file, lineterminator="\n")
+    table.writerow([*HEAD, *ORIGIN])
+    sides = [settings(plan, comparison) for plan in (comparison.a, comparison.b)]
+    for measure in measures(found):
+        numbers = ("" if math.isnan(number) else f"{number:.6g}" for number in measure.found)
+        alone = ("" if runs is None else runs for runs in (measure.a_alone, measure.b_alone))
+        origin = (*sides, comparison.a.seed, VERSION)
+        table.writerow([measure.name, measure.unit, measure.runs, *numbers, *alone, *origin])
+
+
+def lines(comparison: Comparison) -> Iterator[str]:
+    """A file of this comparison; the commands and the world lie beside it as they were."""
+    request = comparison.request
+    yield "# `ekfsim compare compare.yaml` makes this comparison again."
+    yield "study: commands.yaml"
+    yield "world: world.yaml"
+    yield f"runs: {request.runs}"
+    yield f"seed: {comparison.a.seed}"
+    if request.settings:
+        yield "set:"
+        yield from (f"  {one.key}: {written(one)}" for one in request.settings)
+    for name, plan, told in (("a", comparison.a, request.a), ("b", comparison.b, request.b)):
+        yield f"{name}:"
+        yield f"  {FILTER}: {plan.cases[0].filter}"
+        yield from (f"  {one.key}: {written(one)}" for one in told if one.key != FILTER)
+    yield f"reading: {request.reading}"
+    yield f"ekfsim: '{VERSION}'"
