@@ -34,7 +34,7 @@ def nees(belief: Belief, truth: Array, layout: Layout = POSE) -> Nees:
     """Normalised estimation error squared of the pose, aware of the rank of its P. truth : (…, 3)"""
     pose = posed(belief, layout)
     value, rank, impossible = squared_error(error(pose, truth), pose.covariance)
-    return Nees(np.where(impossible, np.nan, value) if impossible.any() else value, rank, impossible)
+    return Nees(np.where(impossible, np.nan, value) if np.count_nonzero(impossible) else value, rank, impossible)
 
 
 def inside_ellipse(belief: Gaussian, truth: Array, probability: float) -> Booleans:

@@ -19,7 +19,7 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.lanes import back, front
 
 MANY = 64  # runs from which on this pays
-SHARP = 1e-3  # of S; a sensor of less noise leaves less of a variance than P − K H P may be trusted with
+SHARP = 1e-4  # of S; a sensor of less noise leaves less of a variance than P − K H P may be trusted with
 STILL = np.eye(3)[:, :2, None]  # what the first two columns of F are where no motion depends on the place
 
 
@@ -44,8 +44,10 @@ def predicted(P: Array, F: Array, G: Array, M: Array, Q: Array | float) -> Array
 
 def _propagated(P: Array, F: Array, G: Array, M: Array) -> Array | None:
     """F P Fᵀ + G M Gᵀ : (3, 3, N)"""
-    drawn_in = M.any(axis=-1)
-    if not ((F[:, :2] == STILL).all() and (F[2, 2] == 1).all() and not (drawn_in & ~np.eye(len(M), dtype=bool)).any()):
+    noisy: list[list[bool]] = np.any(M, axis=-1).tolist()
+    if any(noisy[k][i] for k in range(len(M)) for i in range(len(M)) if i != k):
+        return None
+    if not ((F[:, :2] == STILL).all() and (F[2, 2] == 1).all()):
         return None
     (a, b, c), (_, d, e), (_, _, v) = P
     α, β = F[0, 2], F[1, 2]
@@ -56,15 +58,13 @@ def _propagated(P: Array, F: Array, G: Array, M: Array) -> Array | None:
     new[0, 1] = b + β * c + α * new[1, 2]
     new[1, 1] = d + β * (e + new[1, 2])
     new[2, 2] = v
-    reaches = (G.any(axis=-1) & np.diagonal(drawn_in)).tolist()
+    moves: list[list[bool]] = np.any(G, axis=-1).tolist()
     for k in range(len(M)):
-        for i in range(3):
-            if not reaches[i][k]:
-                continue
+        reached = [i for i in range(3) if noisy[k][k] and moves[i][k]]
+        for at, i in enumerate(reached):
             shared = G[i, k] * M[k, k]
-            for j in range(i, 3):
-                if reaches[j][k]:
-                    new[i, j] += shared * G[j, k]
+            for j in reached[at:]:
+                new[i, j] += shared * G[j, k]
     new[1, 0], new[2, 0], new[2, 1] = new[0, 1], new[0, 2], new[1, 2]
     return new
 

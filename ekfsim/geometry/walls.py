@@ -80,7 +80,9 @@ class Walls:
         if origin.ndim == 1 and np.ndim(heading) == 0:
             r, wall = self.first(float(origin[0]), float(origin[1]), float(heading))
             return Hit(np.array(r), np.array(wall))
-        x, y, heading = np.broadcast_arrays(origin[..., 0], origin[..., 1], heading)
+        x, y = origin[..., 0], origin[..., 1]
+        if x.shape != np.shape(heading):
+            x, y, heading = np.broadcast_arrays(x, y, heading)
         if heading.size > (FEW if engine.used() == "numpy" else FEW_COMPILED):
             ranges, walls = self._all(x.ravel(), y.ravel(), heading.ravel())
         else:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
-from ekfsim.geometry.lanes import back
+from ekfsim.geometry.lanes import front, lanes
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.laser import Laser
 from ekfsim.models.move_turn import MoveTurn
@@ -77,15 +77,14 @@ def _until_wall(world: World, pose: Array, way: Array) -> tuple[Array, Integers]
 
 def _may_bump(walls: Walls, pose: Array, way: Array) -> Integers:
     """Which of N runs may meet a wall on their way or come near one: few in a study, where all go much the same way."""
-    reach = np.abs(way) + 2 * CLEARANCE
-    low = np.stack([pose[:, 0], pose[:, 1]]) - reach
-    high = np.stack([pose[:, 0], pose[:, 1]]) + reach
-    near = walls.near(low.min(axis=1), high.max(axis=1))
-    if len(near) > FEW:
-        return np.arange(len(way))
+    reach, place = np.abs(way) + 2 * CLEARANCE, front(pose, 1)[:2]
+    far = float(reach.max())
+    near = walls.near(place.min(axis=1) - far, place.max(axis=1) + far)
+    if not 0 < len(near) <= FEW:
+        return np.arange(len(way) if len(near) else 0)
     ends = walls.segments[near]
     first, last = ends.min(axis=1)[..., None], ends.max(axis=1)[..., None]
-    return np.flatnonzero(((first <= high) & (last >= low)).all(axis=1).any(axis=0))
+    return np.flatnonzero(((first <= place + reach) & (last >= place - reach)).all(axis=1).any(axis=0))
 
 
 def _until_wall_one(world: World, pose: Array, way: float) -> tuple[Array, Integers]:
@@ -115,4 +114,8 @@ def _measure(world: World, pose: Array, bearing: float, draws: Draws, i: int) ->
 
 def _paired(d: Array, a: Array) -> Array:
     """(d, a) as a motion input : (…, 2)"""
-    return np.array([d, a]) if np.ndim(d) == 0 else back(np.stack(np.broadcast_arrays(d, a)), 1)
+    if np.ndim(d) == 0:
+        return np.array([d, a])
+    u = lanes(np.broadcast_shapes(np.shape(d), np.shape(a)), 2)
+    u[..., 0], u[..., 1] = d, a
+    return u
