@@ -56,7 +56,7 @@ def test_a_classroom_and_a_log_are_not_recorded(place):
     (place / "drive.yaml").write_text("world: world.yaml\ncommands: [move: {distance: 1, angle: 0}]\n")
     ended = ekfsim("record", "drive.yaml", "-o", "out")
     assert (ended.status, ended.out) == (2, "")
-    assert ended.err.startswith("ekfsim: drive.yaml: the classroom has no clock and cannot be recorded; runs of mower, ")
+    assert ended.err.startswith("ekfsim: drive.yaml: the classroom has no clock and cannot be recorded; runs of ")
     (place / "world.yaml").write_text(LAWN)
     ended = ekfsim("record", "logged.yaml", "--log", "log", "-o", "out")
     assert ended.status == 2
