@@ -7,11 +7,10 @@ from functools import cached_property
 from ekfsim.geometry import Array
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.layout import POSE, Layout
-from ekfsim.systems import Instrument, Robot
 from ekfsim.systems.document import DocumentReading
+from ekfsim.systems.instruments import Instrument, Surroundings, Target
 from ekfsim.systems.instruments import Landmark as Landmark
-from ekfsim.systems.instruments import Surroundings, Target
-from ekfsim.systems.robots import PylonCart
+from ekfsim.systems.robots import PylonCart, Robot
 
 BOUNDARY = "boundary"  # the name that the boundary's ring goes by among the obstacles
 

@@ -97,7 +97,7 @@ class Mower:
 
 @dataclass(frozen=True)
 class Pioneer:
-    """Document 001: a P3 robot; u = (ΔD_L, ΔD_R) as its wheels count them, or (u_L, u_R, dt) where it is skid-steered."""
+    """Document 001: a P3 robot; u = (ΔD_L, ΔD_R) as its wheels count them, or skid-steered (u_L, u_R, dt)."""
 
     rate: float = 10.0
     width: float = 0.38  # m, W of eq. 33; the document measures it and does not print it
