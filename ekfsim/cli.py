@@ -1,6 +1,7 @@
 """The command line: each command an outline of what it does. Heavy modules are imported where they are used."""
 
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Literal, NoReturn
 
@@ -60,10 +61,12 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
     from ekfsim.files.outputs import kept
     from ekfsim.localization import play as steps_of
     from ekfsim.views import animation, limits
-    from ekfsim.views.playback import Tally, views
+    from ekfsim.views.playback import Tally, together
 
     scene, tally = scene_of(**chosen), Tally()
-    extent = limits.of(scene, kept(steps_of(scene), [tally.write]), confidence)
+    first, *others = scene.alone()
+    runs = (kept(steps_of(first), [tally.write]), *map(steps_of, others))
+    extent = limits.of_all(scene, runs, confidence)
     pictures = animation.number_of_pictures(tally.views, every)
     with click.progressbar(length=pictures, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
 
@@ -72,8 +75,8 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
             bar.update(1)
 
         animation.render(
-            views(steps_of(scene), scene.world.layout), scene, extent, out, look=Look(confidence, conditional),
-            every=every, force=force, progress=made_one,
+            together(steps_of(first), map(steps_of, others), scene.world.layout), scene, extent, out,
+            look=Look(confidence, conditional), every=every, force=force, progress=made_one,
         )  # fmt: skip
     click.echo(f"{shown(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
 
@@ -94,20 +97,23 @@ def run(
     from ekfsim.files.outputs import Outputs, kept
     from ekfsim.localization import play as steps_of
     from ekfsim.summary import Summary
-    from ekfsim.views.closing import conclude
+    from ekfsim.views.closing import conclude_all
     from ekfsim.views.narrative import narrate
-    from ekfsim.views.playback import views
+    from ekfsim.views.playback import together
 
     scene = scene_of(**chosen)
-    result = Summary.of(scene)
-    outputs = Outputs(trace, tum, csv, summary, force)
-    with outputs.open(scene, confidence, result) as sinks:
-        steps = kept(steps_of(scene), [result.add, *(sink.write for sink in sinks)])
-        for view in views(steps, scene.world.layout):
+    alone, outputs = scene.alone(), Outputs(trace, tum, csv, summary, force)
+    results = [Summary.of(one) for one in alone]
+    with ExitStack() as stack:
+        runs = []
+        for one, result, files in zip(alone, results, outputs.for_each(scene), strict=True):
+            sinks = stack.enter_context(files.open(one, confidence, result))
+            runs.append(kept(steps_of(one), [result.add, *(sink.write for sink in sinks)]))
+        for view in together(runs[0], runs[1:], scene.world.layout):
             heed()
             if not quiet:
                 sys.stdout.write(narrate(view, scene, confidence))
-    (sys.stderr if outputs.on_stdout() else sys.stdout).write(conclude(result))
+    (sys.stderr if outputs.on_stdout() else sys.stdout).write(conclude_all(scene, results, quiet))
 
 
 @ekfsim.command()

@@ -70,7 +70,9 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
         click.option("--log", type=Source(), metavar="PATH",
                      help="A recorded log in place of the one that COMMANDS names."),
         READING,
-        click.option("--filter", "filter_name", help="In place of the file's filter: kf, ekf, iekf, ukf or pf."),
+        click.option("--filter", "filter_name", metavar="NAME,…",
+                     help="In place of the file's filter: kf, ekf, iekf, ukf or pf. Several are put side by side; the "
+                     "name of each then stands before the ending of its files."),
         GATE,
         GUARD,
         SET,

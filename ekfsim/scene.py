@@ -1,6 +1,6 @@
 """A scene: a world, what is done in it or was recorded of it, and the settings of the filter that watches."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from ekfsim.records import Command, Log
@@ -44,8 +44,13 @@ class Scene:
     commands_source: str = "commands"
     log_source: str | None = None  # how outputs name the log, where the run was recorded
     settings: tuple[str, ...] = ()  # KEY=VALUE each: what overrules numbers of the two files
+    beside: tuple[str, ...] = ()  # more filters that watch the same run, to be shown beside the first
 
     @property
     def commanded(self) -> bool:
         """Whether the robot obeys commands one by one and knows no clock, as in the classroom."""
         return self.drive is None and self.log is None
+
+    def alone(self) -> "tuple[Scene, ...]":
+        """The same scene for each of the filters that watch it, by itself."""
+        return tuple(replace(self, filter=name, beside=()) for name in (self.filter, *self.beside))

@@ -4,7 +4,7 @@ import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -42,6 +42,15 @@ class Outputs:
     csv: Path | None = None
     summary: Path | None = None
     force: bool = False
+    filter: str | None = None  # whose files these are, where there are several
+
+    def for_each(self, scene: Scene) -> "list[Outputs]":
+        """The files of each filter that watches. Of several the name stands before each ending: trace.ekf.jsonl."""
+        return [self._of(filter) for filter in (scene.filter, *scene.beside)] if scene.beside else [self]
+
+    def _of(self, filter: str) -> "Outputs":
+        named = [None if path is None else _of_filter(path, filter) for path in (self.trace, self.csv, self.summary)]
+        return replace(self, trace=named[0], csv=named[1], summary=named[2], filter=filter)
 
     @contextmanager
     def open(self, scene: Scene, confidence: float, summary: Summary) -> Iterator[list[Sink]]:
@@ -83,7 +92,15 @@ class Outputs:
         return [path for path in (self.trace, self.csv, self.summary, *self._tum()) if path]
 
     def _tum(self) -> tuple[Path, ...]:
-        return (self.tum / "truth.tum", self.tum / "estimate.tum") if self.tum else ()
+        files = (self.tum / "truth.tum", self.tum / "estimate.tum") if self.tum else ()
+        return files if self.filter is None else tuple(_of_filter(file, self.filter) for file in files)
+
+
+def _of_filter(path: Path, filter: str) -> Path:
+    """A file's name with the filter before its ending: trace.ekf.jsonl. Raises UsageError where it is no file's."""
+    if special(path):
+        raise UsageError(f"{path}: holds the result of one filter only; name a file, or one filter")
+    return path.with_name(f"{path.stem}.{filter}{path.suffix}")
 
 
 def _refuse_the_scene_itself(path: Path, scene: Scene) -> None:

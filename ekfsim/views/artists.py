@@ -146,6 +146,12 @@ class BeliefArtists:
         self.heading.set_data(*segment.T)
         self.truth.set_data(*segment[:1].T)
 
+    def call(self, name: str) -> None:
+        """Name the filter in the legend, where others are drawn beside it."""
+        for artist in (self.body, self.reference):
+            if artist is not None and name:
+                artist.set_label(f"{name}: estimate")
+
     def handles(self) -> Iterator[Artist | tuple[Artist, ...]]:
         """What the legend shows of it."""
         yield self.reference if self.body is None else (self.body, self.reference)

@@ -137,7 +137,7 @@ def source(scene: Scene) -> str:
     reading = f", as {scene.reading}" if scene.reading != "corrected" else ""
     drawn = f"seed {scene.seed}, run {scene.run}" if scene.log is None or scene.filter == "pf" else ""
     log = "recorded" if scene.log is not None else ""
-    origin = ", ".join(filter(None, (log, drawn, scene.filter)))
+    origin = ", ".join(filter(None, (log, drawn, scene.filter, *scene.beside)))
     return f"{shortened(scene.world.name, 30)} — {origin}{gate}{guard}{reading}"
 
 

@@ -1,9 +1,13 @@
 """What is said when a run is over: what was done, how far off it ended, and one plain verdict with its evidence."""
 
+import math
+from collections.abc import Sequence
+
 from ekfsim.consistency import BAND, LOST, Evidence, Verdict
 from ekfsim.filters.belief import Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.records import Nees
+from ekfsim.scene import Scene
 from ekfsim.summary import Errors, Summary
 from ekfsim.views.numbers import number, turn
 
@@ -15,12 +19,61 @@ REASONS = {
 }
 
 
+HEAD = ("filter", "updates", "position", "heading", "ΣNIS", "99 % band", "last NEES", "verdict")
+
+
 def conclude(summary: Summary) -> str:
     """The closing lines, each ended by a newline."""
     lines = [f"The run is over after {_done(summary)}: {_readings(summary)}", *_errors(summary)]
     if summary.path.rmse is not None:
         lines += [f"Distance to the expected path: {_metres(summary.path)}"]
     return "".join(f"{line}\n" for line in [*lines, f"Verdict: {sentence(summary.evidence)}"])
+
+
+def conclude_all(scene: Scene, summaries: Sequence[Summary], quiet: bool = False) -> str:
+    """The same where several filters watched: side by side, and a verdict on each unless it is to be quiet."""
+    if len(summaries) == 1:
+        return conclude(summaries[0])
+    names, first = (scene.filter, *scene.beside), summaries[0]
+    lines = [
+        f"The run is over after {_done(first)}; {len(names)} filters side by side (RMSE in m, degrees):",
+        *_table(names, summaries),
+    ]
+    told = (f"{name}: {sentence(summary.evidence)}" for name, summary in zip(names, summaries, strict=True))
+    return "".join(f"{line}\n" for line in (lines if quiet else [*lines, "", *told]))
+
+
+def _table(names: Sequence[str], summaries: Sequence[Summary]) -> list[str]:
+    """A row for each filter, and one for the odometry alone."""
+    rows = [HEAD, *map(_row, names, summaries)]
+    first = summaries[0]
+    if first.position.n:
+        reckoned = _cell(first.reckoned_position.rmse), _cell(first.reckoned_heading.rmse, math.degrees(1))
+        rows.append(("odometry alone", "", *reckoned, *[""] * 4))
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
+
+
+def _row(name: str, summary: Summary) -> tuple[str, ...]:
+    evidence, last = summary.evidence, summary.evidence.last_nees
+    low, high = evidence.nis_band
+    known = evidence.nis_dof > 0
+    nees = "-" if last is None else "impossible" if last.impossible else f"{float(last.value):.3g} ({int(last.dof)})"
+    return (
+        name,
+        f"{summary.updates} of {summary.readings}",
+        _cell(summary.position.rmse),
+        _cell(summary.heading.rmse, math.degrees(1)),
+        f"{evidence.nis_sum:.3g}" if known else "-",
+        f"{low:.3g} to {high:.3g}" if known else "-",
+        nees,
+        evidence.verdict.value,
+    )
+
+
+def _cell(value: float | None, scale: float = 1.0) -> str:
+    """A number of the table; a dash where it is unknown."""
+    return "-" if value is None else f"{scale * value:.3g}"
 
 
 def _done(summary: Summary) -> str:

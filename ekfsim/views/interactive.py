@@ -38,7 +38,7 @@ def play_interactively(scene: Scene, show: str, out: Path, look: Look, force: bo
     window_wanted = show == "window" or (show == "auto" and _window_available())
     if show == "window" and not _window_available():
         raise UsageError("there is no display to open a window on; --show text draws in the terminal")
-    extent = limits.of(scene, islice(play(scene), LOOK_AHEAD), look.probability)
+    extent = limits.of_all(scene, (islice(play(one), LOOK_AHEAD) for one in scene.alone()), look.probability)
     pictures = Pictures(scene, extent, look, out, force)
     window: Window | None = None
     screen: Screen

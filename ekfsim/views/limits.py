@@ -1,5 +1,6 @@
 """How much of the plane a run's pictures show: fixed for the whole run, so that nothing jumps."""
 
+import functools
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -151,6 +152,11 @@ def of(scene: Scene, steps: Iterable[Step], probability: float = 0.954) -> Limit
     return core.grown(MARGIN * core.size)
 
 
+def of_all(scene: Scene, runs: Iterable[Iterable[Step]], probability: float = 0.954) -> Limits:
+    """The limits of a run that several filters watch."""
+    return functools.reduce(Limits.joined, (of(scene, steps, probability) for steps in runs))
+
+
 def _hold(must: _Box, may: _Box, belief: Belief, layout: Layout, k: float) -> None:
     """Hold the estimated position, and the box about its ellipse. k : the ellipse's radii in σ"""
     i, j = layout.position
@@ -166,7 +172,7 @@ def _hold(must: _Box, may: _Box, belief: Belief, layout: Layout, k: float) -> No
 
 def including(limits: Limits, view: View) -> Limits:
     """The same limits where they hold the view's estimate and truth, else doubled until they do."""
-    points = positions(view.step, view.layout)
+    points = np.concatenate([positions(each.step, each.layout) for each in (view, *view.others)])
     if limits.hold(points):
         return limits
     return limits.joined(Limits.around(points).grown(limits.size / 2))

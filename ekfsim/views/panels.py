@@ -19,6 +19,7 @@ from ekfsim.views.artists import BeamArtists, BeliefArtists, WorldArtists
 from ekfsim.views.beams import Beam, beam, length
 from ekfsim.views.captions import away
 from ekfsim.views.limits import Limits
+from ekfsim.views.other_artists import OtherArtists
 from ekfsim.views.outlined import OutlinedText
 from ekfsim.views.playback import View
 from ekfsim.views.sight_artists import FixArtists, SightArtists
@@ -46,6 +47,8 @@ class Main:
         self.world = WorldArtists(axes, scene.world)
         static = set(axes.get_children())
         self.belief = BeliefArtists(axes, probability, conditional, _driven(scene), crowd=scene.filter == "pf")
+        self.others = others(axes, scene, probability)
+        self.belief.call(scene.filter if self.others else "")
         self.beam = BeamArtists(axes)
         self._sensors = sensors(scene)
         self.sight = SightArtists(axes, self._sensors)
@@ -67,6 +70,8 @@ class Main:
     def show(self, view: View, read: Beam | Sight | None) -> None:
         """Move the artists to a view. read : what is drawn of its reading"""
         self.belief.show(view, BODY * self.limits.size)
+        for artists, other in zip(self.others, view.others, strict=False):
+            artists.show(other, BODY * self.limits.size)
         self.beam.show(read if isinstance(read, Beam) else None, 2 * self.limits.size)
         self.sight.show(read if isinstance(read, Sight) else None)
         self.fixes.show(view.step.entry)
@@ -74,6 +79,8 @@ class Main:
     def handles(self) -> Iterator[Artist | tuple[Artist, ...]]:
         """What the legend shows, in its order."""
         yield from self.belief.handles()
+        for artists in self.others:
+            yield from artists.handles()
         yield from self.world.handles()
         yield from self.fixes.handles()
         if not self._sensors.isdisjoint((Laser, Ultrasonic, Infrared)):
@@ -89,6 +96,7 @@ class CloseUp:
         self.axes = axes
         self.world = WorldArtists(axes, scene.world)
         self.belief = BeliefArtists(axes, probability, conditional, _driven(scene), body=False)
+        self.others = others(axes, scene, probability)
         self.beam = BeamArtists(axes)
         self.sight = SightArtists(axes)
         self.fixes = FixArtists(axes, scene)
@@ -115,6 +123,8 @@ class CloseUp:
         width = close_width(view, self._probability, CERTAIN * world.size)
         self.axes.set(xlim=(x[0] - width / 2, x[0] + width / 2), ylim=(x[1] - width / 2, x[1] + width / 2))
         self.belief.show(view, CLOSE_BODY * width)
+        for artists, other in zip(self.others, view.others, strict=False):
+            artists.show(other, CLOSE_BODY * width)
         self.beam.show(read if isinstance(read, Beam) else None, 2 * width)
         self.sight.show(read if isinstance(read, Sight) else None)
         self.fixes.show(view.step.entry)
@@ -123,6 +133,11 @@ class CloseUp:
         self.scale.set_text(length(bar))
         hidden = truth is not None and float(np.abs(truth[:2] - x[:2]).max()) > width / 2
         self.away.set_text(away(view.step, view) if hidden else "")
+
+
+def others(axes: Axes, scene: Scene, probability: float) -> list[OtherArtists]:
+    """What is drawn of each filter that watches beside the first."""
+    return [OtherArtists(axes, name, number, probability) for number, name in enumerate(scene.beside)]
 
 
 def close_width(view: View, probability: float, certain: float) -> float:

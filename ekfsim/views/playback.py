@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,6 +32,7 @@ class View:
     layout: Layout = POSE  # of the state that is estimated
     since: float | None = None  # s, the instant of the first of the steps, as stamped
     start: float = 0.0  # s, the stamp of the start
+    others: tuple["View", ...] = ()  # the same view as other filters have it, that watch beside
 
     @property
     def belief(self) -> Belief:
@@ -66,6 +67,13 @@ def views(steps: Iterable[Step], layout: Layout = POSE) -> Iterator[View]:
         if isinstance(step.entry.given, Reading):
             yield View(next(number), step, True, settled, len(settled), layout=layout, start=start)
         yield View(next(number), step, False, settled, len(settled), inputs, before, layout, first.entry.t, start)
+
+
+def together(steps: Iterable[Step], others: Iterable[Iterable[Step]], layout: Layout = POSE) -> Iterator[View]:
+    """Every view of a run, with what other filters make of the same entries."""
+    first, *beside = (views(each, layout) for each in (steps, *others))
+    for view, *same in zip(first, *beside, strict=True):
+        yield replace(view, others=tuple(same)) if same else view
 
 
 def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, Step, int]]:
@@ -116,8 +124,8 @@ class Tally:
 class Playback:
     """The views of a run by number, computed when first asked for and kept for the way back."""
 
-    def __init__(self, steps: Iterable[Step], layout: Layout = POSE) -> None:
-        self._coming = views(steps, layout)
+    def __init__(self, steps: Iterable[Step], layout: Layout = POSE, others: Iterable[Iterable[Step]] = ()) -> None:
+        self._coming = together(steps, others, layout)
         self._seen: list[View] = []
 
     def __iter__(self) -> Iterator[View]:

@@ -5,10 +5,11 @@ from dataclasses import InitVar, dataclass, field
 from typing import Protocol, TextIO
 
 from ekfsim.files.outputs import kept
+from ekfsim.localization import play
 from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.summary import Summary
-from ekfsim.views.closing import conclude
+from ekfsim.views.closing import conclude_all
 from ekfsim.views.keyboard import HELP, Action, Counted, Key
 from ekfsim.views.narrative import narrate
 from ekfsim.views.playback import Playback, View
@@ -33,11 +34,14 @@ class Player:
     probability: float
     number: int = 0  # of the view on the screen
     playback: Playback = field(init=False)
-    _summary: Summary = field(init=False)  # of the steps so far; ahead of what is shown by no more than a view
+    _summaries: list[Summary] = field(init=False)  # of the steps so far, by filter; ahead of what is shown by a view
 
     def __post_init__(self, steps: Iterable[Step]) -> None:
-        self._summary = Summary.of(self.scene)
-        self.playback = Playback(kept(steps, [self._summary.add]), self.scene.world.layout)
+        alone = self.scene.alone()
+        self._summaries = [Summary.of(one) for one in alone]
+        runs = (steps, *map(play, alone[1:]))
+        first, *others = (kept(run, [s.add]) for run, s in zip(runs, self._summaries, strict=True))
+        self.playback = Playback(first, self.scene.world.layout, others)
 
     def play(self, next_key: Callable[[], Key]) -> None:
         """From the first view until a key quits."""
@@ -93,7 +97,7 @@ class Player:
         """The narrative of a view, and after the last one the closing summary."""
         self.out.write(narrate(view, self.scene, self.probability))
         if self.playback.view(view.number + 1) is None:
-            self.out.write(conclude(self._summary))
+            self.out.write(conclude_all(self.scene, self._summaries))
 
     def _view(self, number: int) -> View:
         view = self.playback.view(number)

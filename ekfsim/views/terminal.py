@@ -24,6 +24,7 @@ CONE = Pen(ansi("#009E73"), "'")
 MEANT = Pen(ansi("#777777"), ",", on=1, off=4)  # the way that was meant
 ESTIMATE = Pen("1;" + ansi("#0072B2"))
 TRUTH = Pen("1", "~")  # bright, on a light terminal as on a dark one
+OTHERS = tuple(Pen(ansi(color), ",", on=2, off=1) for color in ("#8C510A", "#6A3D9A", "#C51B7D", "#6B6B00"))
 
 ROBOT = np.array([[2.5, 0.0], [-1.5, 1.75], [-1.5, -1.75]])  # cells' widths ahead and to the left
 HEADING = 3.5  # cells' widths from the true position to the end of its heading
@@ -51,9 +52,12 @@ def draw(
     step, (mean, P) = view.step, view.pose
     legend = _draw_world(canvas, scene.world)
     canvas.polyline(view.path(), PATH)
+    for other, pen in zip(view.others, OTHERS, strict=False):
+        canvas.polyline(other.path(), pen)
     _draw_landmarks(canvas, scene.world.landmarks)  # over the path, so that their numbers stay whole
     belief = draw_particles(canvas, view) + _draw_uncertainty(canvas, mean, P, probability)
     legend += draw_fix(canvas, step.entry) + belief
+    legend = _draw_others(canvas, view, scene, probability) + legend
     if view.beam:
         legend = draw_reading(canvas, view) + legend
     legend = _draw_robots(canvas, mean, step.entry.truth) + legend
@@ -63,6 +67,18 @@ def draw(
         _legend_line(legend, columns, colour, ascii),
     ]
     return "\n".join(lines[:rows])
+
+
+def _draw_others(canvas: Canvas, view: View, scene: Scene, probability: float) -> list[Item]:
+    """The other filters that watch, each with its ellipse and the first letter of its name where it believes to be."""
+    legend = []
+    for name, other, pen in zip(scene.beside, view.others, OTHERS, strict=False):
+        x, P = other.pose
+        if np.isfinite(x).all() and np.isfinite(P).all():
+            canvas.polyline(outline(x[:2], P[:2, :2], probability), pen)
+            canvas.text(x[:2], name[0], pen.colour)
+        legend.append(Item(name[0], name, pen.colour))
+    return legend
 
 
 def _draw_world(canvas: Canvas, world: World) -> list[Item]:
