@@ -233,6 +233,17 @@ def test_bumps_of_a_study_are_those_of_its_runs():
             np.testing.assert_allclose(entry.truth, [one.truth for one in alone], rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize("start", [(9, 4, 0), (5, 7, 90), (1, 4, 180), (5, 1, 270)])
+def test_many_who_go_the_same_way_are_stopped_by_the_same_wall(start):
+    x, y, degrees = start
+    made = scene(Move(2.0, math.pi), Move(-3.0, 0.0), noise=SILENT, start=(x, y, math.radians(degrees)))
+    many, one = (list(simulate(made, runs)) for runs in (np.arange(100), np.array(7)))
+    for entry, alone in zip(many[1:], one[1:], strict=True):
+        assert alone.bump >= 0
+        assert (entry.bump == alone.bump).all()
+        np.testing.assert_allclose(entry.truth, np.tile(alone.truth, (100, 1)), rtol=0, atol=1e-12)
+
+
 def test_a_wall_within_a_millimetre_lets_no_way_forward():
     entries = exact(Move(20.0, 0.0), Move(1.0, 0.0), Move(0.0, TURN), Move(-1.0, 0.0), start=(5, 4, 0))
     assert [entry.bump >= 0 for entry in entries] == [True, True, False, False]

@@ -1,10 +1,10 @@
-"""What follows many beams: NumPy, or code compiled by Numba, where that is asked for.
+"""What follows many beams, and filters and judges many runs: NumPy, or code compiled by Numba, where that is asked for.
 
     engine.use("numba")
 
 NumPy is the default even where Numba is installed: what a study answers must not depend on what else is installed, and
-Numba takes a second to import and, the first time, some to compile. Both find the same walls, and the same ranges but
-for the last digits.
+Numba takes a second to import and, the first time, some to compile. Both find the same walls, and the same ranges and
+beliefs but for the last digits.
 """
 
 import importlib.util

@@ -73,7 +73,7 @@ def test_what_it_does_not_know_is_left_to_the_matrices(name, random):
 
 
 def sensors():
-    return Laser(ROOM, 0.4, 0.02), Laser(ROOM, 0.4, 1e-9), RangeOnly(2.0, 3.0, 0.1), BearingOnly(2.0, 3.0, 0.02)
+    return Laser(ROOM, 0.4, 0.02), Laser(ROOM, 0.4, 1e-7), RangeOnly(2.0, 3.0, 0.1), BearingOnly(2.0, 3.0, 0.02)
 
 
 @engines
@@ -88,11 +88,15 @@ def test_an_update_is_that_of_the_matrices(name, number, gate, random):
     z = sensor.h(x) * random.uniform(0.95, 1.05, (RUNS, 1))
     z[::5] = np.nan
     skip = random.random(RUNS) < 0.3
-    prior = Gaussian(x, P)
     h, H, R = sensor.linearize(x)
+    aside = np.cross(H[2::7, 0], random.normal(size=(len(H[2::7]), 3)))  # what the sensor does not see
+    P[2::7] = aside[:, :, None] * aside[:, None, :]  # H P Hᵀ is what rounding leaves of 0
+    prior = Gaussian(x, P)
     belief, correction = corrected(prior, z, h, sensor.residual(z, h), H, R, skip, gate, (2,))
     with using(name):
-        fast, told = EKF(gate).update(prior, sensor, z, skip)
+        reading = unrolled.Linearized(z, h, sensor.residual(z, h), H, R)
+        fast, told = unrolled.updated(prior, reading, skip, gate, 2)
+    assert unrolled.knows(x, z, H)
     np.testing.assert_allclose(fast.mean, belief.mean, **NEAR)
     np.testing.assert_allclose(fast.covariance, belief.covariance, **NEAR)
     for part in ("predicted", "innovation", "R", "S", "H", "K", "nis", "refused"):
@@ -101,6 +105,29 @@ def test_an_update_is_that_of_the_matrices(name, number, gate, random):
         np.testing.assert_allclose(getattr(told, part), expected, rtol=1e-11, atol=1e-12 * scale, err_msg=part)
     assert len(set(told.refused.tolist())) > 2
     assert definite(fast.covariance)
+
+
+@engines
+def test_a_sharp_laser_leaves_its_own_doubt_and_no_rounding(name):
+    """A beam along x, the heading known: of 0.01 m² its R is left, be that as small as it may."""
+    x, P = np.tile([3.0, 4.0, 0.0], (RUNS, 1)), np.tile(np.diag([0.01, 0.01, 0.0]), (RUNS, 1, 1))
+    laser = Laser(ROOM, 0.0, 1e-8)
+    with using(name):
+        posterior, correction = EKF().update(Gaussian(x, P), laser, np.full((RUNS, 1), 7.0))
+    np.testing.assert_allclose(posterior.covariance[:, 0, 0], correction.R[:, 0, 0], rtol=1e-9)
+
+
+@engines
+def test_a_beam_along_a_wall_among_others(name, random):
+    x = random.uniform((1, 1, -3), (9, 7, 3), (RUNS, 3))
+    x[::3] = [-1.0, 0.0, 0.0]
+    laser = Laser(ROOM, 0.0, 0.02)
+    with using(name):
+        many = laser.linearize(x)
+    assert np.isnan(many[0][::3]).all()
+    for k in range(RUNS):
+        for each, one in zip(many, laser.linearize(x[k]), strict=True):
+            np.testing.assert_allclose(each[k], one, **NEAR)
 
 
 @engines
@@ -122,7 +149,7 @@ def test_the_nees_of_many_runs_is_that_of_each(name, random):
     P[::4, 2, :] = P[::4, :, 2] = 0.0  # ranks of 3, 2, 1 and 0 side by side
     P[::8, 1, :] = P[::8, :, 1] = 0.0
     P[::16] = 0.0
-    P[1::9] = np.einsum("ni,nj->nij", *[random.normal(size=(len(P[1::9]), 3))] * 2)
+    P[1::9], P[2::9] = (covariance(random, len(P[i::9]), 3, rank=i) * 0.01 for i in (1, 2))
     e = random.normal(size=(RUNS, 3)) * 0.1
     e[::2] = np.matvec(P[::2], e[::2])
     for n in (3, 2):
