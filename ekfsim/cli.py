@@ -135,7 +135,7 @@ def record(out: Path, force: bool, confidence: float, **chosen: Any) -> None:
 @click.argument("files", nargs=-1, required=True)
 def check(files: tuple[str, ...]) -> None:
     """Validate world and command FILES: every mistake with its place, or `ok`."""
-    from ekfsim.files.load import check as mistakes_in
+    from ekfsim.files.check_study import check as mistakes_in
     from ekfsim.files.packaged import packaged, resolve
 
     wrong = False

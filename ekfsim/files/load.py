@@ -250,6 +250,8 @@ def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
     if not isinstance(root.value, dict):
         held = "a list" if isinstance(root.value, list) else "no 'key: value'"
         return root.mark, (), f"the file holds {held}", "see `ekfsim new` for one to start from"
+    if kind != "study" and kind_of_tree(root) == "study":
+        return root.mark, (), "this is a study file", "run it with `ekfsim study`, or name another file here"
     if kind == "world" and kind_of_tree(root) == "commands":
         return root.mark, (), "this is a commands file", "name a world file here"
     if kind == "commands" and kind_of_tree(root) == "world" and root.keys.keys() & ONLY_IN_WORLDS:
@@ -259,6 +261,8 @@ def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
 
 def kind_of_tree(root: Node) -> Kind:
     """The kind of a file, by its keys; one that names its world is none, even if it says nothing to do."""
+    if "study" in root.keys:
+        return "study"
     keys = root.keys.keys()
     return "world" if keys.isdisjoint(WAYS) and ("world" not in keys or keys & ONLY_IN_WORLDS) else "commands"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from ekfsim.errors import InputError, Mistake, UsageError
+from ekfsim.errors import InputError, Mistake, Place, UsageError
 from ekfsim.files.marked import Node, field_of, parse
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import packaged, resolve
@@ -149,8 +149,8 @@ def side_of(root: Node, side: str, file: str) -> Iterator[Setting]:
 def setting_at(root: Node, path: tuple[str | int, ...], key: str, file: str) -> Setting:
     """The setting that stands at a place of a study file."""
     node = root.nearest(path)
-    line, column = node.mark
-    return Setting(key, node.written, f"{file}:{line}:{column}: {field_of(path)}")
+    place = Place(file, *node.mark)
+    return Setting(key, node.written, f"{place}: {field_of(path)}", place)
 
 
 def setting_mistakes(root: Node, keys: StudyKeys, file: str) -> Iterator[Mistake]:

@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from ekfsim.errors import Mistake, UsageError
+from ekfsim.errors import InputError, Mistake, Place, UsageError
 from ekfsim.files.marked import Node, Path, field_of, scalar
 from ekfsim.files.schema import Kind, keys_at, schema_at
 from ekfsim.files.telling import nearest, quoted
@@ -22,6 +22,7 @@ class Setting:
     key: str
     value: str
     told: str  # how a mistake in it is told: "--set gate=2", or the place in a file and the field
+    place: Place | None = None  # in a file
 
     def __str__(self) -> str:
         return f"{self.key}={self.value}"
@@ -174,12 +175,15 @@ def _mapping(beside: Node, held: dict[str, Node]) -> Node:
 
 def refusal(mistakes: Iterable[Mistake], settings: Sequence[Setting]) -> UsageError:
     """How mistakes that only the settings brought about are told: each by the settings that it is about."""
-    lines: dict[str, None] = {}
+    lines, placed = dict[str, None](), dict[Mistake, None]()
     for mistake in mistakes:
         about = [one for one in settings if _about(mistake.field, one)] or settings
-        right = f"; {mistake.right}" if mistake.right else ""
+        first, right = about[0], f"; {mistake.right}" if mistake.right else ""
         lines[f"{', '.join(one.told for one in about)}: {mistake.wrong}{right}"] = None
-    return UsageError("\n".join(lines))
+        if first.place is not None:
+            field = first.told.removeprefix(f"{first.place}: ")
+            placed[Mistake(first.place, field, mistake.wrong, mistake.right)] = None
+    return InputError(list(placed)) if len(placed) == len(lines) else UsageError("\n".join(lines))
 
 
 def _about(field: str, one: Setting) -> bool:

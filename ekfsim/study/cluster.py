@@ -2,6 +2,7 @@
 
 import itertools
 import logging
+import socket
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
@@ -9,7 +10,7 @@ from ekfsim.errors import RunError, UsageError
 from ekfsim.study.engines import Engine, Parcels, T, Work, do_packed
 from ekfsim.study.plan import Task
 
-PATIENCE = "10s"  # for a scheduler that does not answer
+SECONDS = 10  # for a scheduler that does not answer
 RETRIES = 3  # of a block whose worker failed or died
 AHEAD = 4  # blocks for each worker that are handed out at once
 
@@ -24,7 +25,7 @@ def cluster(address: str, tell: Callable[[str], None]) -> Engine:
     for name in list(logging.root.manager.loggerDict):  # they tell at length what we say in a line
         if name.partition(".")[0] in ("distributed", "tornado", "asyncio"):
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
-    limits = {"distributed.comm.timeouts.connect": PATIENCE, "distributed.comm.retry.count": 0}
+    limits = {"distributed.comm.timeouts.connect": f"{SECONDS}s", "distributed.comm.retry.count": 0}
 
     def engine(work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
         with dask.config.set(limits):
@@ -33,6 +34,8 @@ def cluster(address: str, tell: Callable[[str], None]) -> Engine:
                 yield from _done(distributed, client, work, tasks, tell)
             except (distributed.client.FutureCancelledError, distributed.comm.core.CommClosedError, TimeoutError):
                 raise RunError(f"the scheduler at {address} is gone") from None
+            except ModuleNotFoundError as lack:
+                raise RunError(f"a worker lacks {lack.name}; install ekfsim there as here") from None
             except distributed.KilledWorker:
                 raise RunError("a block was given up, as every worker that began it died") from None
             finally:
@@ -42,12 +45,19 @@ def cluster(address: str, tell: Callable[[str], None]) -> Engine:
 
 
 def _connected(distributed: Any, address: str) -> Any:
+    """A client of a scheduler. That something listens is seen first, for the client would try for half a minute."""
+    scheme, _, rest = address.rpartition("://")
+    host, _, port = rest.rpartition(":")
+    if scheme not in ("", "tcp", "tls") or not host or not port.isdigit():
+        raise UsageError(f"--cluster {address}: is no address of a scheduler; write e.g. tcp://127.0.0.1:8786")
     try:
-        return distributed.Client(address, timeout=PATIENCE, set_as_default=False)
-    except (OSError, TimeoutError):
-        raise RunError(f"no scheduler answers at {address}; start one with `dask scheduler`") from None
-    except ValueError as error:
-        raise UsageError(f"--cluster {address}: is no address: {error}; write e.g. tcp://127.0.0.1:8786") from None
+        socket.create_connection((host.strip("[]"), int(port)), timeout=SECONDS).close()
+        return distributed.Client(address, timeout=SECONDS, set_as_default=False)
+    except (OSError, OverflowError, UnicodeError, TimeoutError) as error:
+        why = f"{error.strerror}" if isinstance(error, OSError) and error.strerror else "it does not answer"
+        raise RunError(f"no scheduler at {address}: {why}; start one with `dask scheduler`") from None
+    except (ValueError, TypeError, RuntimeError) as error:
+        raise UsageError(f"--cluster {address}: {error}") from None
 
 
 def _done(

@@ -28,7 +28,7 @@ ORIGIN = ("seed", "gate", "guard", "reading", "set", "ekfsim")
 def write_summary(file: TextIO, plan: Plan, results: Iterable[Result]) -> None:
     """A row for each cell and filter."""
     table = csv.writer(file, lineterminator="\n")
-    table.writerow([*plan.keys, "filter", *AT_STEP, *OF_RUNS, *ORIGIN])
+    table.writerow([*plan.keys, "filter", *AT_STEP, *OF_RUNS, *_origin_columns(plan)])
     for result in results:
         table.writerow([*_case(result), *_at(result.last), *_of_runs(result), *_origin(result, plan)])
 
@@ -36,7 +36,7 @@ def write_summary(file: TextIO, plan: Plan, results: Iterable[Result]) -> None:
 def write_steps(file: TextIO, plan: Plan, results: Iterable[Result]) -> None:
     """A row for each cell, filter and step."""
     table = csv.writer(file, lineterminator="\n")
-    table.writerow([*plan.keys, "filter", *AT_STEP, *ORIGIN])
+    table.writerow([*plan.keys, "filter", *AT_STEP, *_origin_columns(plan)])
     for result in results:
         case, origin = _case(result), _origin(result, plan)
         table.writerows([*case, *_at(at), *origin] for at in result.steps)
@@ -65,10 +65,15 @@ def _of_runs(result: Result) -> Iterator[str]:
     yield from map(_cell, (None, None) if found.since is None else (found.since.step, found.since.t))
 
 
+def _origin_columns(plan: Plan) -> list[str]:
+    """What made the study; a swept gate or guard has its column already."""
+    return [name for name in ORIGIN if name not in plan.keys]
+
+
 def _origin(result: Result, plan: Plan) -> list[str]:
-    scene = result.case.scene
-    settings = " ".join(map(str, plan.request.settings))
-    return list(map(_cell, (scene.seed, scene.gate, scene.guard, scene.reading, settings, VERSION)))
+    scene, settings = result.case.scene, " ".join(map(str, plan.request.settings))
+    told = zip(ORIGIN, (scene.seed, scene.gate, scene.guard, scene.reading, settings, VERSION), strict=True)
+    return [_cell(value) for name, value in told if name not in plan.keys]
 
 
 def warning(result: Result) -> str:

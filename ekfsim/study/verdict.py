@@ -58,6 +58,13 @@ def covers(inside: Share) -> bool:
     )
 
 
+def proven(at: AtStep) -> bool:
+    """Whether there are runs enough: what is not consistent stays so anywhere in its interval."""
+    low, high = MEDIAN - MEDIAN_WITHIN, MEDIAN + MEDIAN_WITHIN
+    apart = not agrees(at.above_50) and (at.above_50.low > high or at.above_50.high < low)
+    return word_at(at) is Word.CONSISTENT or apart or not covers(at.ellipse) or at.lost.low >= MOST_LOST
+
+
 def verdict(result: Result) -> Verdict:
     """The verdict on the last step, and the first step from which on it holds without a gap."""
     word = word_at(result.last)

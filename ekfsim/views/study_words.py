@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
-from ekfsim.study.verdict import MOST_LOST, Word, agrees, covers, verdict
+from ekfsim.study.verdict import MOST_LOST, Word, agrees, covers, proven, verdict
 from ekfsim.views.numbers import instant
 
 HEAD = ("filter", "position", "heading", "> 50 %", "> 95 %", "> 99.9 %", "ellipse", "cone", "lost", "NIS", "verdict")
@@ -58,7 +58,8 @@ def sentence(result: Result) -> str:
     if found.word is Word.NO_EVIDENCE:
         return f"{found.word.value}: at the last step no run is uncertain of anything"
     since = "" if found.since is None else f" from {when(found.since)} on"
-    return f"{found.word.value}{since}: {'; '.join(evidence(last))}"
+    doubt = "" if proven(last) else "; so few runs are no proof, their intervals reach what is consistent: run more"
+    return f"{found.word.value}{since}: {'; '.join(evidence(last))}{doubt}"
 
 
 def when(at: AtStep) -> str:

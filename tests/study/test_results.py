@@ -9,7 +9,7 @@ from scipy import stats
 from ekfsim.study.counting import IMPOSSIBLE
 from ekfsim.study.results import Mean, Result, Share
 from ekfsim.study.tally import AtSteps, Bin, Extreme, OfRuns, Tally
-from ekfsim.study.verdict import Word, verdict, word_at
+from ekfsim.study.verdict import Word, proven, verdict, word_at
 
 
 @pytest.mark.parametrize(("runs", "of"), [(0, 10), (1, 10), (5, 10), (10, 10), (3, 1000), (997, 1000), (1, 1)])
@@ -40,9 +40,10 @@ def result(above=(500,), ellipse=(954,), lost_from=None, runs=1000, ellipse_runs
     """A result of so many runs a step, everything else as it should be."""
     k = len(above)
     full, none = np.full(k, runs), np.zeros(k, np.int64)
+    drawn = full if ellipse_runs is None else ellipse_runs
     at = AtSteps(
         judged=more.get("judged", full), impossible=none, above_50=np.array(above), above_95=full // 20,
-        above_999=full // 1000, in_ellipse=np.array(ellipse), ellipse_runs=full if ellipse_runs is None else ellipse_runs,
+        above_999=full // 1000, in_ellipse=np.array(ellipse), ellipse_runs=drawn,
         in_cone=full, cone_runs=full, nees_runs=full, nees_dof=3 * full, nees_sum=3.0 * full,
         position_square=0.01 * full, heading_square=0.0004 * full,
     )  # fmt: skip
@@ -83,6 +84,16 @@ def test_a_verdict_tells_since_when_without_a_gap():
     assert (found.word, found.since) == (Word.CONSISTENT, None)
     found = verdict(result(above=(500, 500, 500), ellipse=(954,) * 3, lost_from={0: 15, 1: 5}))
     assert (found.word, found.since.step) == (Word.OVER_CONFIDENT, 1)
+
+
+def test_what_its_interval_still_allows_is_not_proven():
+    assert proven(result().last)
+    assert proven(result(above=(600,)).last)
+    assert not proven(result(above=(555,)).last)
+    assert not proven(result(above=(445,)).last)
+    assert proven(result(ellipse=(900,)).last)
+    assert not proven(result(lost_from={0: 21}).last)
+    assert proven(result(lost_from={0: 40}).last)
 
 
 def test_lost_are_those_that_are_lost_from_a_step_or_an_earlier_one():

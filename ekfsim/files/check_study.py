@@ -1,0 +1,38 @@
+"""Checking a file of any kind; of a study file also what it makes of the scene that it studies."""
+
+from pathlib import Path
+
+from ekfsim.errors import InputError
+from ekfsim.files import load
+from ekfsim.files.load import Loaded
+from ekfsim.files.load_study import read_request
+from ekfsim.scene import Scene
+from ekfsim.world import World
+
+
+def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
+    """All mistakes and warnings of a world, commands or study file and of the files that it names.
+
+    Raises UsageError where there is no such file.
+    """
+    try:
+        kind = load.kind_of(path)
+    except InputError as error:
+        return Loaded[World](mistakes=error.mistakes)
+    return check_study(path) if kind == "study" else load.check(path)
+
+
+def check_study(path: str | Path) -> Loaded[Scene]:
+    """Mistakes of a study file, of its scene, and of each value that it sweeps."""
+    found = Loaded[Scene]()
+    try:
+        request = read_request(str(path))
+        for swept in ((), *((one,) for values in request.sweep for one in values)):
+            settings = (*request.settings, *swept)
+            loaded = load.read_scene(request.commands, request.world, None, request.reading, settings)
+            found.mistakes += [mistake for mistake in loaded.mistakes if mistake not in found.mistakes]
+            found.warnings += [warning for warning in loaded.warnings if warning not in found.warnings]
+            found.value = loaded.value
+    except InputError as error:
+        found.mistakes += error.mistakes
+    return found
