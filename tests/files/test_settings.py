@@ -1,0 +1,125 @@
+"""KEY=VALUE overrules a number of a world or commands file, and all checks of the file hold for it."""
+
+import math
+
+import pytest
+
+from ekfsim.errors import InputError, UsageError
+from ekfsim.files.load import read_scene
+from ekfsim.files.settings import setting, swept
+from ekfsim.systems.instruments import Infrared
+
+WORLD = """\
+name: lab
+boundary: [[-5, -5], [5, -5], [5, 5], [-5, 5]]
+start: {x: 1, y: 0, theta: 30}
+noise:
+  executionDstSigmaRatio: 0.05
+  executionAngSigmaRatio: 0.05
+  odometryDstSigmaRatio: 0.05
+  odometryAngSigmaRatio: 0.05
+  rangeSigmaRatio: 0.01
+"""
+COMMANDS = "world: world.yaml\ngate: 0.9\ncommands: [move: {distance: 1, angle: 0}]\n"
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "world.yaml").write_text(WORLD)
+    (tmp_path / "commands.yaml").write_text(COMMANDS)
+    return tmp_path
+
+
+def scene(*settings):
+    return read_scene("commands.yaml", settings=[setting(text) for text in settings]).get()
+
+
+def test_a_number_of_the_noise_reaches_the_filter_unless_belief_pins_it(place):
+    world = scene("noise.rangeSigmaRatio=0.3").world
+    assert (world.noise.range, world.told.noise.range) == (0.3, 0.3)
+    (place / "world.yaml").write_text(f"{WORLD}belief: {{noise: {{rangeSigmaRatio: 0.02}}}}\n")
+    world = scene("noise.rangeSigmaRatio=0.3", "noise.odometryAngSigmaRatio=0.2").world
+    assert (world.noise.range, world.told.noise.range) == (0.3, 0.02)
+    assert (world.noise.odometry_angle, world.told.noise.odometry_angle) == (0.2, 0.2)
+    world = scene("belief.noise.rangeSigmaRatio=0.4").world
+    assert (world.noise.range, world.told.noise.range) == (0.01, 0.4)
+
+
+def test_what_a_file_does_not_name_starts_from_its_default():
+    world = scene("faults.rangeBias=0.1", "belief.start.theta=40", "start.sigma.y=0.2", "belief.sigma.x=0.3").world
+    assert (world.faults.range_bias, world.faults.range_scale) == (0.1, 1.0)
+    assert world.told.start == pytest.approx([1.0, 0.0, math.radians(40)])
+    assert world.start == pytest.approx([1.0, 0.0, math.radians(30)])
+    assert world.start_sigma.tolist() == [0.0, 0.2, 0.0]
+    assert world.told.sigma.tolist() == [0.3, 0.2, 0.0]
+
+
+def test_a_start_that_is_set_is_believed_too():
+    world = scene("start.x=2.5", "belief.start.y=1").world
+    assert world.start[:2].tolist() == [2.5, 0.0]
+    assert world.told.start[:2].tolist() == [2.5, 1.0]
+
+
+def test_gate_and_guard_belong_to_the_commands():
+    assert (scene().gate, scene("gate=0.5").gate, scene("gate=off").gate) == (0.9, 0.5, None)
+    assert scene("guard=skip").guard == "skip"
+    assert scene("guard=skip", "gate=off").settings == ("guard=skip", "gate=off")
+
+
+def test_values_are_yaml():
+    assert scene("noise.rangeSigmaRatio=1e-3").world.noise.range == 0.001
+    with pytest.raises(UsageError, match="'yes' is text where a number belongs"):
+        scene("noise.rangeSigmaRatio=yes")
+
+
+def test_an_alias_changes_in_one_place_alone(place):
+    (place / "world.yaml").write_text(WORLD.replace("start: {", "start: &pose {") + "belief: {start: *pose}\n")
+    world = scene("belief.start.x=2").world
+    assert (world.start[0], world.told.start[0]) == (1.0, 2.0)
+
+
+def test_the_numbers_of_other_systems(place):
+    (place / "world.yaml").write_text(
+        "name: cellar\nsystem: pioneer\nboundary: [[0, 0], [4, 0], [4, 4], [0, 4]]\nstart: {x: 1, y: 1, theta: 0}\n"
+    )
+    (place / "commands.yaml").write_text("world: world.yaml\ndrive: {path: square, side: 1}\n")
+    plain, made = scene().world, scene("robot.rate=7", "sensors.infrared.rate=3").world
+    assert (made.robot.rate, made.robot.width) == (7, plain.robot.width)
+    assert [type(one) for one in made.instruments] == [type(one) for one in plain.instruments]
+    assert [one.rate for one in made.instruments if isinstance(one, Infrared)] == [3]
+    assert made.instruments[0] == plain.instruments[0]
+    with pytest.raises(UsageError, match=r"--set sensors.markers.rate=3: the world has no sensor 'markers'; it has: "):
+        scene("sensors.markers.rate=3")
+    with pytest.raises(UsageError, match=r"--set robot.turnDensity=3: the robot of the system 'pioneer' has no key"):
+        scene("robot.turnDensity=3")
+    with pytest.raises(UsageError, match=r"--set noise.rangeSigmaRatio=3: the noise ratios belong to the classroom's"):
+        scene("noise.rangeSigmaRatio=3")
+
+
+def test_two_mistakes_are_two_lines():
+    with pytest.raises(UsageError) as told:
+        scene("noise.rangeSigmaRatio=-3", "guard=hop", "faults.shortReturns=0.1")
+    assert str(told.value).splitlines() == [
+        "--set guard=hop: 'hop' is not known here; write off, warn or skip",
+        "--set noise.rangeSigmaRatio=-3: -3 is negative; write a number of 0 or more",
+    ]
+
+
+def test_a_mistake_of_the_file_itself_is_told_as_that(place):
+    (place / "world.yaml").write_text(WORLD.replace("0.01", "-1"))
+    with pytest.raises(InputError, match=r"^world.yaml:9:20: noise.rangeSigmaRatio: -1 is negative"):
+        scene("noise.rangeSigmaRatio=0.1")
+
+
+@pytest.mark.parametrize("text", ["", "=", "=1", "gate=", "gate", " = "])
+def test_what_is_no_setting(text):
+    with pytest.raises(UsageError, match="this is no KEY=VALUE"):
+        setting(text)
+
+
+def test_a_sweep_has_its_values_in_order():
+    assert [str(one) for one in swept(" gate = off , 0.5,0.9")] == ["gate=off", "gate=0.5", "gate=0.9"]
+    for text in ("gate=0.5,,0.6", "gate=", "gate=0.5,"):
+        with pytest.raises(UsageError, match="this is no KEY=VALUE,VALUE,…"):
+            swept(text)
