@@ -5,7 +5,7 @@ from pathlib import Path
 from ekfsim.errors import InputError
 from ekfsim.files import load
 from ekfsim.files.load import Loaded
-from ekfsim.files.load_study import read_request
+from ekfsim.files.load_study import FILTER, read_request
 from ekfsim.scene import Scene
 from ekfsim.world import World
 
@@ -23,16 +23,20 @@ def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
 
 
 def check_study(path: str | Path) -> Loaded[Scene]:
-    """Mistakes of a study file, of its scene, and of each value that it sweeps."""
+    """Mistakes of a study file, of its scene, and of each value that it sweeps or compares."""
     found = Loaded[Scene]()
     try:
         request = read_request(str(path))
-        for swept in ((), *((one,) for values in request.sweep for one in values)):
-            settings = (*request.settings, *swept)
-            loaded = load.read_scene(request.commands, request.world, None, request.reading, settings)
-            found.mistakes += [mistake for mistake in loaded.mistakes if mistake not in found.mistakes]
-            found.warnings += [warning for warning in loaded.warnings if warning not in found.warnings]
-            found.value = loaded.value
     except InputError as error:
-        found.mistakes += error.mistakes
+        return Loaded[Scene](mistakes=error.mistakes)
+    sides = (tuple(one for one in side if one.key != FILTER) for side in (request.a, request.b))
+    for more in ((), *((one,) for values in request.sweep for one in values), *sides):
+        settings = request.overruled(more, ()).settings
+        try:
+            loaded = load.read_scene(request.commands, request.world, None, request.reading, settings)
+        except InputError as error:
+            loaded = Loaded[Scene](mistakes=error.mistakes)
+        found.mistakes += [mistake for mistake in loaded.mistakes if mistake not in found.mistakes]
+        found.warnings += [warning for warning in loaded.warnings if warning not in found.warnings]
+        found.value = loaded.value
     return found

@@ -119,6 +119,17 @@ def test_mistakes_in_a_file_of_a_comparison_are_told_at_their_place(place):
     ]
 
 
+def test_check_looks_at_either_side(place):
+    (place / "compare.yaml").write_text("study: short.yaml\na: {gate: 2, filter: ukf}\nb: {start.x: 100}\n")
+    ended = ekfsim("check", "compare.yaml")
+    assert ended.status == 2
+    first, second = ended.out.splitlines()
+    assert first.startswith("compare.yaml:2:11: a.gate: ")
+    assert second.startswith("compare.yaml:3:14: b.start.x: ")
+    (place / "compare.yaml").write_text("study: short.yaml\nset: {gate: 0.9}\nb: {gate: 0.99}\n")
+    assert ekfsim("check", "compare.yaml").out == "compare.yaml: ok\n"
+
+
 def test_a_file_of_a_comparison_is_no_study(place):
     (place / "compare.yaml").write_text("study: short.yaml\nruns: 100\nb: {guard: skip}\n")
     ended = ekfsim("study", "compare.yaml", "-o", "out")
