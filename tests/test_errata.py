@@ -1,4 +1,4 @@
-"""The misprints of the documents that are no model's own; those of the models stand in models/test_errata.py."""
+"""The misprints of the documents that are no model's own; those of the models stand in models/test_model_errata.py."""
 
 import math
 

@@ -31,7 +31,7 @@ MOTIONS = {
     "inertial, unwrapped": (PlanarImu(wrapped=False), INERTIAL),
 }
 EVERY = pytest.mark.parametrize(("motion", "layout"), MOTIONS.values(), ids=MOTIONS)
-DERIVED = pytest.mark.parametrize(  # the recipe's F is not its derivative: see test_errata
+DERIVED = pytest.mark.parametrize(  # the recipe's F is not its derivative: see test_model_errata
     ("motion", "layout"), [value for value in MOTIONS.values() if not isinstance(value[0], WheelSpeedsAsWritten)]
 )
 TIMED = pytest.mark.parametrize(
