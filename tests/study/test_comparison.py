@@ -13,7 +13,7 @@ from ekfsim.filters.chi_square import quantile
 from ekfsim.localization import play
 from ekfsim.records import Move, Sense
 from ekfsim.study.block import run_block
-from ekfsim.study.comparison import of_means, of_shares
+from ekfsim.study.comparison import correlation, of_means, of_shares
 from ekfsim.study.pairs import Pairs, Shared, Sums, run_pairs
 from ekfsim.world import Noise
 
@@ -80,6 +80,17 @@ def test_the_interval_of_a_paired_difference_holds_it_95_times_in_100():
             tables = rng.multinomial(runs, p, size=2000).tolist()
             held = [d.low <= true <= d.high for d in (of_shares(Shared(*table)) for table in tables)]
             assert 0.94 <= np.mean(held) <= most
+
+
+def test_the_interval_is_newcombes():
+    """The first line of his table of examples (Statistics in Medicine 17, 1998, 2635): 0.0569 to 0.3404."""
+    assert of_shares(Shared(36, 2, 12, 0))[2:] == pytest.approx((0.2, 0.0569, 0.3404), abs=5e-5)
+
+
+def test_the_correlation_is_corrected_for_continuity():
+    assert correlation(Shared(30, 3, 5, 12)) == pytest.approx((360 - 15 - 25) / math.sqrt(33 * 17 * 35 * 15))
+    assert correlation(Shared(3, 30, 12, 5)) == pytest.approx((15 - 360) / math.sqrt(33 * 17 * 15 * 35))
+    assert correlation(Shared(3, 2, 2, 3)) == 0.0
 
 
 @pytest.mark.parametrize(
