@@ -27,6 +27,8 @@ class Tum:
         clock = "step" if scene.commanded else "t (s)"
         for file, name in ((truth, "truth"), (estimate, "estimate")):
             file.write(f"# {name}: {told_in_a_line(scene)}\n# {clock} x y z qx qy qz qw (m, unit quaternion)\n")
+        if scene.log is not None and all(entry.truth is None for entry in scene.log.entries):
+            truth.write("# the log does not tell the truth\n")
 
     def write(self, step: Step) -> None:
         """Append the two poses after this step; with a clock, once the next instant begins."""

@@ -128,6 +128,8 @@ def test_every_output_of_a_run(place, name):
     poses = [[*map(float, row.split())] for row in (place / "tum/estimate.tum").read_text().splitlines()[2:]]
     assert all(math.hypot(*pose[6:]) == pytest.approx(1) for pose in poses)
     assert all(before[0] < after[0] for before, after in pairwise(poses))
+    unknown = "# the log does not tell the truth\n" in (place / "tum/truth.tum").read_text()
+    assert unknown == (name == "pylon_log")
     summary = json.loads((place / "a.json").read_text())
     assert summary["steps"] == len(steps)
     assert summary["updates"] == sum(step["updated"] for step in readings)
