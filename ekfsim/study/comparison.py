@@ -96,7 +96,7 @@ class Difference(NamedTuple):
 
 
 def of_shares(found: Shared) -> Difference:
-    """The difference of two shares of the same runs (Newcombe, Stat. Med. 17, 1998, 2635, method 10): from the runs that differ.
+    """The difference of two shares of the same runs: method 10 of Newcombe, Statistics in Medicine 17, 1998, 2635.
 
     With Wilson's interval (l, u) of each share p and their correlation φ,
 
