@@ -110,9 +110,10 @@ def test_instants_keep_all_their_digits():
     assert told == [step.entry.t for step in play(made)]
 
 
-def test_a_run_without_truth_has_an_empty_one():
+def test_a_run_without_truth_has_an_empty_one_that_says_so():
     truth, estimate = tum_of(speeds(6, 3))
-    assert [line[0] for line in truth.splitlines()] == ["#", "#"]
+    assert [line[0] for line in truth.splitlines()] == ["#", "#", "#"]
+    assert truth.endswith("\n# the log does not tell the truth\n")
     assert len(estimate.splitlines()) == 2 + 7
 
 
