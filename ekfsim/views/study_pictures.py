@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import Normalize, TwoSlopeNorm
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -25,6 +25,7 @@ from ekfsim.views.lettering import drawable, wrapped
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")  # of the filters
 GREY = "#666666"
 DPI = 120
+FAINT = 0.1  # how far from where it should be a share must lie to have the deepest colour of a map
 MOST_MAPS = 12  # of two swept keys, in one row of pictures
 FOOT, FOOT_LINES = 0.24, 2  # in, for the lines that tell what made it
 
@@ -176,12 +177,14 @@ def _maps(plan: Plan, results: Sequence[Result], quantities: Sequence[Quantity])
         norm = _norm(quantity, np.concatenate(shares))
         for axes, (name, _), column in zip(row, shown, shares, strict=True):
             image = _map(axes, column.reshape(len(down), len(across)), norm, quantity.colours)
-            axes.set_title(f"{name}: {quantity.title}", fontsize=9)
+            title = f"{name}\n{quantity.title}" if len(quantities) > 1 else name
+            axes.set_title("\n".join(wrapped(title.split("\n"), int(13 * wide), 6)), fontsize=9)
             axes.set_xticks(range(len(across)), across, rotation=45 if len(across) > 6 else 0)
             axes.set_yticks(range(len(down)), down)
-        row[0].set_ylabel(plan.keys[-2])
-        figure.colorbar(image, ax=row.tolist(), format=PercentFormatter(1.0, symbol=" %"))
-    figure.supxlabel(plan.keys[-1], fontsize=10)
+        row[0].set_ylabel(plan.keys[-2], fontsize=9)
+        bar = figure.colorbar(image, ax=row.tolist(), format=PercentFormatter(1.0, symbol=" %"))
+        bar.ax.set_ylim(max(norm.vmin or 0.0, 0.0), min(norm.vmax or 1.0, 1.0))
+    grid[-1][(len(shown) - 1) // 2].set_xlabel(plan.keys[-1])
     if len(held) > len(shown):
         figure.text(0.005, 0.004, f"{len(shown)} of {len(held)} maps; summary.csv holds all", fontsize=7, va="bottom")
     return figure
@@ -197,12 +200,12 @@ def _columns(plan: Plan, results: Sequence[Result]) -> Iterator[tuple[str, list[
 
 
 def _norm(quantity: Quantity, shares: Array) -> Normalize:
-    """How shares become colours: white is as it should be, and the farthest of them as deep as can be."""
+    """How shares become colours: white is as it should be, and as deep for as much too many as for too few."""
     known = shares[~np.isnan(shares)].tolist()
     if quantity.colours == "Reds":
         return Normalize(0.0, max([2 * quantity.meant, *known]))
-    low, high = min([0.9 * quantity.meant, *known]), max([min(2 * quantity.meant, 1.0), *known])
-    return TwoSlopeNorm(quantity.meant, low if quantity.meant > 0.9 else 0.0, high)
+    reach = max([FAINT, *(abs(share - quantity.meant) for share in known)])
+    return Normalize(quantity.meant - reach, quantity.meant + reach)
 
 
 def _map(axes: Axes, shares: Array, norm: Normalize, colours: str) -> AxesImage:

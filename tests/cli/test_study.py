@@ -379,3 +379,24 @@ def test_two_at_one_place_are_one_too_many(place):
     kill(running)
     assert told.status == 2
     assert told.err == "ekfsim: out.partial: another study is at work there; wait for it, or choose another name\n"
+
+
+@pytest.mark.skipif(not hasattr(os, "openpty"), reason="there are no terminals to be had")
+def test_a_terminal_sees_how_far_it_is_and_how_many_are_lost_so_far():
+    shown, terminal = os.openpty()
+    running = started("study", "short.yaml", "--runs", 3000, "-o", "out", stderr=terminal)
+    os.close(terminal)
+    text = b""
+    while True:
+        try:
+            piece = os.read(shown, 65536)
+        except OSError:  # the other end is closed
+            break
+        if not piece:
+            break
+        text += piece
+    os.close(shown)
+    assert running.wait() == 0
+    assert b"blocks" in text
+    assert b"100%" in text
+    assert b"% lost" in text

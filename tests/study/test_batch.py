@@ -10,6 +10,7 @@ from systems_scenes import SCENES
 from ekfsim.files.load import load_scene
 from ekfsim.filters import FILTERS
 from ekfsim.localization import play
+from ekfsim.study.block import run_block
 from ekfsim.systems.drives import Stretch, Stretches
 
 SOME = np.array([3, 1023, 1024, 2000])  # runs, of three blocks
@@ -50,3 +51,14 @@ def test_a_run_alone_is_its_row_of_the_batch(made, name):
     within = 1e-10 if made == "rich" else 1e-12  # kidnapped by 8 m, rounding errors grow
     for k, run in enumerate(SOME.tolist()):
         agree(ends(play(replace(scene, run=run))), batch, k, within)
+
+
+@pytest.mark.parametrize("name", ["ekf", "ukf"])
+@pytest.mark.parametrize("made", ["tour", "diverge-01-wrong-wall", "diverge-03c-slip", "diverge-11-short-returns"])
+def test_the_worst_run_of_a_packaged_scene_is_as_bad_when_it_is_played(made, name):
+    """A lost filter magnifies rounding errors; not so much that another story were told."""
+    scene = replace(load_scene(made), filter=name)
+    worst = run_block(scene, 0, 1024).worst
+    *_, last = play(replace(scene, run=worst.run))
+    assert bool(last.nees.impossible) == worst.impossible
+    assert float(last.nees.value) == pytest.approx(worst.nees, rel=1e-6)
