@@ -10,7 +10,7 @@ import click
 from ekfsim import process
 from ekfsim.asked import engine_of, scene_of
 from ekfsim.errors import RunError, UsageError
-from ekfsim.options import FORCE, Result, Source, compare_options, scene_options, study_options
+from ekfsim.options import FORCE, READING, Result, Source, compare_options, scene_options, study_options
 from ekfsim.process import Program, heed, say, shown
 from ekfsim.progress import blocks_bar, study_into
 from ekfsim.version import VERSION
@@ -204,8 +204,7 @@ def new(file: Path, kind: str | None, force: bool) -> None:
 @click.option("--format", "formats", type=click.Choice(["png", "svg", "pdf"]), multiple=True, default=("png",),
               show_default=True, help="May be given several times.")  # fmt: skip
 @click.option("--log", type=Source(), metavar="PATH", help="A recorded log in place of the simulated twin.")
-@click.option("--reading", type=click.Choice(["printed", "coded", "corrected"]), default="corrected",
-              show_default=True, help="Which reading of the document, where its print and its code are wrong.")  # fmt: skip
+@READING
 @click.option("--seed", type=click.IntRange(min=0), help="In place of the scene's seed.")
 @FORCE
 def figures(

@@ -13,6 +13,7 @@ READING = click.option("--reading", type=click.Choice(READINGS), default="correc
                        help="Which to follow where a document's print, its code and the truth differ.")  # fmt: skip
 SET = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
                    help="Overrule a number of the world, e.g. noise.rangeSigmaRatio=0.02; repeatable.")  # fmt: skip
+FAST = click.option("--fast", is_flag=True, help="Calculate with code that Numba compiles (the extra `fast`).")
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
 
 
@@ -103,6 +104,7 @@ def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
         click.option("--workers", type=click.IntRange(1, 1024), default=1, show_default=True, metavar="N",
                      help="Processes on this machine."),
         click.option("--cluster", metavar="ADDRESS", help="The scheduler of a Dask cluster, e.g. tcp://10.0.0.1:8786."),
+        FAST,
         click.option("--resume", is_flag=True, help="Go on with a study that did not end."),
         click.option("--expect", is_flag=True,
                      help="Verify what COMMANDS promises under `expect`: status 1 where it is not kept."),
@@ -135,6 +137,7 @@ def compare_options(command: Callable[..., Any]) -> Callable[..., Any]:
         click.option("--workers", type=click.IntRange(1, 1024), default=1, show_default=True, metavar="N",
                      help="Processes on this machine."),
         click.option("--cluster", metavar="ADDRESS", help="The scheduler of a Dask cluster, e.g. tcp://10.0.0.1:8786."),
+        FAST,
         click.option("--out", "-o", type=Result(), help="A folder for a table, a picture and what repeats them."),
         FORCE,
     ]  # fmt: skip

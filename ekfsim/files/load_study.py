@@ -34,6 +34,7 @@ class Request:
     settings: tuple[Setting, ...] = ()  # for all cells
     sweep: tuple[tuple[Setting, ...], ...] = ()  # for each swept key one setting for each of its values
     reading: DocumentReading = "corrected"
+    fast: bool = False  # by code that Numba compiles: alike but for the last digits
     a: tuple[Setting, ...] = ()  # of a comparison: what one side sets, its filter included
     b: tuple[Setting, ...] = ()
     written_by: str = ""  # the version that wrote the study file
@@ -60,7 +61,7 @@ class Request:
 def asked(
     commands: str, world: str | None, runs: int | None, seed: int | None, filters: str | None, sweeps: Sequence[str],
     settings: Sequence[str], gate: float | None, guard: str | None,
-    reading: DocumentReading | None,
+    reading: DocumentReading | None, fast: bool,
 ) -> Request:  # fmt: skip
     """What the command line asks for: a file, overruled by its options. Raises UsageError or InputError."""
     request = read_request(commands)
@@ -73,6 +74,7 @@ def asked(
     return replace(
         request, filters=watching, runs=request.runs if runs is None else runs,
         seed=request.seed if seed is None else seed, reading=reading or request.reading,
+        fast=fast or request.fast,
     ).checked()  # fmt: skip
 
 
@@ -99,7 +101,7 @@ def read_request(name: str) -> Request:
     a, b = (tuple(side_of(root, side, str(path))) for side in SIDES)
     return Request(
         commands, world, keys.runs, keys.seed, tuple(keys.filters or ()), tuple(settings_of(root, keys, str(path))),
-        tuple(map(tuple, sweep_of(root, keys, str(path)))), keys.reading, a, b, keys.ekfsim,
+        tuple(map(tuple, sweep_of(root, keys, str(path)))), keys.reading, keys.fast, a, b, keys.ekfsim,
         commands_name, world_name,
     )  # fmt: skip
 

@@ -71,6 +71,12 @@ class StudyKeys(Strict):
     reading: Literal["printed", "coded", "corrected"] = Field(
         "corrected", description="Which reading of the system's document the filter follows.", examples=["corrected"]
     )
+    fast: bool = Field(
+        False,
+        description="Whether the runs are calculated by code that Numba compiles (the extra `fast`); alike but for the "
+        "last digits.",
+        examples=[True],
+    )
     a: Side = Field({}, description="What one side of `ekfsim compare` sets.", examples=[{"guard": "off"}])
     b: Side = Field({}, description="What the other side sets. With a or b this file is a comparison.", examples=[SIDE])
     ekfsim: Text = Field("", description="The version that wrote this file.", examples=["0.1.0"])

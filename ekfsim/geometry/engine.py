@@ -8,6 +8,8 @@ beliefs but for the last digits.
 """
 
 import importlib.util
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Literal, get_args
 
 Engine = Literal["numpy", "numba"]
@@ -21,9 +23,25 @@ def use(engine: Engine) -> None:
     global _used
     if engine not in ENGINES:
         raise ValueError(f"{engine!r} is no engine; there are {' and '.join(ENGINES)}")
-    if engine == "numba" and importlib.util.find_spec("numba") is None:
+    if engine == "numba" and not compiles():
         raise ModuleNotFoundError("numba is not installed; it comes with ekfsim's extra `fast`", name="numba")
     _used = engine
+
+
+def compiles() -> bool:
+    """Whether Numba is installed."""
+    return importlib.util.find_spec("numba") is not None
+
+
+@contextmanager
+def using(engine: Engine) -> Iterator[None]:
+    """Choose for the casts of a block alone."""
+    before = used()
+    use(engine)
+    try:
+        yield
+    finally:
+        use(before)
 
 
 def used() -> Engine:

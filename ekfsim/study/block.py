@@ -8,6 +8,7 @@ import numpy as np
 from ekfsim.consistency import LOST, error
 from ekfsim.filters.belief import Correction, posed
 from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.geometry.engine import used, using
 from ekfsim.localization import play
 from ekfsim.records import Step, expanded_length
 from ekfsim.scene import Scene
@@ -37,9 +38,10 @@ class Ends(NamedTuple):
     heading: Array  # rad, without its sign
 
 
-def run_block(scene: Scene, first: int, runs: int) -> Tally:
-    """What becomes of the runs first … first + runs − 1 of a scene."""
-    return watched(scene, first, runs).tally()
+def run_block(scene: Scene, first: int, runs: int, fast: bool = False) -> Tally:
+    """What becomes of the runs first … first + runs − 1 of a scene; fast : by code that Numba compiles"""
+    with using("numba" if fast else used()):
+        return watched(scene, first, runs).tally()
 
 
 def watched(scene: Scene, first: int, runs: int) -> "Watch":

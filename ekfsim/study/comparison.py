@@ -37,7 +37,8 @@ class Comparison:
 
     def block(self, case: int) -> Callable[[int, int], Pairs]:
         """What becomes of pairs of runs: a function of the first and of how many."""
-        return functools.partial(run_pairs, self.a.cases[case].scene, self.b.cases[case].scene)
+        a, b = self.a.cases[case].scene, self.b.cases[case].scene
+        return functools.partial(run_pairs, a, b, fast=self.a.request.fast)
 
     def tasks(self) -> Iterator[Task]:
         """Every block, in order."""

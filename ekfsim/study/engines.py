@@ -45,7 +45,10 @@ def do_packed(packed: bytes, first: int, runs: int, version: str) -> Any:
     """A block, wherever this is called. Raises RunError where another version of ekfsim is installed."""
     if version != VERSION:
         raise RunError(f"a worker has ekfsim {VERSION}, and this is {version}; install the same version there")
-    return _unpacked(packed)(first, runs)
+    try:
+        return _unpacked(packed)(first, runs)
+    except ModuleNotFoundError as missing:
+        raise RunError(f"a worker cannot do this: {missing}") from missing
 
 
 @functools.lru_cache(maxsize=8)

@@ -8,6 +8,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from ekfsim.geometry import Array, Booleans
+from ekfsim.geometry.engine import used, using
 from ekfsim.scene import Scene
 from ekfsim.study.block import watched
 from ekfsim.study.tally import Tally
@@ -78,9 +79,13 @@ class Pairs:
         )
 
 
-def run_pairs(a: Scene, b: Scene, first: int, runs: int) -> Pairs:
-    """What becomes of the runs first … first + runs − 1 under either of two settings, on the same draws."""
-    under_a, under_b = watched(a, first, runs), watched(b, first, runs)
+def run_pairs(a: Scene, b: Scene, first: int, runs: int, fast: bool = False) -> Pairs:
+    """What becomes of the runs first … first + runs − 1 under either of two settings, on the same draws.
+
+    fast : by code that Numba compiles
+    """
+    with using("numba" if fast else used()):
+        under_a, under_b = watched(a, first, runs), watched(b, first, runs)
     one, other = under_a.ends(), under_b.ends()
     drawn = one.drawn & other.drawn
     return Pairs(

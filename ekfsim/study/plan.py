@@ -15,6 +15,7 @@ from ekfsim.files.load_study import Request
 from ekfsim.files.marked import parse
 from ekfsim.files.settings import Setting
 from ekfsim.files.source import bytes_of, text_of
+from ekfsim.geometry import engine
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import BLOCK
 from ekfsim.study.block import run_block
@@ -59,6 +60,8 @@ class Plan:
         """The plan of what is asked. Raises UsageError or InputError where a cell of it is no sound scene."""
         if request.a or request.b:
             raise UsageError(f"{request.commands_name}: puts two settings side by side; run it with `ekfsim compare`")
+        if request.fast and not engine.compiles():
+            raise UsageError("--fast needs Numba; install it with: pip install 'ekfsim[fast]'")
         cells = math.prod(map(len, request.sweep))
         if cells * max(len(request.filters), 1) > MOST_CASES:
             wrong = f"the grid has {cells} cells for {max(len(request.filters), 1)} filters"
@@ -103,7 +106,7 @@ class Plan:
 
     def block(self, case: int) -> Callable[[int, int], Tally]:
         """What becomes of runs of a case: a function of the first and of how many."""
-        return functools.partial(run_block, self.cases[case].scene)
+        return functools.partial(run_block, self.cases[case].scene, fast=self.request.fast)
 
     @property
     def blocks(self) -> int:
@@ -123,6 +126,7 @@ class Plan:
             "sweep": " ".join(f"{values[0].key}={','.join(one.value for one in values)}" for values in request.sweep),
             "set": " ".join(map(str, request.settings)),
             "reading": request.reading,
+            "fast": request.fast,
         }
 
 

@@ -62,4 +62,6 @@ def lines(comparison: Comparison) -> Iterator[str]:
         yield f"  {FILTER}: {plan.cases[0].filter}"
         yield from (f"  {one.key}: {written(one)}" for one in told if one.key != FILTER)
     yield f"reading: {request.reading}"
+    if request.fast:
+        yield "fast: true"
     yield f"ekfsim: '{VERSION}'"

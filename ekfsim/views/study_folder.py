@@ -50,6 +50,8 @@ def study_lines(plan: Plan) -> Iterator[str]:
         yield "set:"
         yield from (f"  {one.key}: {written(one)}" for one in request.settings)
     yield f"reading: {request.reading}"
+    if request.fast:
+        yield "fast: true"
     yield f"ekfsim: '{VERSION}'"
 
 

@@ -6,11 +6,17 @@ import os
 import shutil
 import signal
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import yaml
 from program import SHORT, WORLD, ekfsim, ended, lay_out, left_in, process, started, wait_for
+
+from ekfsim.errors import UsageError
+from ekfsim.files.load_study import read_request
+from ekfsim.geometry import engine
+from ekfsim.study.plan import Plan
 
 FOLDER = ["commands.yaml", "coverage.png", "divergence.png", "nees.png", "steps.csv", "study.yaml", "summary.csv",
           "world.yaml"]  # fmt: skip
@@ -400,3 +406,21 @@ def test_a_terminal_sees_how_far_it_is_and_how_many_are_lost_so_far():
     assert b"blocks" in text
     assert b"100%" in text
     assert b"% lost" in text
+
+
+def test_a_fast_study_says_the_same(place):
+    pytest.importorskip("numba")
+    for out, more in (("plain", ()), ("fast", ("--fast",))):
+        assert ekfsim("study", "short.yaml", "--runs", 1500, *more, "-o", out).status == 0
+    (plain,), (fast,) = rows("plain/summary.csv"), rows("fast/summary.csv")
+    for name, value in plain.items():
+        assert fast[name] == value or float(fast[name]) == pytest.approx(float(value), rel=1e-9)
+    assert "fast: true" in (place / "fast" / "study.yaml").read_text()
+    assert ekfsim("study", "fast/study.yaml", "-o", "again").status == 0
+    assert rows("again/summary.csv") == [fast]
+
+
+def test_a_fast_study_without_numba_says_what_to_install(monkeypatch):
+    monkeypatch.setattr(engine, "compiles", lambda: False)
+    with pytest.raises(UsageError, match=r"--fast needs Numba; install it with: pip install 'ekfsim\[fast\]'"):
+        Plan.of(replace(read_request("tour"), fast=True))

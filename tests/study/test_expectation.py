@@ -8,7 +8,6 @@ from ekfsim.scene import Expect
 from ekfsim.study.expectation import findings
 from ekfsim.study.results import Share
 
-
 NONE = Share(0, 100)
 
 
