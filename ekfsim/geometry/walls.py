@@ -1,7 +1,8 @@
 """The walls of a map: which polygon each belongs to, and which of them a beam meets first.
 
 A wall is met from either side: a beam that starts inside an obstacle, or outside the boundary, meets the first edge on
-its way, whosesoever it is. What a beam through a corner, along a wall or from a wall meets is told in meeting.py.
+its way, whosesoever it is. What a beam through a corner, along a wall or from a wall meets is told in meeting.py. Which
+of the fast ways is taken when, and why there are so many, is told in __init__.py.
 """
 
 from collections.abc import Mapping
