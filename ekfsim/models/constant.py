@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.protocols import Motion, Quantity
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Constant:
+class Constant(Motion):
     """x = any n numbers; u : (…, 0) is empty."""
 
     process: Array | float = 0.0  # (n, n)
@@ -39,7 +39,3 @@ class Constant:
     def Q(self, u: Array) -> Array | float:
         """How far the parameters may wander from step to step : (n, n)"""
         return self.process
-
-    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
-        """f, F, G, M and Q at once."""
-        return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), self.process

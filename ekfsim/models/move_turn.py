@@ -8,11 +8,11 @@ import numpy as np
 from ekfsim.geometry import Array, engine
 from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.geometry.lanes import back, lanes
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.protocols import Motion, Quantity
 
 
 @dataclass(frozen=True, slots=True)
-class MoveTurn:
+class MoveTurn(Motion):
     """x = (x, y, θ) in m, m, rad; u = (d, a) in m, rad, as the odometry measured them, σ proportional to each."""
 
     distance_ratio: float

@@ -1,4 +1,4 @@
-"""Covariances of noises that do not depend on each other."""
+"""Covariances of noises that do not depend on each other, and what a step's length makes of them."""
 
 from functools import lru_cache
 
@@ -17,6 +17,11 @@ def independent(*sigmas: float) -> Array:
     covariance = np.diag(np.square(np.array(sigmas, float)))
     covariance.setflags(write=False)
     return covariance
+
+
+def per_second(dt: Array) -> Array:
+    """1/dt : (…), 0 where no time has passed. White noise that is held over dt s has the variance density² / dt."""
+    return np.divide(1.0, dt, out=np.zeros_like(dt), where=dt > 0)
 
 
 def alike(covariance: Array, axes: tuple[int, ...]) -> Array:

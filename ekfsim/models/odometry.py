@@ -7,11 +7,11 @@ import numpy as np
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.noise import alike, independent
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.protocols import Motion, Quantity
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ArctanOdometry:
+class ArctanOdometry(Motion):
     """x = (x, y, ω) in m, m, rad; u = (Δd_L, Δd_R) in m, the ways of the left and the right wheels (eqs 34, 35)."""
 
     width: float  # m, W: between the centres of left and right wheels
@@ -62,10 +62,6 @@ class ArctanOdometry:
         """The process noise : (3, 3)          eq. 8"""
         return self.process
 
-    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
-        """f, F, G, M and Q at once."""
-        return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), self.process
-
     def _way(self, u: Array) -> Array:
         """d = (Δd_R + Δd_L)/2"""
         return (u[..., 1] + u[..., 0]) / 2
@@ -80,7 +76,7 @@ class ArctanOdometry:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SkidSteer:
+class SkidSteer(Motion):
     """x = (x, y, θ) in m, m, rad; u = (u_L, u_R, dt) in m/s, m/s, s, the speeds of the wheels on either side.
 
     How the sides' speeds move the body depends on the terrain: the coefficients are measured.
@@ -140,10 +136,6 @@ class SkidSteer:
     def Q(self, u: Array) -> Array | float:
         """The process noise : (3, 3)          eq. 8"""
         return self.process
-
-    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
-        """f, F, G, M and Q at once."""
-        return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), self.process
 
     def _velocity(self, x: Array, u: Array) -> tuple[Array, Array, Array]:
         """v_x and v_y in the world's frame at the mid heading, and ω_R.          eq. 30"""

@@ -6,12 +6,12 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
-from ekfsim.models.noise import alike, independent
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.noise import alike, independent, per_second
+from ekfsim.models.protocols import Motion, Quantity
 
 
 @dataclass(frozen=True, slots=True)
-class PlanarImu:
+class PlanarImu(Motion):
     """x = (ẋ, x, ẏ, y, θ̇, θ, θ_p) in m/s, m, m/s, m, rad/s, rad, rad, all global; u = (a_x, a_y, yaw, dt).
 
     The accelerations are along the robot (a_x) and to its left (a_y) in m/s², the yaw is global in rad, dt in s.
@@ -46,7 +46,7 @@ class PlanarImu:
             px + vx * dt,
             vy + (ax * s + self.lateral_sign * ay * c) * dt,
             py + vy * dt,
-            np.where(dt > 0, self._turned(x) * _rate(dt), ω),
+            np.where(dt > 0, self._turned(x) * per_second(dt), ω),
             wrap(yaw),
             θ,
         )
@@ -59,8 +59,8 @@ class PlanarImu:
         J[..., 0, 0] = J[..., 1, 1] = J[..., 2, 2] = J[..., 3, 3] = J[..., 6, 5] = 1
         J[..., 1, 0] = J[..., 3, 2] = dt
         J[..., 4, 4] = dt <= 0
-        J[..., 4, 5] = _rate(dt)
-        J[..., 4, 6] = -_rate(dt)
+        J[..., 4, 5] = per_second(dt)
+        J[..., 4, 6] = -per_second(dt)
         return J
 
     def G(self, x: Array, u: Array) -> Array:
@@ -81,7 +81,7 @@ class PlanarImu:
         J[..., 1, 3] = x[..., 0]
         J[..., 2, 3] = ax * s + ay * c
         J[..., 3, 3] = x[..., 2]
-        J[..., 4, 3] = -self._turned(x) * _rate(dt) ** 2
+        J[..., 4, 3] = -self._turned(x) * per_second(dt) ** 2
         return J
 
     def M(self, u: Array) -> Array:
@@ -92,16 +92,7 @@ class PlanarImu:
         """Eq. 1 has no process noise: all noise enters with u."""
         return 0.0
 
-    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, float]:
-        """f, F, G, M and Q at once."""
-        return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), 0.0
-
     def _turned(self, x: Array) -> Array:
         """θ − θ_p"""
         turned = x[..., 5] - x[..., 6]
         return wrap(turned) if self.wrapped else turned
-
-
-def _rate(dt: Array) -> Array:
-    """1/dt, 0 where no time has passed."""
-    return np.divide(1.0, dt, out=np.zeros_like(dt), where=dt > 0)

@@ -15,6 +15,8 @@ class Quantity(NamedTuple):
 class Motion(Protocol):
     """x⁺ = f(x, u + noise of covariance M) + noise of covariance Q, linearised by F = ∂f/∂x and G = ∂f/∂u."""
 
+    __slots__ = ()
+
     @property
     def inputs(self) -> tuple[Quantity, ...]:
         """What the entries of u are."""
@@ -35,7 +37,8 @@ class Motion(Protocol):
         """Covariance of the process noise : (…, n, n), or 0 where there is none."""
 
     def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
-        """f, F, G, M and Q at once."""
+        """f, F, G, M and Q at once, as a filter asks for them; some motions know a quicker way."""
+        return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), self.Q(u)
 
 
 class Sensor(Protocol):

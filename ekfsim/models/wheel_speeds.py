@@ -7,13 +7,14 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap, wrap_one
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.noise import per_second
+from ekfsim.models.protocols import Motion, Quantity
 
 INPUTS = Quantity("left", "m/s"), Quantity("right", "m/s"), Quantity("dt", "s")
 
 
 @dataclass(frozen=True, slots=True)
-class WheelSpeeds:
+class WheelSpeeds(Motion):
     """x = (V, φ, x, y) in m/s, rad, m, m; u = (v_L, v_R, dt) in m/s, m/s, s."""
 
     half_track: float  # m, R: from the middle to each wheel
@@ -68,10 +69,9 @@ class WheelSpeeds:
         White noise over dt has the variances q_V = density_V²/dt of V and q_φ = density_φ²/dt of φ̇. The wheels are
         v_L = V − R φ̇ and v_R = V + R φ̇, so each has q_V + R² q_φ, and both together q_V − R² q_φ.
         """
-        dt = u[..., 2]
-        per_second = np.divide(1.0, dt, out=np.zeros_like(dt), where=dt > 0)
-        q_V, q_φ = self.speed_density**2 * per_second, (self.half_track * self.turn_density) ** 2 * per_second
-        M = np.zeros((*dt.shape, 3, 3))
+        rate = per_second(u[..., 2])
+        q_V, q_φ = self.speed_density**2 * rate, (self.half_track * self.turn_density) ** 2 * rate
+        M = np.zeros((*rate.shape, 3, 3))
         M[..., 0, 0] = M[..., 1, 1] = q_V + q_φ
         M[..., 0, 1] = M[..., 1, 0] = q_V - q_φ
         return M
@@ -80,11 +80,11 @@ class WheelSpeeds:
         """The document finds its Q by trial and error; here all noise enters with u."""
         return 0.0
 
-    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, float]:
+    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
         """f, F, G, M and Q at once."""
         if x.ndim == u.ndim == 1:
             return self._linearize_one(*x.tolist(), *u.tolist())
-        return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), 0.0
+        return Motion.linearize(self, x, u)
 
     def _linearize_one(
         self, _: float, φ: float, x: float, y: float, left: float, right: float, dt: float
@@ -118,7 +118,7 @@ class WheelSpeeds:
 
 
 @dataclass(frozen=True, slots=True)
-class WheelSpeedsAsWritten:
+class WheelSpeedsAsWritten(Motion):
     """A counter-example: the recipe by which the authors of document 003 predict. Do not drive by it.
 
     What is wrong with it: the yaw rate is made of the mean speed, V R, where (v_R − v_L)/(2R) belongs; the position
@@ -172,7 +172,3 @@ class WheelSpeedsAsWritten:
     def Q(self, u: Array) -> Array:
         """I : (4, 4)"""
         return np.eye(4)
-
-    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array]:
-        """f, F, G, M and Q at once."""
-        return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), self.Q(u)

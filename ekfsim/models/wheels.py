@@ -6,24 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap, wrap_one
+from ekfsim.geometry.angles import wrap_one
+from ekfsim.models.midpoint import arrival, by_state
 from ekfsim.models.noise import alike, independent
-from ekfsim.models.protocols import Quantity
-
-
-def _arrival(x: Array, ΔD: Array, ΔΦ: Array) -> Array:
-    """The mid-point rule: the way is driven at the heading in the middle of the turn          eqs 16 to 18"""
-    middle = x[..., 2] + ΔΦ / 2
-    return np.stack([x[..., 0] + ΔD * np.cos(middle), x[..., 1] + ΔD * np.sin(middle), wrap(x[..., 2] + ΔΦ)], axis=-1)
-
-
-def _A(middle: Array, ΔD: Array) -> Array:
-    """∂f/∂x at the mid heading : (…, 3, 3)          eq. 21"""
-    A = np.zeros((*middle.shape, 3, 3))
-    A[..., 0, 0] = A[..., 1, 1] = A[..., 2, 2] = 1
-    A[..., 0, 2] = -ΔD * np.sin(middle)
-    A[..., 1, 2] = ΔD * np.cos(middle)
-    return A
+from ekfsim.models.protocols import Motion, Quantity
 
 
 def _B(middle: Array, ΔD: Array, b: float) -> Array:
@@ -41,7 +27,7 @@ def _B(middle: Array, ΔD: Array, b: float) -> Array:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class TwoWheels:
+class TwoWheels(Motion):
     """x = (x, y, Φ) in m, m, rad; u = (ΔD_L, ΔD_R) in m, the ways of the left and the right wheel."""
 
     width: float  # m, b: between the wheels
@@ -55,12 +41,11 @@ class TwoWheels:
 
     def f(self, x: Array, u: Array) -> Array:
         """(x + ΔD cos(Φ + ΔΦ/2),  y + ΔD sin(Φ + ΔΦ/2),  Φ + ΔΦ)          eqs 16 to 18"""
-        return _arrival(x, *self._way(u))
+        return arrival(x, *self._way(u))
 
     def F(self, x: Array, u: Array) -> Array:
         """A = ∂f/∂x : (…, 3, 3)          eq. 21"""
-        ΔD, ΔΦ = self._way(u)
-        return _A(x[..., 2] + ΔΦ / 2, ΔD)
+        return by_state(x, *self._way(u))
 
     def G(self, x: Array, u: Array) -> Array:
         """B = ∂f/∂u : (…, 3, 2)          eq. 22"""
@@ -75,12 +60,6 @@ class TwoWheels:
         """The process noise : (3, 3)          eq. 26"""
         return self.process
 
-    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
-        """f, F, G, M and Q at once."""
-        ΔD, ΔΦ = self._way(u)
-        middle = x[..., 2] + ΔΦ / 2
-        return _arrival(x, ΔD, ΔΦ), _A(middle, ΔD), _B(middle, ΔD, self.width), self.M(u), self.process
-
     def _way(self, u: Array) -> tuple[Array, Array]:
         """ΔD = (ΔD_R + ΔD_L)/2      ΔΦ = (ΔD_R − ΔD_L)/b          eqs 19, 20"""
         left, right = u[..., 0], u[..., 1]
@@ -88,7 +67,7 @@ class TwoWheels:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class GyroWheels:
+class GyroWheels(Motion):
     """x = (x, y, Φ) in m, m, rad; u = (ΔD_L, ΔD_R, ω, dt) in m, m, rad/s, s: the gyro turns, the wheels drive.
 
     The heading's noise is the wheels' all the same (eq. 22), as the text and its listing mean it: G's first two columns
@@ -115,16 +94,16 @@ class GyroWheels:
             left, right, ω, dt = u.tolist()
             ΔD, middle = (right + left) / 2, Φ + ω * dt / 2
             return np.array([px + ΔD * math.cos(middle), py + ΔD * math.sin(middle), wrap_one(Φ + ω * dt)])
-        return _arrival(x, (u[..., 1] + u[..., 0]) / 2, u[..., 2] * u[..., 3])
+        return arrival(x, *self._way(u))
 
     def F(self, x: Array, u: Array) -> Array:
         """A = ∂f/∂x : (…, 3, 3)          eq. 21 at the gyro's mid heading"""
-        return _A(x[..., 2] + u[..., 2] * u[..., 3] / 2, (u[..., 1] + u[..., 0]) / 2)
+        return by_state(x, *self._way(u))
 
     def G(self, x: Array, u: Array) -> Array:
         """[B | ∂f/∂ω | ∂f/∂dt] : (…, 3, 4)          B: eq. 22 at the gyro's mid heading"""
-        ΔD, ω, dt = (u[..., 1] + u[..., 0]) / 2, u[..., 2], u[..., 3]
-        middle = x[..., 2] + ω * dt / 2
+        (ΔD, ΔΦ), ω, dt = self._way(u), u[..., 2], u[..., 3]
+        middle = x[..., 2] + ΔΦ / 2
         G = np.empty((*middle.shape, 3, 4))
         G[..., :2] = _B(middle, ΔD, self.width)
         G[..., 0, 2] = -ΔD * np.sin(middle) * dt / 2
@@ -147,7 +126,11 @@ class GyroWheels:
         """f, F, G, M and Q at once."""
         if x.ndim == u.ndim == 1:
             return self._linearize_one(*x.tolist(), *u.tolist())
-        return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), self.process
+        return Motion.linearize(self, x, u)
+
+    def _way(self, u: Array) -> tuple[Array, Array]:
+        """ΔD = (ΔD_R + ΔD_L)/2      ΔΦ = ω dt          eq. 19, listing"""
+        return (u[..., 1] + u[..., 0]) / 2, u[..., 2] * u[..., 3]
 
     def _linearize_one(
         self, x: float, y: float, Φ: float, left: float, right: float, ω: float, dt: float
