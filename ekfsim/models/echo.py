@@ -6,7 +6,7 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.models.noise import alike
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.protocols import Quantity, Sensor
 
 TINY = 1e-12  # no echo rises in a shorter T than this, in the times' unit, nor is there any before s is as large
 STEEPEST = 100.0  # of the exponent: e¹⁰⁰ and its square are still far from what a float can hold
@@ -46,7 +46,7 @@ def _envelope(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Echo:
+class Echo(Sensor):
     """x = (A₀, τ, T, α) in V, s, s, 1: parameters to be estimated, no pose. z: the envelope at all sample times.
 
     Times may as well be told in ms, if τ and T are too.
@@ -76,10 +76,3 @@ class Echo:
         H = np.stack([shape, A * (1 - α / s) * per_T, A * (s - α) * per_T, A * np.log(s)], axis=-1)
         R = np.asarray(self.sigma)[..., None, None] ** 2 * np.eye(len(self.times))
         return A, H, alike(R, x.shape[:-1])
-
-    def residual(self, z: Array, h: Array) -> Array:
-        """ν = z − h : (…, k) V"""
-        return z - h
-
-    def sight(self, x: Array, P: Array) -> None:
-        """There is nothing more to know."""

@@ -10,7 +10,7 @@ from ekfsim.models.protocols import Quantity, Sensor
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Frozen:
+class Frozen(Sensor):
     """h(at), H(at) and R(at), whatever the estimate has become.
 
     The listing linearises every marker at the state before the time update (its xM, yM, Phi), predictions included;

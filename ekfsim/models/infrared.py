@@ -7,7 +7,7 @@ import numpy as np
 from ekfsim.geometry import Array
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.laser import Laser, Sighting
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.protocols import Quantity, Sensor
 
 COLOURS: dict[str, float] = {  # reflectances; fig. 4 tells that they matter, and prints no numbers
     "white": 1.0,
@@ -21,7 +21,7 @@ COLOURS: dict[str, float] = {  # reflectances; fig. 4 tells that they matter, an
 
 
 @dataclass(frozen=True, slots=True)
-class Infrared:
+class Infrared(Sensor):
     """A pair of emitter and receiver that look `bearing` rad from straight ahead, from x = (x, y, θ) in m, m, rad."""
 
     walls: Walls
@@ -53,10 +53,6 @@ class Infrared:
         intensity = np.where(lit, self.reflectance * (self.offset - self.gain * np.log(r)), np.nan)
         H = np.where(lit[..., None], -self.reflectance * self.gain / r[..., None] * H_r, 0.0)
         return intensity, H, np.where(lit, self.sigma**2, np.nan)[..., None]
-
-    def residual(self, z: Array, h: Array) -> Array:
-        """ν = z − h : (…, 1) V"""
-        return z - h
 
     def sight(self, x: Array, P: Array) -> Sighting:
         """Which wall it meets, and whether that is certain; x : (…, 3), P : (…, 3, 3)"""

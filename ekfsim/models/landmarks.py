@@ -13,29 +13,18 @@ from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.geometry.lanes import lanes
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.noise import alike, independent
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.protocols import Quantity, Sensor
 
 AT_IT = 1e-9  # m; nearer than this there is no direction to a landmark, and no derivative
 
 
-class _Landmark:
+class _Landmark(Sensor):
     """What the sensors of this file share."""
 
     __slots__ = ()
     x: float  # m
     y: float
     layout: Layout
-
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h, H and R at once."""
-        raise NotImplementedError
-
-    def h(self, x: Array) -> Array:
-        """The reading that the state predicts : (…, k)"""
-        return self.linearize(x)[0]
-
-    def sight(self, x: Array, P: Array) -> None:
-        """It can only be this landmark: there is nothing more to know."""
 
     def _polar(self, x: Array) -> tuple[Array, Array, Array, Array]:
         """Unit vector to the landmark, distance and bearing. At the landmark: no vector, and no distance."""
@@ -186,10 +175,6 @@ class RangeOnly(_Landmark):
         """h (…, 1), H (…, 1, n) and R (…, 1, 1): r = |p_B − p|, ∂r/∂p = −eᵀ, e the unit vector to the landmark."""
         ex, ey, r = self._away(x)
         return r[..., None], self._placed(x, [[-ex, -ey, 0.0]]), alike(independent(self.sigma), x.shape[:-1])
-
-    def residual(self, z: Array, h: Array) -> Array:
-        """ν = z − h : (…, 1) m; a range needs no wrapping"""
-        return z - h
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ import numpy as np
 from ekfsim.geometry import Array, Booleans, Integers, engine
 from ekfsim.geometry.lanes import back, front, lanes
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.protocols import Quantity, Sensor
 
 GRAZING = np.radians(15.0)  # below this angle between beam and wall a small turn moves the beam's end far
 ALONG = 1e-9  # rad; a beam this close to its wall's direction has no usable derivative
@@ -35,7 +35,7 @@ class Sighting:
 
 
 @dataclass(frozen=True, slots=True)
-class Laser:
+class Laser(Sensor):
     """A beam `bearing` rad from straight ahead, counter-clockwise, from x = (x, y, θ) in m, m, rad."""
 
     walls: Walls
@@ -91,10 +91,6 @@ class Laser:
             return np.array([math.nan]), np.zeros((1, 3)), np.array([[math.nan]])
         H = np.array([[-nx / n_d, -ny / n_d, -r * (ny * dx - nx * dy) / n_d]])
         return np.array([r]), H, np.array([[(self.range_ratio * r) ** 2]])
-
-    def residual(self, z: Array, h: Array) -> Array:
-        """ν = z − h : (…, 1) m; a range needs no wrapping"""
-        return z - h
 
     def sight(self, x: Array, P: Array) -> Sighting:
         """Look along the beam before using its reading. x : (…, 3), P : (…, 3, 3)

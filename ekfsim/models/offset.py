@@ -7,7 +7,7 @@ import numpy as np
 from ekfsim.geometry import Array
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.noise import alike, independent
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.protocols import Quantity, Sensor
 
 
 def to_global(z: Array, θ: Array | float) -> Array:
@@ -31,7 +31,7 @@ def to_global_as_printed(z: Array, θ: Array | float) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class LandmarkOffset:
+class LandmarkOffset(Sensor):
     """z = the landmark's place less the robot's, in m east and m north."""
 
     x: float  # m, X_L
@@ -65,10 +65,3 @@ class LandmarkOffset:
             J = self.yaw_sigma * np.stack([-h[..., 1], h[..., 0]], axis=-1)
             R = R + J[..., :, None] * J[..., None, :]
         return h, H, R
-
-    def residual(self, z: Array, h: Array) -> Array:
-        """ν = z − h : (…, 2) m"""
-        return z - h
-
-    def sight(self, x: Array, P: Array) -> None:
-        """There is nothing more to know."""

@@ -7,11 +7,11 @@ import numpy as np
 from ekfsim.geometry import Array
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.noise import alike, independent
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.protocols import Quantity, Sensor
 
 
 @dataclass(frozen=True, slots=True)
-class Position:
+class Position(Sensor):
     """z = (x, y) in m, from a state that holds them at `layout.position`."""
 
     sigma_x: float  # m
@@ -33,10 +33,3 @@ class Position:
         for row, column in enumerate(self.layout.position):
             H[..., row, column] = 1
         return self.h(x), H, alike(independent(self.sigma_x, self.sigma_y), x.shape[:-1])
-
-    def residual(self, z: Array, h: Array) -> Array:
-        """ν = z − h : (…, 2) m"""
-        return z - h
-
-    def sight(self, x: Array, P: Array) -> None:
-        """There is nothing more to know."""

@@ -44,21 +44,26 @@ class Motion(Protocol):
 class Sensor(Protocol):
     """z = h(x) + noise of covariance R, linearised by H = ∂h/∂x."""
 
+    __slots__ = ()
+
     @property
     def outputs(self) -> tuple[Quantity, ...]:
         """What the entries of z are. Those in rad are directions: z − h wraps them, and a mean of them is circular."""
 
     def h(self, x: Array) -> Array:
         """The reading that the state x predicts : (…, k), nan where it predicts none."""
+        return self.linearize(x)[0]
 
     def linearize(self, x: Array) -> tuple[Array, Array, Array]:
         """h (…, k), H (…, k, n) and R (…, k, k) at x. H is 0 and R nan where h is nan."""
 
     def residual(self, z: Array, h: Array) -> Array:
-        """z − h, wrapped where it is an angle : (…, k)"""
+        """ν = z − h : (…, k), to be wrapped where it is an angle"""
+        return z - h
 
     def sight(self, x: Array, P: Array) -> Any:
-        """What this sensor alone knows of a reading before it is used; None where it knows no more."""
+        """What this sensor alone knows of a reading before it is used; None where there is nothing more to know."""
+        return None
 
 
 def angles(quantities: tuple[Quantity, ...]) -> tuple[int, ...]:

@@ -7,11 +7,11 @@ import numpy as np
 from ekfsim.geometry import Array
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.laser import Laser, Sighting
-from ekfsim.models.protocols import Quantity
+from ekfsim.models.protocols import Quantity, Sensor
 
 
 @dataclass(frozen=True, slots=True)
-class Ultrasonic:
+class Ultrasonic(Sensor):
     """A beam `bearing` rad from straight ahead, counter-clockwise, from x = (x, y, θ) in m, m, rad."""
 
     walls: Walls
@@ -36,10 +36,6 @@ class Ultrasonic:
         heard = (r >= self.nearest) & (r <= self.farthest)
         r = np.where(heard, r, np.nan)
         return r, np.where(heard[..., None], H, 0.0), (self.sigma + self.sigma_per_metre * r[..., None]) ** 2
-
-    def residual(self, z: Array, h: Array) -> Array:
-        """ν = z − h : (…, 1) m"""
-        return z - h
 
     def sight(self, x: Array, P: Array) -> Sighting:
         """Which wall it meets, and whether that is certain; x : (…, 3), P : (…, 3, 3)"""
