@@ -7,9 +7,8 @@ import numpy as np
 from ekfsim.figures.album import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILLION, Album, labelled
 from ekfsim.geometry import Array
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.infrared import COLOURS
-from ekfsim.models.infrared import Infrared as InfraredBeam
-from ekfsim.models.ultrasonic import Ultrasonic as UltrasonicBeam
+from ekfsim.models.infrared import COLOURS, InfraredBeam
+from ekfsim.models.ultrasonic import UltrasonicBeam
 from ekfsim.scene import Scene
 from ekfsim.simulation.bench import readings
 from ekfsim.systems.instruments import Infrared, Ultrasonic

@@ -21,7 +21,7 @@ COLOURS: dict[str, float] = {  # reflectances; fig. 4 tells that they matter, an
 
 
 @dataclass(frozen=True, slots=True)
-class Infrared(Sensor):
+class InfraredBeam(Sensor):
     """A pair of emitter and receiver that look `bearing` rad from straight ahead, from x = (x, y, θ) in m, m, rad."""
 
     walls: Walls

@@ -11,7 +11,7 @@ from ekfsim.models.protocols import Quantity, Sensor
 
 
 @dataclass(frozen=True, slots=True)
-class Ultrasonic(Sensor):
+class UltrasonicBeam(Sensor):
     """A beam `bearing` rad from straight ahead, counter-clockwise, from x = (x, y, θ) in m, m, rad."""
 
     walls: Walls

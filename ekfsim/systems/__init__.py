@@ -16,7 +16,7 @@ from ekfsim.systems.instruments import (
     Ranges,
     Ultrasonic,
 )
-from ekfsim.systems.robots import GnssMower, Mower, Pioneer, PylonCart, RangingMower, Robot, Roomba
+from ekfsim.systems.robots import GnssMower, IRobotCreate, Mower, Pioneer, PylonCart, RangingMower, Robot
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ SYSTEMS: dict[str, System] = {
     "pioneer": System(Pioneer(), (Ultrasonic(), Infrared())),
     "gnss": System(GnssMower(), (Gnss(),)),
     "pylon": System(PylonCart(), (Pylon(),)),
-    "landmarks": System(Roomba(), (RangeBearings(),)),
+    "landmarks": System(IRobotCreate(), (RangeBearings(),)),
     "ranges": System(RangingMower(), (Ranges(),)),
 }
 INSTRUMENTS: dict[str, type[Instrument]] = {

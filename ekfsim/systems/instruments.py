@@ -13,14 +13,13 @@ import numpy as np
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.infrared import COLOURS
-from ekfsim.models.infrared import Infrared as InfraredBeam
+from ekfsim.models.infrared import COLOURS, InfraredBeam
 from ekfsim.models.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.layout import Layout
 from ekfsim.models.offset import LandmarkOffset
 from ekfsim.models.position import Position
 from ekfsim.models.protocols import Sensor
-from ekfsim.models.ultrasonic import Ultrasonic as UltrasonicBeam
+from ekfsim.models.ultrasonic import UltrasonicBeam
 from ekfsim.systems.document import DocumentReading
 
 ALL_ROUND = ((-math.pi, math.pi),)

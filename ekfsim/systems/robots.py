@@ -191,8 +191,8 @@ class PylonCart:
 
 
 @dataclass(frozen=True)
-class Roomba:
-    """The robot of the MRCLAM data: commanded speed and turn rate; u = (v, ω, dt)."""
+class IRobotCreate:
+    """The robots of the MRCLAM data: commanded speed and turn rate; u = (v, ω, dt)."""
 
     rate: float = 100.0
     distance_density: float = 0.02  # m per √s

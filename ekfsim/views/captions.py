@@ -4,7 +4,7 @@ import math
 
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse, radius_factor
-from ekfsim.models.infrared import Infrared
+from ekfsim.models.infrared import InfraredBeam
 from ekfsim.records import Entry, Kidnap, Move, Reading, Say, Sense, Step
 from ekfsim.scene import Scene
 from ekfsim.views.beams import Beam, called, length
@@ -65,7 +65,9 @@ def notes(view: View, scene: Scene, read: Beam | Sight | None) -> list[str]:
     if view.beam:
         match read:
             case Beam():
-                intensity = [told_of(step)] if isinstance(given, Reading) and isinstance(given.sensor, Infrared) else []
+                intensity = (
+                    [told_of(step)] if isinstance(given, Reading) and isinstance(given.sensor, InfraredBeam) else []
+                )
                 return [*intensity, *_ranges(read), *_warnings(read)]
             case Sight():
                 return [told_of(step), *([] if not read.refused else [REFUSALS[read.refused]])]

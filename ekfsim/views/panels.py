@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from ekfsim.geometry.ellipse import ellipse
-from ekfsim.models.infrared import Infrared
+from ekfsim.models.infrared import InfraredBeam
 from ekfsim.models.laser import Laser
 from ekfsim.models.protocols import Sensor
-from ekfsim.models.ultrasonic import Ultrasonic
+from ekfsim.models.ultrasonic import UltrasonicBeam
 from ekfsim.records import Command, Repeat, Sense
 from ekfsim.scene import Scene
 from ekfsim.views.artists import BeamArtists, BeliefArtists, WorldArtists
@@ -83,7 +83,7 @@ class Main:
             yield from artists.handles()
         yield from self.world.handles()
         yield from self.fixes.handles()
-        if not self._sensors.isdisjoint((Laser, Ultrasonic, Infrared)):
+        if not self._sensors.isdisjoint((Laser, UltrasonicBeam, InfraredBeam)):
             yield from self.beam.handles()
         yield from self.sight.handles()
 

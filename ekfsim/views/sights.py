@@ -12,21 +12,21 @@ import numpy as np
 from ekfsim.filters.belief import Refused, posed
 from ekfsim.geometry import Array
 from ekfsim.models.frozen import Frozen
-from ekfsim.models.infrared import Infrared
+from ekfsim.models.infrared import InfraredBeam
 from ekfsim.models.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.laser import Laser
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.offset import LandmarkOffset
 from ekfsim.models.position import Position
 from ekfsim.models.protocols import Quantity, Sensor
-from ekfsim.models.ultrasonic import Ultrasonic
+from ekfsim.models.ultrasonic import UltrasonicBeam
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 
 ARC = math.radians(25)  # to each side of the estimate: as much of the circle about a landmark as is drawn
 CORNERS = 41  # of an arc, and of the circle about a fix
 FARTHEST = 5.0  # times as far as it is specified for may an intensity seem to come from
-BeamSensor = Laser | Ultrasonic | Infrared
+BeamSensor = Laser | UltrasonicBeam | InfraredBeam
 NOWHERE = np.empty((0, 2))
 
 
@@ -70,7 +70,7 @@ def sight(step: Step, layout: Layout = POSE) -> Sight | None:
         case LandmarkOffset():
             line, way = (_finite(np.stack([pose[:2], pose[:2] + offset])) for offset in (z, predicted))
             return Sight(line, line[1:], way, way[1:], np.array([[sensor.x, sensor.y]]), refused, "offset")
-        case Laser() | Ultrasonic() | Infrared():
+        case Laser() | UltrasonicBeam() | InfraredBeam():
             line, way = (_ray(pose, sensor.bearing, beam_length(sensor, float(value[0]))) for value in (z, predicted))
             return Sight(line, line[1:], way, way[1:], NOWHERE, refused, "beam")
     return None
@@ -78,7 +78,7 @@ def sight(step: Step, layout: Layout = POSE) -> Sight | None:
 
 def beam_length(sensor: BeamSensor, z: float) -> float:
     """The distance to a wall that a reading stands for, in m; an intensity falls with its logarithm."""
-    if not isinstance(sensor, Infrared):
+    if not isinstance(sensor, InfraredBeam):
         return z
     logarithm = (sensor.offset - z / sensor.reflectance) / sensor.gain
     return math.exp(min(logarithm, math.log(FARTHEST * sensor.farthest)))

@@ -9,16 +9,16 @@ from hypothesis import strategies as st
 from numerics import jacobian
 
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.infrared import COLOURS, Infrared
+from ekfsim.models.infrared import COLOURS, InfraredBeam
 from ekfsim.models.laser import Laser
-from ekfsim.models.ultrasonic import Ultrasonic
+from ekfsim.models.ultrasonic import UltrasonicBeam
 
 WALLS = Walls.of({"boundary": np.array([[0, 0], [4, 0], [4, 4], [0, 4.0]])})
 poses = st.tuples(st.floats(0.1, 3.9), st.floats(0.1, 3.9), st.floats(-3.14, 3.14)).map(np.array)
 bearings = st.floats(-3.14, 3.14)
 BEAMS = {
-    "ultrasonic": lambda bearing: Ultrasonic(WALLS, bearing, 0.005, 0.01),
-    "infrared": lambda bearing: Infrared(WALLS, bearing, 1.0, 1.2, 0.6, 0.05),
+    "ultrasonic": lambda bearing: UltrasonicBeam(WALLS, bearing, 0.005, 0.01),
+    "infrared": lambda bearing: InfraredBeam(WALLS, bearing, 1.0, 1.2, 0.6, 0.05),
 }
 EVERY = pytest.mark.parametrize("beam", BEAMS.values(), ids=BEAMS)
 
@@ -77,7 +77,7 @@ def test_it_knows_when_it_may_meet_another_wall(beam):
 
 
 def test_an_ultrasonic_reading_is_less_certain_the_further_it_goes():
-    sensor = Ultrasonic(WALLS, 0.0, 0.005, 0.01)
+    sensor = UltrasonicBeam(WALLS, 0.0, 0.005, 0.01)
     for x, r in ((3.0, 1.0), (2.0, 2.0)):
         h, _, R = sensor.linearize(np.array([x, 2.0, 0.0]))
         assert h == pytest.approx([r])
@@ -85,7 +85,7 @@ def test_an_ultrasonic_reading_is_less_certain_the_further_it_goes():
 
 
 def test_infrared_by_hand():
-    sensor = Infrared(WALLS, 0.0, 0.8, 1.2, 0.5, 0.05)
+    sensor = InfraredBeam(WALLS, 0.0, 0.8, 1.2, 0.5, 0.05)
     intensity, H, R = sensor.linearize(np.array([3.5, 2.0, 0.0]))
     assert intensity == pytest.approx([0.5 * (1.2 - 0.8 * math.log(0.5))])
     assert H[0] == pytest.approx([0.5 * 0.8 / 0.5, 0, 0])  # nearer to the wall it is brighter
@@ -94,6 +94,6 @@ def test_infrared_by_hand():
 
 def test_bright_walls_send_back_more_than_dark_ones():
     at = np.array([3.5, 2.0, 0.0])
-    seen = {name: Infrared(WALLS, 0.0, 1.0, 1.0, colour, 0.05).h(at)[0] for name, colour in COLOURS.items()}
+    seen = {name: InfraredBeam(WALLS, 0.0, 1.0, 1.0, colour, 0.05).h(at)[0] for name, colour in COLOURS.items()}
     assert seen["white"] > seen["grey"] > seen["black"] > 0
     assert all(0 < reflectance <= 1 for reflectance in COLOURS.values())

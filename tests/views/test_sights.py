@@ -16,7 +16,7 @@ from systems_scenes import SCENES, SQUARE
 from ekfsim.filters.belief import Correction, Gaussian, Particles, Refused
 from ekfsim.localization import first_belief, play
 from ekfsim.models.frozen import Frozen
-from ekfsim.models.infrared import Infrared
+from ekfsim.models.infrared import InfraredBeam
 from ekfsim.models.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.layout import INERTIAL, POSE, SPEED_POSE
 from ekfsim.models.offset import LandmarkOffset
@@ -112,7 +112,7 @@ def test_an_offset_is_drawn_in_the_global_frame():
 
 def test_an_intensity_is_drawn_as_the_distance_that_it_stands_for():
     walls = systems_scenes.CELLAR.walls
-    sensor = Infrared(walls, -math.pi / 2, 1.0, 1.0, 0.5, 0.05)
+    sensor = InfraredBeam(walls, -math.pi / 2, 1.0, 1.0, 0.5, 0.05)
     at = np.array([0.0, 0.0, math.pi / 2])  # the wall is 3.2 m to the right
     z = 0.5 * (1 - math.log(1.2))
     seen = sight(step_of(sensor, [z], sensor.h(np.array([2.0, 0.0, math.pi / 2])), pose=at))
