@@ -1,4 +1,20 @@
-"""Belief and correction records, and a textbook table a file."""
+"""A textbook table a file: predict and update of each filter, and the records that go in and come out.
+
+    protocol.py    what every filter offers              kf.py      linear, about the first belief
+    belief.py      Gaussian, Particles, Correction       ekf.py     extended: read this one first
+    algebra.py     gain, inverse, wrapping               iekf.py    iterated
+    correcting.py  the end that the updates share        ukf.py     unscented, by the transform of unscented.py
+    chi_square.py  quantiles of χ²                       pf.py      particles
+                                                         listing.py the EKF that two of the documents' listings are
+
+The filters know no robot and no sensor: f, F, G, M, Q and h, H, R come from the models (see models/protocols.py).
+
+Three files are speed alone; tests hold each equal to the EKF as ekf.py and correcting.py have it:
+
+    unrolled.py    many runs side by side, a state of three and a reading of one number: entry by entry
+    compiled.py    the same by Numba, where geometry/engine.py has been told to use it
+    stretch.py     many predictions of one run in a row, for planar odometry
+"""
 
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.iekf import IEKF

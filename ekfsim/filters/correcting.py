@@ -1,5 +1,7 @@
 """The end that the updates share: a reading is judged, and the belief revised where it is used."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ekfsim.filters.algebra import (
@@ -16,21 +18,24 @@ from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.geometry import Array, Booleans, Integers
 
 
+class Linearized(NamedTuple):
+    """A reading z, and beside it what a filter's linear sensor has to say of it."""
+
+    z: Array  # (…, k)
+    h: Array  # the reading that the prior predicts : (…, k)
+    innovation: Array  # ν = z − h, wrapped where it is an angle : (…, k)
+    H: Array  # (…, k, n)
+    R: Array  # (…, k, k)
+
+
 def corrected(
-    prior: Gaussian,
-    z: Array,
-    h: Array,
-    innovation: Array,
-    H: Array,
-    R: Array,
-    skip: Booleans | bool,
-    gate: float | None,
-    headings: tuple[int, ...],
+    prior: Gaussian, reading: Linearized, skip: Booleans | bool, gate: float | None, headings: tuple[int, ...]
 ) -> tuple[Gaussian, Correction]:
     """S = H P⁻ Hᵀ + R      K = P⁻ Hᵀ S⁻¹      x = x⁻ + K ν      P by Joseph's form
 
-    The Kalman filter's update with a reading that is linearised already. z, h, innovation : (…, k)
+    The Kalman filter's update with a reading that is linearised already.
     """
+    z, h, innovation, H, R = reading
     S = innovation_covariance(prior.covariance, H, R)
     nis, refused = judged(z, h, innovation, S, skip, gate)
     K = gain(prior.covariance @ H.mT, S)

@@ -9,7 +9,7 @@ import numpy as np
 from ekfsim.filters import unrolled
 from ekfsim.filters.algebra import ROUNDING, innovation_covariance, refusal_one, settled, symmetric, wrapped
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction, Refused
-from ekfsim.filters.correcting import corrected
+from ekfsim.filters.correcting import Linearized, corrected
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion, Sensor
@@ -47,19 +47,16 @@ class EKF:
         """
         x, P = prior
         h, H, R = sensor.linearize(x)
-        innovation = sensor.residual(z, h)
+        reading = Linearized(z, h, sensor.residual(z, h), H, R)
         if z.shape == (1,) and x.ndim == 1:
-            return self._update_one(Gaussian(x, P), z, innovation, h, H, R, bool(skip))
+            return self._update_one(Gaussian(x, P), reading, bool(skip))
         if unrolled.knows(x, z, H) and len(self.headings) == 1:
-            reading = unrolled.Linearized(z, h, innovation, H, R)
             return unrolled.updated(Gaussian(x, P), reading, skip, self.gate, self.headings[0])
-        return corrected(Gaussian(x, P), z, h, innovation, H, R, skip, self.gate, self.headings)
+        return corrected(Gaussian(x, P), reading, skip, self.gate, self.headings)
 
-    def _update_one(
-        self, prior: Gaussian, z: Array, ν: Array, h: Array, H: Array, R: Array, skip: bool
-    ) -> tuple[Gaussian, Correction]:
+    def _update_one(self, prior: Gaussian, reading: Linearized, skip: bool) -> tuple[Gaussian, Correction]:
         """The same for one robot and one number: no masks, a third of the time, held equal to the above by a test."""
-        x, P = prior
+        (x, P), (z, h, ν, H, R) = prior, reading
         H_row, r = H[0], float(R[0, 0])
         PHt = P @ H_row
         s = float(H_row @ PHt)

@@ -7,7 +7,7 @@ import numpy as np
 
 from ekfsim.filters.algebra import symmetric, wrapped
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
-from ekfsim.filters.correcting import corrected
+from ekfsim.filters.correcting import Linearized, corrected
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion, Sensor, angles
@@ -53,8 +53,8 @@ class KF:
         x, P = prior
         h, H, R = sensor.linearize(self.about)
         predicted = wrapped(h + np.matvec(H, self._way(x)), angles(sensor.outputs))
-        innovation = sensor.residual(z, predicted)
-        return corrected(Gaussian(x, P), z, predicted, innovation, H, R, skip, self.gate, self.headings)
+        reading = Linearized(z, predicted, sensor.residual(z, predicted), H, R)
+        return corrected(Gaussian(x, P), reading, skip, self.gate, self.headings)
 
     def _way(self, x: Array) -> Array:
         """x − x₀ : (…, n), headings wrapped"""

@@ -6,14 +6,12 @@ may be rounding, a sensor far sharper than the belief) is left to the readable t
 the two equal.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ekfsim.filters.algebra import ROUNDING
 from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.filters.chi_square import quantile
-from ekfsim.filters.correcting import corrected
+from ekfsim.filters.correcting import Linearized, corrected
 from ekfsim.geometry import Array, Booleans, engine
 from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.lanes import back, front
@@ -69,30 +67,21 @@ def _propagated(P: Array, F: Array, G: Array, M: Array) -> Array | None:
     return new
 
 
-class Linearized(NamedTuple):
-    """A reading z : (N, 1), and the sensor at the prior mean."""
-
-    z: Array
-    h: Array  # (N, 1)
-    innovation: Array  # (N, 1)
-    H: Array  # (N, 1, 3)
-    R: Array  # (N, 1, 1)
-
-
 def knows(x: Array, z: Array, H: Array) -> bool:
     """Whether `updated` may be asked: one number in each of many runs, from a state of three."""
     return x.ndim == 2 and len(x) >= MANY and x.shape[-1] == 3 and z.shape == (len(x), 1) and H.shape == (len(x), 1, 3)
 
 
 def updated(
-    prior: Gaussian, at: Linearized, skip: Booleans | bool, gate: float | None, heading: int
+    prior: Gaussian, reading: Linearized, skip: Booleans | bool, gate: float | None, heading: int
 ) -> tuple[Gaussian, Correction]:
     """K = P⁻ Hᵀ/S      x = x⁻ + K ν      P = P⁻ − P⁻ Hᵀ H P⁻/S          of one number in N runs"""
     revised = _revised
     if engine.used() == "numba":
         from ekfsim.filters.compiled import revised
-    x, P, H = front(prior.mean, 1), front(prior.covariance), front(at.H)[0]
-    s, K, mean, covariance, nis, clear = revised(x, P, H, at.R[..., 0, 0], at.innovation[..., 0], ROUNDING, SHARP)
+    _, h, ν, H, R = reading
+    x, P = front(prior.mean, 1), front(prior.covariance)
+    s, K, mean, covariance, nis, clear = revised(x, P, front(H)[0], R[..., 0, 0], ν[..., 0], ROUNDING, SHARP)
     mean[heading] = wrap(mean[heading])
     refused = np.full(len(s), np.int64(Refused.NOT))
     if gate is not None:
@@ -100,13 +89,13 @@ def updated(
     if skip is not False:
         refused[np.broadcast_to(skip, refused.shape)] = Refused.GUARD
     posterior = Gaussian(back(mean, 1), back(covariance))
-    correction = Correction(at.h, at.innovation, at.R, s[:, None, None], at.H, back(K, 1)[..., None], nis, refused)
+    correction = Correction(h, ν, R, s[:, None, None], H, back(K, 1)[..., None], nis, refused)
     kept = refused != Refused.NOT
     if kept.any():
         np.copyto(mean, x, where=kept)
         np.copyto(covariance, P, where=kept)
     if not clear.all():
-        _with_care(~clear, prior, at, skip, gate, heading, posterior, correction)
+        _with_care(~clear, prior, reading, skip, gate, heading, posterior, correction)
     return posterior, correction
 
 
@@ -128,7 +117,7 @@ def _revised(
 def _with_care(
     some: Booleans,
     prior: Gaussian,
-    at: Linearized,
+    reading: Linearized,
     skip: Booleans | bool,
     gate: float | None,
     heading: int,
@@ -136,10 +125,10 @@ def _with_care(
     correction: Correction,
 ) -> None:
     """Do these runs again as the readable text does, and write what differs over the rest."""
-    z, h, innovation, H, R = (part[some] for part in at)
+    theirs = Linearized(*(part[some] for part in reading))
     left_out = np.broadcast_to(skip, some.shape)[some]
     before = Gaussian(prior.mean[some], prior.covariance[some])
-    belief, careful = corrected(before, z, h, innovation, H, R, left_out, gate, (heading,))
+    belief, careful = corrected(before, theirs, left_out, gate, (heading,))
     posterior.mean[some], posterior.covariance[some] = belief
     for array, right in (
         (correction.S, careful.S),

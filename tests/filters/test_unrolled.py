@@ -12,7 +12,7 @@ from scenes import rich, unbounded
 from ekfsim.consistency import nees, squared_error
 from ekfsim.filters import unrolled
 from ekfsim.filters.belief import Gaussian, Refused
-from ekfsim.filters.correcting import corrected
+from ekfsim.filters.correcting import Linearized, corrected
 from ekfsim.filters.ekf import EKF
 from ekfsim.geometry.lanes import lanes
 from ekfsim.geometry.walls import Walls
@@ -91,10 +91,9 @@ def test_an_update_is_that_of_the_matrices(name, number, gate, random):
     h, H, R = sensor.linearize(x)
     aside = np.cross(H[2::7, 0], random.normal(size=(len(H[2::7]), 3)))  # what the sensor does not see
     P[2::7] = aside[:, :, None] * aside[:, None, :]  # H P Hᵀ is what rounding leaves of 0
-    prior = Gaussian(x, P)
-    belief, correction = corrected(prior, z, h, sensor.residual(z, h), H, R, skip, gate, (2,))
+    prior, reading = Gaussian(x, P), Linearized(z, h, sensor.residual(z, h), H, R)
+    belief, correction = corrected(prior, reading, skip, gate, (2,))
     with using(name):
-        reading = unrolled.Linearized(z, h, sensor.residual(z, h), H, R)
         fast, told = unrolled.updated(prior, reading, skip, gate, 2)
     assert unrolled.knows(x, z, H)
     np.testing.assert_allclose(fast.mean, belief.mean, **NEAR)
