@@ -3,28 +3,31 @@
 A notebook needs no more than this module:
 
 >>> import ekfsim
->>> scene = ekfsim.load_scene("square")                     # a path, or the name of one that comes along
->>> steps = list(ekfsim.play(scene))                         # simulate and localize; a Step for each command
->>> views = list(ekfsim.Playback(steps))                     # one for each press of n; view 0 is the world at the start
+>>> scene = ekfsim.load_scene("square")                      # a path, or the name of one that comes along
+>>> steps = list(ekfsim.play(scene))                          # simulate and localize; a Step for each command
+>>> views = list(ekfsim.Playback(steps, scene.world.layout))  # one for each press of n; view 0 is the start
 >>> print(ekfsim.narrate(views[1], scene).splitlines()[0])
 ==>The robot moved: distance=3, angle=90
 
-and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes. One level deeper, the two halves of
-`play`: `ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter, belief)` the
-Steps (what a filter made of them).
+and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes. `dataclasses.replace(scene, filter="ukf")`
+is the same scene for another of FILTERS; seed, gate, guard and the rest are fields of Scene, too. One level deeper, the
+two halves of `play`: `ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter,
+belief)` the Steps (what a filter made of them); for a filter of your own, see `ekfsim.filters.protocol`.
 
 Notation, letter for letter as in the code (Bar-Shalom, Särkkä, Barfoot; Thrun's book swaps Q and R):
 
-    x  state: x, y, θ in m, m, rad      P  its covariance             e  error: estimate − truth
-    u  motion input: d, a in m, rad     f  motion: x⁺ = f(x, u)       F  ∂f/∂x        G  ∂f/∂u
+    x  state                            P  its covariance             e  error of the pose: estimate − truth
+    u  motion input                     f  motion: x⁺ = f(x, u)       F  ∂f/∂x        G  ∂f/∂u
     M  covariance of the input's noise  Q  covariance of the process noise
     z  reading                          h  sensor: z = h(x)           H  ∂h/∂x        R  covariance of its noise
     ν  innovation: z − h(x⁻)            S  its covariance             K  gain
     NIS  νᵀ S⁻¹ ν                       NEES  eᵀ P⁺ e                 ⁻  before the reading, the prior
 
-The assignment's names for the same: Φ = f, J_x = F, J_u = G, P_u = M, H[x] = h, J_H = H, C_v = R, r = ν.
+In the classroom x is the pose x, y, θ in m, m, rad, and u is d, a in m, rad; its assignment's names for the rest are
+Φ = f, J_x = F, J_u = G, P_u = M, H[x] = h, J_H = H, C_v = R, r = ν. The other systems' states stand in
+`ekfsim.models.layout`, and which line is which equation of which document in `ekfsim.systems`.
 
-Shapes: arrays carry leading axes (…): none for one run, (N,) for N runs side by side. x is (…, 3), P is (…, 3, 3).
+Shapes: arrays carry leading axes (…): none for one run, (N,) for N runs side by side. x is (…, n), P is (…, n, n).
 x points east, y north, θ turns counter-clockwise from +x and lies in (−π, π]. Metres and radians inside, degrees where
 a person reads or writes. Mistakes in files raise `ekfsim.InputError`, missing files `ekfsim.UsageError`.
 """

@@ -48,11 +48,11 @@ class Laser(Sensor):
         return (Quantity("range", "m"),)
 
     def h(self, x: Array) -> Array:
-        """r = the distance to the first wall : (…, 1) m, nan where there is none"""
+        """r = the distance to the first wall : (…, 1) m, nan where there is none          eq. 8"""
         return self.linearize(x)[0]
 
     def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, 1), its Jacobian H (…, 1, 3) and C_v (…, 1, 1).
+        """h (…, 1), its Jacobian H = J_H (…, 1, 3) and R = C_v (…, 1, 1)          eqs 8, 11
 
         A beam of direction d from p meets the wall through a with normal n:
 

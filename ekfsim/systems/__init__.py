@@ -1,6 +1,26 @@
 """The systems of the documents, put together: what each robot measures of its motion, and what its instruments read.
 
-SYSTEMS names them. The classroom has no entry: its robot obeys commands one by one (see `simulation`).
+SYSTEMS names them. The classroom has no entry: its robot obeys commands one by one (see `simulation`). "Document 000"
+and so on, wherever the package cites an equation, are these, and here is where their equations stand:
+
+    000  mower: Kiriy & Buehler, Three-state Extended Kalman Filter for Mobile Robot Localization
+         8, 9 filters/ekf.py · 10 to 12, 27, 28 filters/correcting.py · 16 to 22, 26, 29 models/wheels.py, midpoint.py
+         23 to 25, 30 models/landmarks.py · its listing: filters/listing.py, models/frozen.py
+    001  pioneer: Tamás, Lazea, Robotin, Marcu, Herle & Szekely, State Estimation Based on Kalman Filtering Techniques
+         in Navigation
+         7 to 11 filters/kf.py · 12, 13 filters/ekf.py · 14 to 17 filters/unscented.py · 20 to 28 filters/ukf.py
+         18, 19 models/polar.py · 29 to 35 models/odometry.py · 38 models/echo.py, and its estimate systems/echo.py
+         fig. 4 models/infrared.py · fig. 6 models/ultrasonic.py · its compass (36, 37) it does not use itself
+    002  classroom: Localization and the extended Kalman filter, an assignment
+         1, 3, 6 models/move_turn.py · 8, and the Jacobian J_H models/laser.py · 4, 7, 9 to 12 filters/ekf.py
+    003  gnss: Sahni, Assignment 3: Sensor fusion for lawn mower
+         2 models/position.py · 3, 4 and the integrals models/wheel_speeds.py · 5 to 7 filters/ekf.py
+         as its authors have coded it: WheelSpeedsAsWritten, filters/listing.py, simulation/interpolation.py
+    004  pylon: King & Johnson, Lab 3: Extended Kalman Filter for Localization
+         1 to 4 filters/ekf.py · 5 to 7, and R_t of 10 models/planar_imu.py · 8, 9, and Q_t of 10 models/offset.py
+         11 geometry/outline.py · 12 figures/track.py
+
+Two more systems read published logs, with models that no document prints: landmarks (MRCLAM) and ranges (Plaza).
 """
 
 from dataclasses import dataclass
