@@ -36,7 +36,8 @@ ROOMS = (  # each imports only from those above it, and from its own
 )
 CORE = {"geometry", "models", "filters", "systems", "world", "records", "scene", "consistency", "summary", "provenance",
         "simulation", "localization"}  # fmt: skip
-HEAVY = ("numpy", "matplotlib", "pydantic", "shapely", "yaml", "scipy")
+EXTRAS = ("numba", "av", "distributed", "dask")
+HEAVY = ("numpy", "matplotlib", "PIL", "pydantic", "shapely", "yaml", "scipy", *EXTRAS)
 
 
 def room_of(module):
@@ -104,9 +105,22 @@ def test_modules_import_no_rings():
         visit(module)
 
 
-@pytest.mark.parametrize("module", [module for module in MODULES if room_of(module) in CORE])
+def is_compiled(module):
+    """Whether a module is made by the extra `fast`: it stands beside its readable twin."""
+    return module.endswith(".compiled")
+
+
+@pytest.mark.parametrize("module", [module for module in MODULES if room_of(module) in CORE | {"errors", "version"}])
 def test_the_core_needs_numpy_alone(module):
-    assert {name.partition(".")[0] for name in at_module_level(MODULES[module])} & set(HEAVY) <= {"numpy"}
+    allowed = {"numpy", "numba"} if is_compiled(module) else {"numpy"}
+    assert {name.partition(".")[0] for name in at_module_level(MODULES[module])} & set(HEAVY) <= allowed
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_what_an_extra_brings_is_imported_only_where_it_is_asked_for(module):
+    imports = set(at_module_level(MODULES[module]))
+    assert is_compiled(module) or not {name.partition(".")[0] for name in imports} & set(EXTRAS)
+    assert is_compiled(module) or not any(map(is_compiled, imports & set(MODULES)))
 
 
 @pytest.mark.parametrize("room", ["models", "filters", "geometry"])
