@@ -33,7 +33,7 @@ def progress(plan: "Plan", journal: "Journal") -> Iterator[Callable[["Task", "Ta
             nonlocal runs, lost
             heed()
             runs, lost = runs + tally.runs, lost + sum(tally.lost_from.values())
-            bar.update(1, f"{100 * lost / runs:.2g} % lost")
+            bar.update(1, f"{100 * lost / runs:.3g} % lost")
 
         if not hidden:
             for task in plan.tasks():
@@ -81,6 +81,8 @@ def study_into(plan: "Plan", engine: "Engine", out: Path, resume: bool, force: b
     refuse_existing_folder(out, *FILES, force=force)
     partial = out.with_name(f"{out.name}.partial")
     with journal_in(partial, plan, resume, force) as journal:
+        if resume and not len(journal):
+            say(f"{partial}: nothing is kept there to go on with; this is a study from the beginning")
         with progress(plan, journal) as done:
             do(plan, journal, engine, done)
         results = results_of(plan, journal)

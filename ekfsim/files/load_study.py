@@ -38,6 +38,7 @@ class Request:
     a: tuple[Setting, ...] = ()  # of a comparison: what one side sets, its filter included
     b: tuple[Setting, ...] = ()
     written_by: str = ""  # the version that wrote the study file
+    name: str = ""  # of the file that asks, as it was given
     commands_name: str = ""  # as a person writes them on a command line
     world_name: str | None = None
 
@@ -86,7 +87,7 @@ def read_request(name: str) -> Request:
     path = resolve(name, "commands")
     root, mistakes = parse(text_of(path, str(path)), str(path))
     if "study" not in root.keys:
-        return Request(path, commands_name=name)
+        return Request(path, name=name, commands_name=name)
     try:
         keys = StudyKeys.model_validate(root.plain())
     except ValidationError as error:
@@ -102,7 +103,7 @@ def read_request(name: str) -> Request:
     return Request(
         commands, world, keys.runs, keys.seed, tuple(keys.filters or ()), tuple(settings_of(root, keys, str(path))),
         tuple(map(tuple, sweep_of(root, keys, str(path)))), keys.reading, keys.fast, a, b, keys.ekfsim,
-        commands_name, world_name,
+        name, commands_name, world_name,
     )  # fmt: skip
 
 

@@ -62,6 +62,7 @@ def refuse_existing_folder(path: Path, *patterns: str, force: bool = False) -> P
             raise UsageError(f"{path}: this is a file; name a folder")
         if place == Path.cwd():
             raise UsageError(f"{path}: this is the current folder; name a new one")
+        _refuse_what_is_no_folder(path, place)
         held = sorted(place.iterdir()) if place.is_dir() else []
     if held and not force:
         raise UsageError(f"{path}: the folder is not empty; choose another, or replace what it holds with --force")
@@ -143,15 +144,20 @@ def _parents(path: Path, place: Path) -> Iterator[None]:
         missing = [folder for folder in place.parents if not os.path.lexists(folder)]
     try:
         with told(path):
-            for folder in (*path.parents, *place.parents):
-                if os.path.lexists(folder) and not folder.is_dir():
-                    raise UsageError(f"{path}: '{folder}' is no folder")
+            _refuse_what_is_no_folder(path, place)
             place.parent.mkdir(parents=True, exist_ok=True)
         yield
     finally:
         for folder in missing:
             with suppress(OSError):  # it holds something
                 folder.rmdir()
+
+
+def _refuse_what_is_no_folder(path: Path, place: Path) -> None:
+    """Raise UsageError where a result would lie below something that can hold none."""
+    for folder in (*path.parents, *place.parents):
+        if os.path.lexists(folder) and not folder.is_dir():
+            raise UsageError(f"{path}: '{folder}' is no folder")
 
 
 @contextmanager

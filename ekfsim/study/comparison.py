@@ -25,7 +25,7 @@ class Comparison:
     @classmethod
     def of(cls, request: Request) -> Self:
         """What is asked, ready to be done. Raises UsageError or InputError where it is no comparison."""
-        name = request.commands_name
+        name = request.name
         if not request.a and not request.b:
             raise UsageError(f"{name}: nothing is compared; write e.g. --a guard=off --b guard=skip,gate=0.99")
         if request.sweep or len(request.filters) > 1:

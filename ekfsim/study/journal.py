@@ -67,14 +67,16 @@ def journal_in(folder: Path, plan: Plan, resume: bool, force: bool) -> Iterator[
     """
     path = folder / NAME
     with told(folder):
-        if path.exists() and not (resume or force):
+        folder.mkdir(parents=True, exist_ok=True)
+        file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+b")
+    with file:
+        _lock(file, folder)  # before anything in it is touched: it may be another's
+        if os.fstat(file.fileno()).st_size and not (resume or force):
             right = "go on with --resume, or begin anew with --force"
             raise UsageError(f"{folder}: holds what was done of a study that did not end; {right}")
-        folder.mkdir(parents=True, exist_ok=True)
-        file = path.open("r+b" if resume and path.exists() else "w+b")
-    with file:
-        _lock(file, folder)
         with told(path):
+            if not resume:
+                file.truncate(0)
             journal = Journal(path, file, _begun(file, plan, path))
         try:
             yield journal
@@ -106,16 +108,13 @@ def _begun(file: BinaryIO, plan: Plan, path: Path) -> dict[tuple[int, int], tupl
     places: dict[tuple[int, int], tuple[int, int]] = {}
     end = 0
     for number, line in enumerate(file):
-        try:
-            held = json.loads(line) if line.endswith(b"\n") else None
-        except ValueError:
-            held = None
-        if held is None:
-            break
-        if number == 0:
+        held = _held(line)
+        if number == 0 and held is not None:
             _compare(held, plan, path)
-        else:
+        elif held is not None and held.keys() >= {"case", "block", "tally"}:
             places[held["case"], held["block"]] = end, len(line)
+        else:
+            break
         end += len(line)
     file.seek(end)
     file.truncate()
@@ -138,6 +137,15 @@ def _compare(head: Mapping[str, Any], plan: Plan, path: Path) -> None:
                 else f"{name} was {was.get(name) or 'not given'}, and is now {value or 'not given'}"
             )
             raise UsageError(f"{path.parent}: was begun as another study: {what}; begin anew with --force")
+
+
+def _held(line: bytes) -> Mapping[str, Any] | None:
+    """What a line says, None where it is torn or damaged."""
+    try:
+        held = json.loads(line) if line.endswith(b"\n") else None
+    except ValueError:
+        return None
+    return held if isinstance(held, dict) else None
 
 
 def _line(held: Mapping[str, Any]) -> bytes:

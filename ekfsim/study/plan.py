@@ -59,16 +59,15 @@ class Plan:
     def of(cls, request: Request) -> Self:
         """The plan of what is asked. Raises UsageError or InputError where a cell of it is no sound scene."""
         if request.a or request.b:
-            raise UsageError(f"{request.commands_name}: puts two settings side by side; run it with `ekfsim compare`")
+            raise UsageError(f"{request.name}: puts two settings side by side; run it with `ekfsim compare`")
         if request.fast and not engine.compiles():
             raise UsageError("--fast needs Numba; install it with: pip install 'ekfsim[fast]'")
-        cells = math.prod(map(len, request.sweep))
-        if cells * max(len(request.filters), 1) > MOST_CASES:
-            wrong = f"the grid has {cells} cells for {max(len(request.filters), 1)} filters"
-            raise UsageError(f"{wrong}, more than {MOST_CASES} rows; sweep fewer values")
+        rows = math.prod(map(len, request.sweep)) * max(len(request.filters), 1)
+        if rows > MOST_CASES:
+            raise UsageError(f"the table would have {rows} rows, more than {MOST_CASES}; sweep fewer values")
         cases, warnings = list[Case](), dict[str, None]()
         if request.written_by not in ("", VERSION):
-            told = f"{request.commands_name}: the study was written by ekfsim {request.written_by}, this is {VERSION}"
+            told = f"{request.name}: the study was written by ekfsim {request.written_by}, this is {VERSION}"
             warnings[f"{told}: its numbers may differ"] = None
         for values in itertools.product(*request.sweep):
             loaded = read_scene(request.commands, request.world, None, request.reading, (*request.settings, *values))

@@ -175,10 +175,13 @@ def test_a_recording_is_refused():
         (["--set", "start.x.y=3"], "--set start.x.y=3: 'start.x' is one value and holds no 'y'; write start.x"),
         (["--filter", "ekf,ufk"], "--filter ufk: there is no such filter; known: kf, ekf, iekf, ukf, pf"),
         (["--filter", "ekf,ekf"], "--filter ekf,ekf: 'ekf' stands twice; delete one"),
+        (["--sweep", "noise.rangeSigmaRatio=" + ",".join(map(str, range(5001))), "--filter", "ekf,ukf"],
+         "the table would have 10002 rows, more than 10000; sweep fewer values"),
+        (["-o", "short.yaml/out"], "short.yaml/out: 'short.yaml' is no folder"),
     ],
 )  # fmt: skip
 def test_a_wrong_option_is_one_clear_line(place, options, line):
-    told = ekfsim("study", "short.yaml", *options, "-o", "out")
+    told = ekfsim("study", "short.yaml", "-o", "out", *options)
     assert (told.status, told.out) == (2, "")
     assert told.err == f"ekfsim: {line}\n"
     assert not (place / "out").exists()
@@ -374,17 +377,35 @@ def test_another_study_is_not_gone_on_with(place):
 
 
 def test_resume_without_a_journal_starts_from_nothing(place):
-    assert ekfsim("study", "short.yaml", "--runs", 5, "--resume", "-o", "out").status == 0
+    told = ekfsim("study", "short.yaml", "--runs", 5, "--resume", "-o", "out")
+    assert told.status == 0
+    assert told.err == "ekfsim: out.partial: nothing is kept there to go on with; this is a study from the beginning\n"
     assert left_in(place / "out") == FOLDER
 
 
 def test_two_at_one_place_are_one_too_many(place):
     running = started(*BLOCKS)
     wait_for(journal_holds(place, 1), running)
-    told = ekfsim(*BLOCKS, "--resume")
+    refused = [ekfsim(*BLOCKS, *more) for more in ((), ("--resume",), ("--force",))]
+    done = place / "out.partial/journal.jsonl"
     kill(running)
-    assert told.status == 2
-    assert told.err == "ekfsim: out.partial: another study is at work there; wait for it, or choose another name\n"
+    for told in refused:
+        assert told.status == 2
+        assert told.err == "ekfsim: out.partial: another study is at work there; wait for it, or choose another name\n"
+    assert done.read_bytes().startswith(b'{"journal":')  # not even --force touched it
+
+
+@pytest.mark.parametrize("line", [b"{}\n", b"7\n", b"null\n", b'{"case":0}\n', b"\xff\n"])
+def test_what_is_damaged_in_a_journal_is_done_again(place, line):
+    assert ekfsim("study", "short.yaml", "--runs", 2000, "-o", "whole").status == 0
+    running = started("study", "short.yaml", "--runs", 10**8, "-o", "out")
+    wait_for(journal_holds(place, 1), running)
+    kill(running)
+    journal = place / "out.partial/journal.jsonl"
+    head, first, *_ = journal.read_bytes().splitlines(keepends=True)
+    journal.write_bytes(head.replace(b'"runs":100000000', b'"runs":2000') + first + line + first)
+    assert ekfsim("study", "short.yaml", "--runs", 2000, "-o", "out", "--resume").status == 0
+    assert tables("out") == tables("whole")
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="there are no terminals to be had")
