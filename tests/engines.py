@@ -1,17 +1,5 @@
-"""The engines that are installed, and how to use one for a while."""
-
-import importlib.util
-from contextlib import contextmanager
+"""The engines that are installed."""
 
 from ekfsim.geometry import engine
 
-ENGINES = engine.ENGINES if importlib.util.find_spec("numba") else ("numpy",)
-
-
-@contextmanager
-def using(name):
-    engine.use(name)
-    try:
-        yield
-    finally:
-        engine.use("numpy")
+ENGINES = engine.ENGINES if engine.compiles() else ("numpy",)

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from engines import ENGINES, using
+from engines import ENGINES
 from numerics import covariance, definite
 from problems import ROOM, classroom
 from scenes import rich, unbounded
@@ -14,6 +14,7 @@ from ekfsim.filters import unrolled
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.correcting import Linearized, corrected
 from ekfsim.filters.ekf import EKF
+from ekfsim.geometry.engine import using
 from ekfsim.geometry.lanes import lanes
 from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play

@@ -5,24 +5,14 @@ import sys
 
 import numpy as np
 import pytest
-from wall_worlds import (
-    DESK,
-    ENGINES,
-    ROOM,
-    WORLDS,
-    assert_same,
-    beams,
-    by_brute_force,
-    near_beams,
-    stars,
-    town,
-    using,
-)  # fmt: skip
+from engines import ENGINES
+from wall_worlds import DESK, ROOM, WORLDS, assert_same, beams, by_brute_force, near_beams, stars, town
 
 from ekfsim.geometry import engine
 from ekfsim.geometry.broad import broad
 from ekfsim.geometry.bundle import bundle
 from ekfsim.geometry.cells import BORDER, PLAIN
+from ekfsim.geometry.engine import using
 from ekfsim.geometry.fan import fan
 from ekfsim.geometry.walls import BLOCK, Walls
 

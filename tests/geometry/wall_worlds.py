@@ -1,21 +1,19 @@
 """Worlds of walls, beams to follow in them, and the ways of following them held against each other."""
 
-import importlib.util
 import math
-from contextlib import contextmanager
 
 import numpy as np
 import shapely
+from engines import ENGINES
 
-from ekfsim.geometry import engine
 from ekfsim.geometry.broad import broad
+from ekfsim.geometry.engine import using
 from ekfsim.geometry.fan import fan
 from ekfsim.geometry.march import march
 from ekfsim.geometry.walls import brute_force
 
 ROOM = np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])
 DESK = np.array([[2, 2], [4, 2], [4, 3], [2, 3.0]])
-ENGINES = engine.ENGINES if importlib.util.find_spec("numba") else ("numpy",)
 
 
 def stars(count, seed, side=100.0, corners=5, overlap=1.0):
@@ -131,12 +129,3 @@ def near_beams(walls, origin, heading):
     near = np.abs(origin).sum(-1) < walls.grid.horizon
     x, y = origin[near].T
     return x, y, np.cos(heading[near]), np.sin(heading[near]), walls.grid.size + np.abs(x) + np.abs(y)
-
-
-@contextmanager
-def using(name):
-    engine.use(name)
-    try:
-        yield
-    finally:
-        engine.use("numpy")
