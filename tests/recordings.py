@@ -11,7 +11,7 @@ from ekfsim.geometry.walls import Walls
 from ekfsim.models.landmarks import MarkerAngles, RangeOnly
 from ekfsim.models.layout import SPEED_POSE
 from ekfsim.models.position import Position
-from ekfsim.models.ultrasonic import Ultrasonic
+from ekfsim.models.ultrasonic import UltrasonicBeam
 from ekfsim.models.wheel_speeds import WheelSpeeds
 from ekfsim.models.wheels import GyroWheels
 from ekfsim.records import Control, Entry, Log, Reading
@@ -23,7 +23,7 @@ WHEELS = GyroWheels(0.6, 0.01, np.diag([0.004, 0.004, 0.002]) ** 2)
 MARKER = MarkerAngles(5.0, 3.0, 0.226, 0.048, 0.006)
 NODE = RangeOnly(0.0, 0.0, 0.1)
 FIX = Position(0.2, 0.2)
-BEAM = Ultrasonic(Walls.of({"boundary": ROOM}), math.pi / 2, 0.005, 0.01, 0.1, 2.0)
+BEAM = UltrasonicBeam(Walls.of({"boundary": ROOM}), math.pi / 2, 0.005, 0.01, 0.1, 2.0)
 
 
 def wheels(left, right, rate, dt=0.5):
