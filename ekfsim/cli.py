@@ -11,7 +11,7 @@ from ekfsim import process
 from ekfsim.asked import engine_of, scene_of
 from ekfsim.errors import RunError, UsageError
 from ekfsim.options import FORCE, READING, Result, Source, compare_options, scene_options, study_options
-from ekfsim.process import Program, heed, say, shown
+from ekfsim.process import Program, heed, say, shown, width
 from ekfsim.progress import blocks_bar, study_into
 from ekfsim.version import VERSION
 
@@ -250,7 +250,7 @@ def study(
     else:
         results = study_into(plan, engine, out, resume, force)
     if not expect:
-        click.echo(shown(conclude(plan, results)), nl=False)
+        click.echo(shown(conclude(plan, results, width())), nl=False)
         return
     found = verified(results[0])
     click.echo(shown(verify(plan, found)), nl=False)
@@ -284,4 +284,4 @@ def compare(
         found = total(comparison, comparison.tasks(), engine_of(workers, cluster), done)
     if out is not None:
         write_comparison(comparison, found, out, force)
-    click.echo(shown(conclude(comparison, found)), nl=False)
+    click.echo(shown(conclude(comparison, found, width())), nl=False)

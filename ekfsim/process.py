@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import signal
 import sys
 from contextlib import suppress
@@ -98,6 +99,11 @@ def say(text: str) -> None:
     with suppress(OSError):
         lines = (line if _placed(line) else f"ekfsim: {line}" for line in shown(text).split("\n"))
         click.echo("\n".join(lines), err=True)
+
+
+def width() -> int | None:
+    """How many columns the terminal has that results are printed on; None where they go elsewhere."""
+    return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
 def shown(text: object) -> str:

@@ -59,10 +59,15 @@ def covers(inside: Share) -> bool:
 
 
 def proven(at: AtStep) -> bool:
-    """Whether there are runs enough: what is not consistent stays so anywhere in its interval."""
+    """Whether there are runs enough: what is not consistent stays so anywhere in its interval.
+
+    What is consistent has an interval no wider than the range in which it is: some 400 runs.
+    """
     low, high = MEDIAN - MEDIAN_WITHIN, MEDIAN + MEDIAN_WITHIN
+    if word_at(at) is Word.CONSISTENT:
+        return at.above_50.high - at.above_50.low <= high - low
     apart = not agrees(at.above_50) and (at.above_50.low > high or at.above_50.high < low)
-    return word_at(at) is Word.CONSISTENT or apart or not covers(at.ellipse) or at.lost.low >= MOST_LOST
+    return apart or not covers(at.ellipse) or at.lost.low >= MOST_LOST
 
 
 def verdict(result: Result) -> Verdict:

@@ -10,6 +10,7 @@ from ekfsim.records import Nees
 from ekfsim.scene import Scene
 from ekfsim.summary import Errors, Summary
 from ekfsim.views.numbers import number, turn
+from ekfsim.views.text_table import aligned
 
 REASONS = {
     Refused.NO_ECHO: "without an echo",
@@ -45,13 +46,12 @@ def conclude_all(scene: Scene, summaries: Sequence[Summary], quiet: bool = False
 
 def _table(names: Sequence[str], summaries: Sequence[Summary]) -> list[str]:
     """A row for each filter, and one for the odometry alone."""
-    rows = [HEAD, *map(_row, names, summaries)]
+    rows: list[Sequence[str]] = [HEAD, *map(_row, names, summaries)]
     first = summaries[0]
     if first.position.n:
         reckoned = _cell(first.reckoned_position.rmse), _cell(first.reckoned_heading.rmse, math.degrees(1))
         rows.append(("odometry alone", "", *reckoned, *[""] * 4))
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
+    return aligned(rows, 1)
 
 
 def _row(name: str, summary: Summary) -> tuple[str, ...]:

@@ -20,6 +20,7 @@ from ekfsim.views.lettering import drawable, wrapped
 from ekfsim.views.study_pictures import COLOURS, DPI, GREY, sheet
 
 SIZE = (8.0, 7.4)  # in
+LETTERS = 120  # in a line of the sentences
 STYLES = (("a", COLOURS[0], "-"), ("b", COLOURS[1], (0, (4, 1.5))))
 
 
@@ -47,7 +48,8 @@ def picture(comparison: Comparison, found: Pairs) -> Figure:
     lost.legend(loc="best", fontsize=8, framealpha=0.9)
     words.axis("off")
     said = [sentence(measure) for measure in measures(found) if not math.isnan(measure.found.value)]
-    words.text(0.0, 1.0, "\n".join(map(drawable, said)), fontsize=8, va="top", transform=words.transAxes)
+    lines = wrapped(map(drawable, said), LETTERS, 2 * len(said))
+    words.text(0.0, 1.0, "\n".join(lines), fontsize=8, va="top", transform=words.transAxes)
     figure.suptitle("Two settings on the same draws, with 95 % intervals", fontsize=12)
     lines = wrapped([drawable(told(comparison))], int(21 * SIZE[0]), 2)
     figure.text(0.995, 0.004, "\n".join(lines), fontsize=5.5, ha="right", va="bottom", color=GREY)

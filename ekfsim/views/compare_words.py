@@ -7,6 +7,7 @@ from typing import NamedTuple
 from ekfsim.study.comparison import Comparison, Difference, of_means, of_shares
 from ekfsim.study.pairs import Pairs
 from ekfsim.study.plan import Plan
+from ekfsim.views.text_table import aligned, folded
 
 HEAD = ("at the last step", "a", "b", "b − a", "95 % interval", "a alone", "b alone")
 
@@ -32,10 +33,10 @@ def measures(found: Pairs) -> tuple[Measure, ...]:
     lost, inside, position, heading = found.lost, found.inside, found.position, found.heading
     few, near = ("fewer", "more"), ("nearer to", "farther from")
     return (
-        Measure("lost", "", "lost runs", "%", 100, "b loses {} {} runs", few, of_shares(lost), sum(lost), lost.only_a,
-                lost.only_b),
+        Measure("lost", "", "lost runs", "%", 100, "b loses {1} runs, by {0}", few, of_shares(lost), sum(lost),
+                lost.only_a, lost.only_b),
         Measure("ellipse", "", "runs inside the 95.4 % ellipse", "%", 100,
-                "b has the truth inside its 95.4 % ellipse in {} {} runs", few, of_shares(inside), sum(inside),
+                "b has the truth inside its 95.4 % ellipse in {1} runs, by {0}", few, of_shares(inside), sum(inside),
                 inside.only_a, inside.only_b),
         Measure("position", "m", "mean position error", "m", 1, "b ends on average {} {} the true position", near,
                 of_means(position), position.runs),
@@ -44,17 +45,20 @@ def measures(found: Pairs) -> tuple[Measure, ...]:
     )  # fmt: skip
 
 
-def conclude(comparison: Comparison, found: Pairs) -> str:
-    """All that is printed when a comparison is over."""
+def conclude(comparison: Comparison, found: Pairs, width: int | None = None) -> str:
+    """All that is printed when a comparison is over. width : of the terminal; None where there is none"""
     request = comparison.request
     what = f"{found.a.runs} runs of seed {comparison.a.seed}, each under either setting on the same draws"
-    lines = [
+    head = (
         f"{request.commands_name}: {what}",
         f"  a: {settings(comparison.a, comparison)}",
         f"  b: {settings(comparison.b, comparison)}",
-        *table(found),
+    )
+    lines = [
+        *(line for told in head for line in folded(told, width)),
+        *aligned([HEAD, *map(_row, measures(found))], 1, width),
         "",
-        *sentences(found),
+        *(line for told in sentences(found) for line in folded(told, width)),
     ]
     return "".join(f"{line}\n" for line in lines)
 
@@ -66,13 +70,6 @@ def settings(plan: Plan, comparison: Comparison) -> str:
     if comparison.a.filters != comparison.b.filters:
         told.insert(0, f"filter={plan.cases[0].filter}")
     return ", ".join(told) or "as the file stands"
-
-
-def table(found: Pairs) -> list[str]:
-    """A row for each measure, under one head."""
-    rows = [HEAD, *map(_row, measures(found))]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
 
 
 def _row(measure: Measure) -> tuple[str, ...]:
@@ -102,11 +99,12 @@ def sentence(measure: Measure) -> str:
     """By how much b differs from a, with the interval; where that holds zero, that nothing is to be seen."""
     a, b, value, low, high = (measure.scale * number for number in measure.found)
     unit = measure.told_unit
+    apart = "percentage points" if unit == "%" else unit  # 37 of them fewer are not 37 % fewer
     both = f"a {_digits(a)} {unit}, b {_digits(b)} {unit}"
     if not measure.found.clear:
-        apart = f"b − a = {_digits(value)} {unit} ({_digits(low)} to {_digits(high)})"
-        return f"no difference in {measure.called} is to be seen: {both}, {apart}"
-    told = measure.claim.format(f"{_digits(abs(value))} {unit}", measure.words[value > 0])
+        difference = f"b − a = {_digits(value)} {apart} ({_digits(low)} to {_digits(high)})"
+        return f"no difference in {measure.called} is to be seen: {both}, {difference}"
+    told = measure.claim.format(f"{_digits(abs(value))} {apart}", measure.words[value > 0])
     least, most = sorted((abs(low), abs(high)))
     return f"{told} ({_digits(least)} to {_digits(most)}): {both}"
 

@@ -1,4 +1,4 @@
-"""A study for a person: a table, a plain sentence for each row with its evidence, and how to see the runs behind it."""
+"""A study for a person: a table, a verdict on each row with its evidence, and how to see the runs behind it."""
 
 import math
 import shlex
@@ -8,29 +8,24 @@ from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
 from ekfsim.study.verdict import MOST_LOST, Word, agrees, covers, proven, verdict
 from ekfsim.views.numbers import instant
+from ekfsim.views.text_table import aligned, folded
 
 HEAD = ("filter", "position", "heading", "> 50 %", "> 95 %", "> 99.9 %", "ellipse", "cone", "lost", "NIS", "verdict")
 
 
-def conclude(plan: Plan, results: Sequence[Result]) -> str:
-    """All that is printed when a study is over."""
+def conclude(plan: Plan, results: Sequence[Result], width: int | None = None) -> str:
+    """All that is printed when a study is over. width : of the terminal; None where there is none"""
     request = plan.request
     lines = [
-        f"{request.commands_name}: {request.runs} runs of seed {plan.seed}, at the last step "
-        "(RMSE in m and degrees; shares of NEES above the quantiles of χ², inside ellipse and cone, and lost, in %)",
-        *table(plan, results),
-        "",
+        *folded(f"{request.commands_name}: {request.runs} runs of seed {plan.seed}, at the last step", width),
+        *folded("(RMSE in m and degrees; NEES above quantiles of χ², and the other shares, in %)", width),
+        *aligned([[*plan.keys, *HEAD], *map(_row, results)], len(plan.keys) + 1, width),
     ]
     for result in results:
-        lines += [f"{title(result)}: {sentence(result)}", *(f"  {line}" for line in plays(plan, result))]
+        lines += ["", *folded(f"{title(result)}: {sentence(result)}", width)]
+        lines += [line for told in evidence(result.last) for line in folded(f"  {told}", width)]
+        lines += [f"  {line}" for line in plays(plan, result)]  # whole, to be copied
     return "\n".join(lines) + "\n"
-
-
-def table(plan: Plan, results: Sequence[Result]) -> list[str]:
-    """A row for each cell and filter, under one head."""
-    rows = [[*plan.keys, *HEAD], *map(_row, results)]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
 
 
 def _row(result: Result) -> list[str]:
@@ -53,13 +48,13 @@ def title(result: Result) -> str:
 
 
 def sentence(result: Result) -> str:
-    """The verdict, since when, and the evidence."""
-    found, last = verdict(result), result.last
+    """The verdict, and since when."""
+    found = verdict(result)
     if found.word is Word.NO_EVIDENCE:
         return f"{found.word.value}: at the last step no run is uncertain of anything"
     since = "" if found.since is None else f" from {when(found.since)} on"
-    doubt = "" if proven(last) else "; so few runs are no proof, their intervals reach what is consistent: run more"
-    return f"{found.word.value}{since}: {'; '.join(evidence(last))}{doubt}"
+    doubt = "" if proven(result.last) else "; so few runs are no proof, run more"
+    return f"{found.word.value}{since}{doubt}"
 
 
 def when(at: AtStep) -> str:
@@ -68,15 +63,21 @@ def when(at: AtStep) -> str:
 
 
 def evidence(last: AtStep) -> list[str]:
-    """What the verdict rests on, each with its 95 % interval."""
-    told = [f"at the last step {shared(last.above_50)} of {last.runs} runs have a NEES above the median of χ²"]
-    told[0] += " (45 to 55 % agree)" if agrees(last.above_50) else ", where 45 to 55 % should"
+    """What the verdict rests on, each with its 95 % interval and what it should be."""
+    told = list[str]()
+    if last.above_50.of:
+        held = _held("45 to 55 %", agrees(last.above_50))
+        told.append(f"{shared(last.above_50)} end with a NEES above the χ² median{held}")
     if last.ellipse.of:
-        meant = "" if covers(last.ellipse) else ", where 93.4 to 97.4 % should"
-        told.append(f"{shared(last.ellipse)} are inside the 95.4 % ellipse{meant}")
-    meant = ", where fewer than 2 % should be" if last.lost.value >= MOST_LOST else ""
-    told.append(f"{shared(last.lost)} are lost{meant}")
+        held = _held("93.4 to 97.4 %", covers(last.ellipse))
+        told.append(f"{shared(last.ellipse)} end inside the 95.4 % ellipse{held}")
+    told.append(f"{shared(last.lost)} are lost{_held('fewer than 2 %', last.lost.value < MOST_LOST)}")
     return told
+
+
+def _held(right: str, agrees: bool) -> str:
+    """Whether what is right for a share is so."""
+    return f" ({right} is right)" if agrees else f", not {right}"
 
 
 def shared(share: Share) -> str:

@@ -34,7 +34,7 @@ def test_two_settings_are_told_in_a_table_and_in_sentences(place):
     assert lines[0] == "diverge-01-wrong-wall: 200 runs of seed 27, each under either setting on the same draws"
     assert lines[1:3] == ["  a: as the file stands", "  b: guard=skip"]
     assert " ".join(lines[3].split()) == "at the last step a b b − a 95 % interval a alone b alone"
-    assert lines[9].startswith("b loses 34 % fewer runs (27.4 to 40.8): ")
+    assert lines[9].startswith("b loses fewer runs, by 34 percentage points (27.4 to 40.8): ")
     assert lines[9].endswith("): a 35 %, b 1 %")
     assert "b ends on average" in lines[11]
     assert " nearer to the true position (" in lines[11]

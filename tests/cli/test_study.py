@@ -51,12 +51,14 @@ def test_a_study_leaves_a_folder_and_says_what_is_to_be_thought_of_it(place):
     (row,) = rows("out/summary.csv")
     assert (row["filter"], row["runs"], row["step"], row["seed"], row["guard"]) == ("ekf", "1500", "3", "0", "warn")
     lines = told.out.splitlines()
-    assert lines[0].startswith("short.yaml: 1500 runs of seed 0, at the last step (")
-    assert " ".join(lines[1].split()).startswith("filter position heading > 50 % > 95 % > 99.9 % ellipse cone lost NIS")
-    assert lines[4].startswith(f"ekf: {row['verdict']}")
+    assert lines[0].startswith("short.yaml: 1500 runs of seed 0, at the last step")
+    assert " ".join(lines[2].split()).startswith("filter position heading > 50 % > 95 % > 99.9 % ellipse cone lost NIS")
+    assert lines[5].startswith(f"ekf: {row['verdict']}")
+    cells = lines[3].split()
+    assert [line.partition(" %")[0].strip() for line in lines[6:9]] == [cells[3], cells[6], cells[8]]
     played = "ekfsim play short.yaml --seed 0 --run"
-    assert lines[5].startswith(f"  the worst run: {played} {row['worst_run']} --filter ekf  # its last NEES is ")
-    assert lines[6] == f"  a typical run: {played} {row['typical_run']} --filter ekf"
+    assert lines[9].startswith(f"  the worst run: {played} {row['worst_run']} --filter ekf  # its last NEES is ")
+    assert lines[10] == f"  a typical run: {played} {row['typical_run']} --filter ekf"
     steps = rows("out/steps.csv")
     assert [step["step"] for step in steps] == ["0", "1", "2", "3"]
     assert all(steps[-1][name] == row[name] for name in steps[-1])
