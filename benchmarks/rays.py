@@ -134,9 +134,9 @@ def agree(ours: Array, theirs: Array) -> None:
     np.testing.assert_allclose(theirs, np.where(np.isnan(ours), REACH, ours), atol=1e-6)
 
 
-def world(count: int, seed: int = 0) -> dict[str, Array]:
+def world(count: int) -> dict[str, Array]:
     """`count` walls: star-shaped pentagons, one in each cell of a lattice, so that none touches another."""
-    random, pieces = np.random.default_rng(seed), count // CORNERS
+    random, pieces = np.random.default_rng(0), count // CORNERS
     lattice = math.ceil(math.sqrt(pieces))
     pitch = SIDE / lattice
     rings = {}
@@ -148,10 +148,10 @@ def world(count: int, seed: int = 0) -> dict[str, Array]:
     return rings
 
 
-def free_beams(rings: dict[str, Array], seed: int = 1) -> list[Beam]:
+def free_beams(rings: dict[str, Array]) -> list[Beam]:
     """Beams from places outside all polygons."""
-    free = free_places(rings, DIFFERENT, seed).tolist()
-    headings = np.random.default_rng(seed + 1).uniform(-3.1, 3.1, DIFFERENT).tolist()
+    free = free_places(rings, DIFFERENT, seed=1).tolist()
+    headings = np.random.default_rng(2).uniform(-3.1, 3.1, DIFFERENT).tolist()
     return [(x, y, heading) for (x, y), heading in zip(free, headings, strict=True)]
 
 

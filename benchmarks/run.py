@@ -51,7 +51,7 @@ def main() -> None:
             print(ratio)
 
 
-def furnished(pillars: int = 30) -> Scene:
+def furnished(pillars: int) -> Scene:
     """A room of 20 m by 16 m with square pillars in two corners, and a robot that drives round a square beside them."""
     lattice = math.ceil(math.sqrt(pillars / 2))
     pitch = 5 / lattice

@@ -79,9 +79,9 @@ def every(steps: Iterator[Step]) -> int:
     return sum(1 for _ in steps)
 
 
-def recorded(seed: int = 0) -> Log:
+def recorded() -> Log:
     """The log of N robots side by side that move and turn among beacons."""
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(0)
     motion, entries = MoveTurn(NOISE.odometry_distance, NOISE.odometry_angle), []
     truth = FIRST.mean + random.standard_normal((RUNS, 3)) * np.sqrt(np.diagonal(FIRST.covariance))
     entries.append(Entry(0, None, truth))
@@ -95,9 +95,9 @@ def recorded(seed: int = 0) -> Log:
     return Log(tuple(entries), Gaussian(np.tile(FIRST.mean, (RUNS, 1)), np.tile(FIRST.covariance, (RUNS, 1, 1))))
 
 
-def among_pillars(seed: int = 5) -> Scene:
+def among_pillars() -> Scene:
     """99 square pillars in a hall of 100 m by 100 m, 400 walls, and a robot that drives a square in the lanes."""
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(5)
     corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     middles = [(LANE * (i + 0.5), LANE * (j + 0.5)) for i in range(10) for j in range(10)][1:]
     obstacles = tuple(
@@ -116,7 +116,7 @@ def among_pillars(seed: int = 5) -> Scene:
     return Scene(world, (Repeat(STEPS // int(SIDE), side),), gate=GATE)
 
 
-def robot(sensors: int = 1) -> Any:
+def robot() -> Any:
     """filterpy's extended Kalman filter for a robot that moves and turns."""
     from filterpy.kalman import ExtendedKalmanFilter
 
@@ -132,7 +132,7 @@ def robot(sensors: int = 1) -> Any:
             D = ratio_d * d * d
             self.Q = np.array([[D * c * c, D * c * s, 0.0], [D * c * s, D * s * s, 0.0], [0.0, 0.0, ratio_a * a * a]])
 
-    return Robot(dim_x=3, dim_z=sensors)
+    return Robot(dim_x=3, dim_z=1)
 
 
 def nees_one(x: Array, P: Array, truth: Array) -> float:

@@ -55,10 +55,10 @@ class Robot(Protocol):
         """The motion input u : (…, m) that a true motion gives, without noise."""
 
 
-def _wheel_ways(tick: Tick, width: float) -> list[Array]:
+def _wheel_ways(distance: Array, turn: Array, width: float) -> list[Array]:
     """ΔD_L and ΔD_R of two wheels `width` m apart."""
-    half = tick.turn * (width / 2)
-    return [tick.distance - half, tick.distance + half]
+    half = turn * (width / 2)
+    return [distance - half, distance + half]
 
 
 def _stacked(tick: Tick, numbers: list[Array]) -> Array:
@@ -92,7 +92,7 @@ class Mower:
 
     def ideal(self, tick: Tick) -> Array:
         """ΔD_L, ΔD_R, ω, dt"""
-        return _stacked(tick, [*_wheel_ways(tick, self.width), tick.turn / tick.dt])
+        return _stacked(tick, [*_wheel_ways(tick.distance, tick.turn, self.width), tick.turn / tick.dt])
 
 
 @dataclass(frozen=True)
@@ -128,8 +128,7 @@ class Pioneer:
             sides = np.linalg.solve(np.array([forward, turning]), np.stack([tick.distance, tick.turn])) / tick.dt
             return _stacked(tick, [sides[1], sides[0]])
         turn = np.tan(tick.turn) if self.odometry == "arctan" else tick.turn
-        half = turn * (self.width / 2)
-        return np.stack([tick.distance - half, tick.distance + half], axis=-1)
+        return np.stack(_wheel_ways(tick.distance, turn, self.width), axis=-1)
 
 
 @dataclass(frozen=True)
@@ -154,7 +153,7 @@ class GnssMower:
 
     def ideal(self, tick: Tick) -> Array:
         """v_L, v_R, dt"""
-        left, right = _wheel_ways(tick, 2 * self.half_track)
+        left, right = _wheel_ways(tick.distance, tick.turn, 2 * self.half_track)
         return _stacked(tick, [left / tick.dt, right / tick.dt])
 
 
