@@ -19,7 +19,7 @@ import numpy as np
 import shapely
 from timing import Task, optional, ratios
 
-from ekfsim.geometry import Array, engine
+from ekfsim.geometry import Array, backend
 from ekfsim.geometry.walls import Walls
 
 SIDE = 100.0  # m
@@ -115,18 +115,18 @@ def compare(
     calls: Mapping[str, float],
     effort: tuple[int, float],
 ) -> None:
-    """Print how both engines fare; first that they answer alike."""
+    """Print how both backends fare; first that they answer alike."""
     plain = walls.cast(origins, angles)
-    for name in engine.ENGINES:
+    for name in backend.BACKENDS:
         if name == "numba" and optional("numba") is None:
             continue
-        engine.use(name)
+        backend.use(name)
         hit = walls.cast(origins, angles)
         np.testing.assert_allclose(hit.range, plain.range, rtol=1e-12, atol=1e-12)
         print(f"{title}, {name}")
         for ratio in ratios(lambda: walls.cast(origins, angles), peers, *effort, calls, len(angles)):
             print(ratio)
-    engine.use("numpy")
+    backend.use("numpy")
 
 
 def agree(ours: Array, theirs: Array) -> None:

@@ -24,7 +24,7 @@ from timing import Task, optional, ratios
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.ekf import EKF
-from ekfsim.geometry import Array, engine
+from ekfsim.geometry import Array, backend
 from ekfsim.geometry.angles import wrap_one
 from ekfsim.localization import localize, play
 from ekfsim.models.landmarks import RangeOnly
@@ -54,7 +54,7 @@ def main() -> None:
     for name in ("numpy", "numba"):
         if name == "numba" and optional("numba") is None:
             continue
-        engine.use(name)
+        backend.use(name)
         *_, last = localize(log.entries, EKF(), log.first)
         difference = max(np.abs(last.posterior.mean[run] - filtered(log, run)[0]).max() for run in some)
         print(f"{name}, no rays; largest difference from filterpy {difference:.1e}")

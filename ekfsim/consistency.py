@@ -7,7 +7,7 @@ import numpy as np
 
 from ekfsim.filters.belief import Belief, Gaussian, Refused, posed
 from ekfsim.filters.chi_square import band, quantile
-from ekfsim.geometry import Array, Booleans, Integers, engine
+from ekfsim.geometry import Array, Booleans, Integers, backend
 from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.geometry.ellipse import cone_factor, radius_factor
 from ekfsim.geometry.lanes import front
@@ -85,7 +85,7 @@ def _squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
 def _squared_errors(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
     """The same for many runs, by P = L D Lᵀ where P is clearly of full rank. Held equal to the above by a test."""
     n = e.shape[-1]
-    if n == 3 and engine.used() == "numba":
+    if n == 3 and backend.used() == "numba":
         from ekfsim.filters.compiled import squares
 
         value, clear = squares(front(e, 1), front(P), ROUNDING**2, CLEAR)

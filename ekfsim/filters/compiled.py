@@ -1,6 +1,6 @@
 """What unrolled.py does, and the NEES, compiled by Numba: the extra `fast`.
 
-Imported only where geometry/engine.py has been told to use it. All arrays have their entries in front and the runs
+Imported only where geometry/backend.py has been told to use it. All arrays have their entries in front and the runs
 behind, (3, 3, N), one stretch of memory. Most loops are short on purpose: then several runs are taken at once.
 """
 

@@ -12,7 +12,7 @@ from ekfsim.filters.algebra import ROUNDING
 from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.correcting import Linearized, corrected
-from ekfsim.geometry import Array, Booleans, engine
+from ekfsim.geometry import Array, Booleans, backend
 from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.lanes import back, front
 
@@ -29,7 +29,7 @@ def predicted(P: Array, F: Array, G: Array, M: Array, Q: Array | float) -> Array
     if F.shape[-1] != 3 or len(F) < MANY or not len(P) == len(G) == len(M) == len(F):
         return None
     propagated = _propagated
-    if engine.used() == "numba":
+    if backend.used() == "numba":
         from ekfsim.filters.compiled import propagated
     new = propagated(front(P), front(F), front(G), front(M))
     if new is None:
@@ -77,7 +77,7 @@ def updated(
 ) -> tuple[Gaussian, Correction]:
     """K = P⁻ Hᵀ/S      x = x⁻ + K ν      P = P⁻ − P⁻ Hᵀ H P⁻/S          of one number in N runs"""
     revised = _revised
-    if engine.used() == "numba":
+    if backend.used() == "numba":
         from ekfsim.filters.compiled import revised
     _, h, ν, H, R = reading
     x, P = front(prior.mean, 1), front(prior.covariance)

@@ -6,7 +6,7 @@
     meeting.py   what it means that a beam meets a wall
     walls.py     a map's walls, and which of them a beam meets first; `brute_force` is all of it in twenty lines
     lanes.py     how the small matrices of many runs lie in memory
-    engine.py    NumPy, or code compiled by Numba
+    backend.py   NumPy, or code compiled by Numba
 
 Everything else is speed: ways to find by fewer trials what `brute_force` finds by trying every wall. All of them give
 its ranges and its walls; tests/geometry/test_walls.py holds them to that. Which one `Walls.cast` takes, the first that

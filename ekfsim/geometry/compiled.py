@@ -1,6 +1,6 @@
 """The walk of one beam after the other through the cells of a grid, compiled by Numba: the extra `fast`.
 
-Imported only where engine.py has been told to use it. The steps are those of `Grid.walk`, but nothing doubtful is
+Imported only where backend.py has been told to use it. The steps are those of `Grid.walk`, but nothing doubtful is
 decided here: a beam that passes within a hair of a wall's end, or begins within one of a wall, is left to the other
 ways. Numba keeps what it has compiled as long as this file does not change, so the tolerances come as arguments.
 """

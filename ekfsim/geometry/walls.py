@@ -13,7 +13,7 @@ from typing import Self
 
 import numpy as np
 
-from ekfsim.geometry import Array, Integers, engine
+from ekfsim.geometry import Array, Integers, backend
 from ekfsim.geometry.broad import broad
 from ekfsim.geometry.bundle import bundle
 from ekfsim.geometry.cells import Cells
@@ -84,7 +84,7 @@ class Walls:
         x, y = origin[..., 0], origin[..., 1]
         if x.shape != np.shape(heading):
             x, y, heading = np.broadcast_arrays(x, y, heading)
-        if heading.size > (FEW if engine.used() == "numpy" else FEW_COMPILED):
+        if heading.size > (FEW if backend.used() == "numpy" else FEW_COMPILED):
             ranges, walls = self._all(x.ravel(), y.ravel(), heading.ravel())
         else:
             hits = [self.first(*beam) for beam in zip(*(v.ravel().tolist() for v in (x, y, heading)), strict=True)]
@@ -128,7 +128,7 @@ class Walls:
     def _quickly(self, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers, Integers]:
         """Ranges and walls by the way that suits these beams best, and which of them are in doubt."""
         grid, ends = self.cells.grid, self.segments.reshape(-1, 4)
-        if engine.used() == "numba":
+        if backend.used() == "numba":
             from ekfsim.geometry import compiled
 
             return compiled.walk(self.cells, x, y, dx, dy)

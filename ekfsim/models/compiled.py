@@ -1,6 +1,6 @@
 """The classroom's motion and sensor, linearised for many runs by Numba: the extra `fast`.
 
-Imported only where geometry/engine.py has been told to use it. All arrays have their entries in front and the runs
+Imported only where geometry/backend.py has been told to use it. All arrays have their entries in front and the runs
 behind: x : (3, N), F : (3, 3, N).
 """
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ekfsim.geometry import Array, Booleans, Integers, engine
+from ekfsim.geometry import Array, Booleans, Integers, backend
 from ekfsim.geometry.lanes import back, front, lanes
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.protocols import Quantity, Sensor
@@ -64,7 +64,7 @@ class Laser(Sensor):
             return self._linearize_one(*x.tolist())
         direction = x[..., 2] + self.bearing
         hit = self.walls.cast(x[..., :2], direction)
-        if direction.ndim == 1 and engine.used() == "numba":
+        if direction.ndim == 1 and backend.used() == "numba":
             from ekfsim.models.compiled import beamed
 
             return beamed(direction, hit.range, hit.wall, self.walls.normals, self.range_ratio, ALONG)

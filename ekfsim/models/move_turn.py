@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ekfsim.geometry import Array, engine
+from ekfsim.geometry import Array, backend
 from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.geometry.lanes import back, lanes
 from ekfsim.models.protocols import Motion, Quantity
@@ -63,7 +63,7 @@ class MoveTurn(Motion):
         """f, F, G, M and Q at once, the sine and cosine taken once; held equal to the above by a test."""
         if x.ndim == u.ndim == 1:
             return self._linearize_one(*x.tolist(), *u.tolist())
-        if len(x) == len(u) and x.ndim == u.ndim == 2 and engine.used() == "numba":
+        if len(x) == len(u) and x.ndim == u.ndim == 2 and backend.used() == "numba":
             from ekfsim.models.compiled import moved
 
             return *moved(x, u, self.distance_ratio, self.angle_ratio), 0.0

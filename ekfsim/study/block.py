@@ -8,7 +8,7 @@ import numpy as np
 from ekfsim.consistency import LOST, error
 from ekfsim.filters.belief import Correction, posed
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.geometry.engine import used, using
+from ekfsim.geometry.backend import used, using
 from ekfsim.localization import play
 from ekfsim.records import Step, expanded_length
 from ekfsim.scene import Scene

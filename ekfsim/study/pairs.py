@@ -8,7 +8,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from ekfsim.geometry import Array, Booleans
-from ekfsim.geometry.engine import used, using
+from ekfsim.geometry.backend import used, using
 from ekfsim.scene import Scene
 from ekfsim.study.block import watched
 from ekfsim.study.tally import Tally

@@ -15,7 +15,7 @@ from ekfsim.files.load_study import Request
 from ekfsim.files.marked import parse
 from ekfsim.files.settings import Setting
 from ekfsim.files.source import bytes_of, text_of
-from ekfsim.geometry import engine
+from ekfsim.geometry import backend
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import BLOCK
 from ekfsim.study.block import run_block
@@ -60,7 +60,7 @@ class Plan:
         """The plan of what is asked. Raises UsageError or InputError where a cell of it is no sound scene."""
         if request.a or request.b:
             raise UsageError(f"{request.name}: puts two settings side by side; run it with `ekfsim compare`")
-        if request.fast and not engine.compiles():
+        if request.fast and not backend.compiles():
             raise UsageError("--fast needs Numba; install it with: pip install 'ekfsim[fast]'")
         rows = math.prod(map(len, request.sweep)) * max(len(request.filters), 1)
         if rows > MOST_CASES:

@@ -15,7 +15,7 @@ from program import SHORT, WORLD, ekfsim, ended, lay_out, left_in, process, star
 
 from ekfsim.errors import UsageError
 from ekfsim.files.load_study import read_request
-from ekfsim.geometry import engine
+from ekfsim.geometry import backend
 from ekfsim.study.plan import Plan
 
 FOLDER = ["commands.yaml", "coverage.png", "divergence.png", "nees.png", "steps.csv", "study.yaml", "summary.csv",
@@ -444,6 +444,6 @@ def test_a_fast_study_says_the_same(place):
 
 
 def test_a_fast_study_without_numba_says_what_to_install(monkeypatch):
-    monkeypatch.setattr(engine, "compiles", lambda: False)
+    monkeypatch.setattr(backend, "compiles", lambda: False)
     with pytest.raises(UsageError, match=r"--fast needs Numba; install it with: pip install 'ekfsim\[fast\]'"):
         Plan.of(replace(read_request("tour"), fast=True))

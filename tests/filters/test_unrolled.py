@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from engines import ENGINES
+from backends import BACKENDS
 from numerics import covariance, definite
 from problems import ROOM, classroom
 from scenes import rich, unbounded
@@ -14,7 +14,7 @@ from ekfsim.filters import unrolled
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.correcting import Linearized, corrected
 from ekfsim.filters.ekf import EKF
-from ekfsim.geometry.engine import using
+from ekfsim.geometry.backend import using
 from ekfsim.geometry.lanes import lanes
 from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
@@ -24,7 +24,7 @@ from ekfsim.models.wheels import GyroWheels
 
 RUNS = 200
 NEAR = {"rtol": 1e-12, "atol": 1e-12}
-engines = pytest.mark.parametrize("name", ENGINES)
+backends = pytest.mark.parametrize("name", BACKENDS)
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def random():
     return np.random.default_rng(11)
 
 
-@engines
+@backends
 @pytest.mark.parametrize("process", [0.0, np.diag([1.0, 2.0, 3.0]) * 1e-3])
 def test_a_prediction_is_that_of_the_matrices(name, process, random):
     (x, P), _, motion = classroom(random, (RUNS,))
@@ -44,7 +44,7 @@ def test_a_prediction_is_that_of_the_matrices(name, process, random):
         np.testing.assert_array_equal(new, new.mT)
 
 
-@engines
+@backends
 def test_wheels_with_a_gyro_and_a_clock_are_predicted_so_too(name, random):
     (x, P), _, _ = classroom(random, (RUNS,))
     motion = GyroWheels(0.5, 0.01, np.diag([1e-6, 1e-6, 1e-7]))
@@ -56,7 +56,7 @@ def test_wheels_with_a_gyro_and_a_clock_are_predicted_so_too(name, random):
     np.testing.assert_allclose(new, F @ P @ F.mT + G @ M @ G.mT + Q, **NEAR)
 
 
-@engines
+@backends
 def test_what_it_does_not_know_is_left_to_the_matrices(name, random):
     (x, P), _, motion = classroom(random, (RUNS,))
     _, F, G, M, Q = motion.linearize(x, random.uniform(-1, 1, (RUNS, 2)))
@@ -77,7 +77,7 @@ def sensors():
     return Laser(ROOM, 0.4, 0.02), Laser(ROOM, 0.4, 1e-7), RangeOnly(2.0, 3.0, 0.1), BearingOnly(2.0, 3.0, 0.02)
 
 
-@engines
+@backends
 @pytest.mark.parametrize("number", range(4))
 @pytest.mark.parametrize("gate", [None, 0.5])
 def test_an_update_is_that_of_the_matrices(name, number, gate, random):
@@ -107,7 +107,7 @@ def test_an_update_is_that_of_the_matrices(name, number, gate, random):
     assert definite(fast.covariance)
 
 
-@engines
+@backends
 def test_a_sharp_laser_leaves_its_own_doubt_and_no_rounding(name):
     """A beam along x, the heading known: of 0.01 m² its R is left, be that as small as it may."""
     x, P = np.tile([3.0, 4.0, 0.0], (RUNS, 1)), np.tile(np.diag([0.01, 0.01, 0.0]), (RUNS, 1, 1))
@@ -117,7 +117,7 @@ def test_a_sharp_laser_leaves_its_own_doubt_and_no_rounding(name):
     np.testing.assert_allclose(posterior.covariance[:, 0, 0], correction.R[:, 0, 0], rtol=1e-9)
 
 
-@engines
+@backends
 def test_a_beam_along_a_wall_among_others(name, random):
     x = random.uniform((1, 1, -3), (9, 7, 3), (RUNS, 3))
     x[::3] = [-1.0, 0.0, 0.0]
@@ -130,7 +130,7 @@ def test_a_beam_along_a_wall_among_others(name, random):
             np.testing.assert_allclose(each[k], one, **NEAR)
 
 
-@engines
+@backends
 def test_an_update_changes_nothing_that_it_was_given(name, random):
     (x, P), laser, motion = classroom(random, (RUNS,))
     z, u = laser.h(x) + 0.01, random.uniform(-1, 1, (RUNS, 2))
@@ -143,7 +143,7 @@ def test_an_update_changes_nothing_that_it_was_given(name, random):
         np.testing.assert_array_equal(each, kept)
 
 
-@engines
+@backends
 def test_the_nees_of_many_runs_is_that_of_each(name, random):
     P = covariance(random, RUNS, 3) * 0.01
     P[::4, 2, :] = P[::4, :, 2] = 0.0  # ranks of 3, 2, 1 and 0 side by side
@@ -162,7 +162,7 @@ def test_the_nees_of_many_runs_is_that_of_each(name, random):
         assert set(rank.tolist()) == set(range(n + 1))
 
 
-@engines
+@backends
 @pytest.mark.parametrize(("made", "reasons"), [(rich(), 3), (unbounded(), 3), (rich(gate=None, guard="skip"), 3)])
 def test_a_run_of_a_study_is_that_run_alone(name, made, reasons):
     runs, met = np.arange(900, 1024), set()
@@ -184,7 +184,7 @@ def test_a_run_of_a_study_is_that_run_alone(name, made, reasons):
 
 def test_nothing_in_a_map_without_walls_is_met(random):
     x = classroom(random, (RUNS,))[0].mean
-    for name in ENGINES:
+    for name in BACKENDS:
         with using(name):
             h, H, R = Laser(Walls.of({}), 0.1, 0.01).linearize(x)
         assert np.isnan(h).all()

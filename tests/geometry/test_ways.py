@@ -5,18 +5,18 @@ import sys
 
 import numpy as np
 import pytest
-from engines import ENGINES
+from backends import BACKENDS
 from wall_worlds import DESK, ROOM, WORLDS, assert_same, beams, by_brute_force, near_beams, stars, town
 
-from ekfsim.geometry import engine
+from ekfsim.geometry import backend
+from ekfsim.geometry.backend import using
 from ekfsim.geometry.broad import broad
 from ekfsim.geometry.bundle import bundle
 from ekfsim.geometry.cells import BORDER, PLAIN
-from ekfsim.geometry.engine import using
 from ekfsim.geometry.fan import fan
 from ekfsim.geometry.walls import BLOCK, Walls
 
-needs_numba = pytest.mark.skipif("numba" not in ENGINES, reason="numba, the extra `fast`, is not installed")
+needs_numba = pytest.mark.skipif("numba" not in BACKENDS, reason="numba, the extra `fast`, is not installed")
 
 
 @pytest.mark.parametrize("name", WORLDS)
@@ -50,7 +50,7 @@ def test_walls_on_each_other_are_no_doubt_to_the_compiled_walk():
     assert not len(compiled.walk(walls.cells, *near[:4])[2])
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", BACKENDS)
 def test_a_beam_in_a_batch_has_the_hit_that_it_has_alone(name):
     """Whatever the batch: how many, from where, and what stands beside it."""
     walls = Walls.of(town("houses", 5, 20.0))
@@ -131,16 +131,16 @@ print("numba" in sys.modules)
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"
-    assert engine.used() == "numpy"
+    assert backend.used() == "numpy"
 
 
-def test_an_engine_that_does_not_exist_or_is_not_installed(monkeypatch):
-    with pytest.raises(ValueError, match="'fortran' is no engine; there are numpy and numba"):
-        engine.use("fortran")
+def test_a_backend_that_does_not_exist_or_is_not_installed(monkeypatch):
+    with pytest.raises(ValueError, match="'fortran' is no backend; there are numpy and numba"):
+        backend.use("fortran")
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(ModuleNotFoundError, match="numba is not installed; it comes with ekfsim's extra `fast`"):
-        engine.use("numba")
-    assert engine.used() == "numpy"
+        backend.use("numba")
+    assert backend.used() == "numpy"
 
 
 @needs_numba

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import shapely
-from engines import ENGINES
+from backends import BACKENDS
 
+from ekfsim.geometry.backend import using
 from ekfsim.geometry.broad import broad
-from ekfsim.geometry.engine import using
 from ekfsim.geometry.fan import fan
 from ekfsim.geometry.march import march
 from ekfsim.geometry.walls import brute_force
@@ -97,7 +97,7 @@ def assert_all_ways_agree(walls, origin, heading, scale=1.0):
     """Each beam twice, so that there are enough for a batch; and the first few places once more with a scan."""
     ranges, _ = expected = by_brute_force(walls, origin, heading)
     assert_same(one_by_one(walls, origin, heading), expected, scale)
-    for name in ENGINES:
+    for name in BACKENDS:
         with using(name):
             hit = walls.cast(np.repeat(origin, 2, axis=0)[:, None], np.repeat(heading, 2)[:, None])
         assert_same((hit.range[::2, 0], hit.wall[::2, 0]), expected, scale)

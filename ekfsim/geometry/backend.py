@@ -1,6 +1,6 @@
 """What follows many beams, and filters and judges many runs: NumPy, or code compiled by Numba, where that is asked for.
 
-    engine.use("numba")
+    backend.use("numba")
 
 NumPy is the default even where Numba is installed: what a study answers must not depend on what else is installed, and
 Numba takes a second to import and, the first time, some to compile. Both find the same walls, and the same ranges and
@@ -12,20 +12,20 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Literal, get_args
 
-Engine = Literal["numpy", "numba"]
-ENGINES: tuple[Engine, ...] = get_args(Engine)
+Backend = Literal["numpy", "numba"]
+BACKENDS: tuple[Backend, ...] = get_args(Backend)
 
-_used: Engine = "numpy"
+_used: Backend = "numpy"
 
 
-def use(engine: Engine) -> None:
+def use(backend: Backend) -> None:
     """Choose for all casts of this process that are still to come."""
     global _used
-    if engine not in ENGINES:
-        raise ValueError(f"{engine!r} is no engine; there are {' and '.join(ENGINES)}")
-    if engine == "numba" and not compiles():
+    if backend not in BACKENDS:
+        raise ValueError(f"{backend!r} is no backend; there are {' and '.join(BACKENDS)}")
+    if backend == "numba" and not compiles():
         raise ModuleNotFoundError("numba is not installed; it comes with ekfsim's extra `fast`", name="numba")
-    _used = engine
+    _used = backend
 
 
 def compiles() -> bool:
@@ -34,16 +34,16 @@ def compiles() -> bool:
 
 
 @contextmanager
-def using(engine: Engine) -> Iterator[None]:
+def using(backend: Backend) -> Iterator[None]:
     """Choose for the casts of a block alone."""
     before = used()
-    use(engine)
+    use(backend)
     try:
         yield
     finally:
         use(before)
 
 
-def used() -> Engine:
+def used() -> Backend:
     """What is in use."""
     return _used
