@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
+from ekfsim.errors import UsageError
 from ekfsim.process import say, shown
 
 if TYPE_CHECKING:
@@ -39,10 +40,12 @@ def scene_of(
 
 
 def engine_of(workers: int, address: str | None) -> "Engine":
-    """Where the blocks of a study run."""
+    """Where the blocks of a study run. Raises UsageError where two places are named."""
     from ekfsim.study import engines
 
     if address is not None:
+        if workers > 1:
+            raise UsageError("--workers: a cluster has its own; leave this out, or --cluster")
         from ekfsim.study.cluster import cluster
 
         return cluster(address, say)

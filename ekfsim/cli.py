@@ -10,7 +10,7 @@ import click
 from ekfsim import process
 from ekfsim.asked import engine_of, scene_of
 from ekfsim.errors import RunError, UsageError
-from ekfsim.options import FORCE, READING, Result, Source, compare_options, scene_options, study_options
+from ekfsim.options import FORCE, READING, Result, Source, Whole, compare_options, scene_options, study_options
 from ekfsim.process import Program, heed, say, shown, width
 from ekfsim.progress import blocks_bar, study_into
 from ekfsim.version import VERSION
@@ -50,7 +50,7 @@ def play(show: str, out: Path, conditional: bool, force: bool, confidence: float
 @scene_options
 @click.option("--out", "-o", type=Result(), required=True,
               help="A folder for numbered PNG files, or the name of a .gif or an .mp4.")  # fmt: skip
-@click.option("--every", type=click.IntRange(min=1), default=1, metavar="N", help="Only every N-th picture.")
+@click.option("--every", type=Whole(min=1), default=1, metavar="N", help="Only every N-th picture.")
 @click.option("--conditional", is_flag=True, help="Draw the ellipse for the heading at either edge of its cone, too.")
 @FORCE
 def render(out: Path, every: int, conditional: bool, force: bool, confidence: float, **chosen: Any) -> None:
@@ -205,7 +205,7 @@ def new(file: Path, kind: str | None, force: bool) -> None:
               show_default=True, help="May be given several times.")  # fmt: skip
 @click.option("--log", type=Source(), metavar="PATH", help="A recorded log in place of the simulated twin.")
 @READING
-@click.option("--seed", type=click.IntRange(min=0), help="In place of the scene's seed.")
+@click.option("--seed", type=Whole(min=0), help="In place of the scene's seed.")
 @FORCE
 def figures(
     name: str, out: Path, formats: tuple[str, ...], log: str | None, reading: str, seed: int | None, force: bool

@@ -1,13 +1,14 @@
 """The options that several commands share, and what they accept."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
-MOST = 2**63 - 1
+MOST = 2**63 - 1  # of seeds and of runs' numbers
+MOST_RUNS = 10**9  # of a study
 READINGS = ("printed", "coded", "corrected")  # of a document; told here again, so that --help need not load them
 READING = click.option("--reading", type=click.Choice(READINGS), default="corrected", show_default=True,
                        help="Which to follow where a document's print, its code and the truth differ.")  # fmt: skip
@@ -15,6 +16,12 @@ SET = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
                    help="Overrule a number of the world, e.g. noise.rangeSigmaRatio=0.02; repeatable.")  # fmt: skip
 FAST = click.option("--fast", is_flag=True, help="Calculate with code that Numba compiles (the extra `fast`).")
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
+
+
+class Whole(click.IntRange):
+    """A whole number of a range, called by a word that a person knows where what was written is none."""
+
+    name = "integer"
 
 
 class Source(click.Path):
@@ -61,13 +68,30 @@ GATE = click.option("--gate", type=Probability(), metavar="P",
 GUARD = click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams.")
 
 
+WORLD = click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names.")
+SEED = click.option("--seed", type=Whole(0, MOST), help="In place of the file's seed.")
+SETTINGS = (  # what overrules the files in every run of a study
+    SET,
+    GATE,
+    GUARD,
+    click.option("--reading", type=click.Choice(READINGS),
+                 help="Which to follow where a document's print, its code and the truth differ."),
+)  # fmt: skip
+MADE_WHERE = (
+    click.option("--workers", type=Whole(1, 1024), default=1, show_default=True, metavar="N",
+                 help="Processes on this machine."),
+    click.option("--cluster", metavar="ADDRESS", help="The scheduler of a Dask cluster, e.g. tcp://10.0.0.1:8786."),
+    FAST,
+)  # fmt: skip
+
+
 def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options by which every command that plays a scene may overrule its file."""
-    options = [
+    return _with(command, [
         click.argument("commands"),
-        click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names."),
-        click.option("--seed", type=click.IntRange(min=0), help="In place of the file's seed."),
-        click.option("--run", "run_number", type=click.IntRange(0, MOST), default=0, help="Which run of the seed."),
+        WORLD,
+        click.option("--seed", type=Whole(min=0), help="In place of the file's seed."),
+        click.option("--run", "run_number", type=Whole(0, MOST), default=0, help="Which run of the seed."),
         click.option("--log", type=Source(), metavar="PATH",
                      help="A recorded log in place of the one that COMMANDS names."),
         READING,
@@ -79,68 +103,52 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
         SET,
         click.option("--confidence", type=Probability(), default=0.954,
                      show_default=True, help="Probability of the ellipse and the cone."),
-    ]  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
+    ])  # fmt: skip
 
 
 def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options of a study: which runs, watched by whom, made where."""
-    options = [
+    return _with(command, [
         click.argument("commands", metavar="COMMANDS|STUDY.yaml"),
-        click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names."),
-        click.option("--runs", type=click.IntRange(1, 10**9), metavar="N",
+        WORLD,
+        click.option("--runs", type=Whole(1, MOST_RUNS), metavar="N",
                      help="How many runs of each cell and filter; 10000 where nothing says otherwise."),
-        click.option("--seed", type=click.IntRange(0, MOST), help="In place of the file's seed."),
+        SEED,
         click.option("--filter", "filters", metavar="NAME,…", help="Filters that watch the same runs, e.g. ekf,ukf."),
         click.option("--sweep", "sweeps", multiple=True, metavar="KEY=V1,V2,…",
                      help="Values of a number of the world, of gate or of guard; several make a grid."),
-        SET,
-        GATE,
-        GUARD,
-        click.option("--reading", type=click.Choice(READINGS),
-                     help="Which to follow where a document's print, its code and the truth differ."),
-        click.option("--workers", type=click.IntRange(1, 1024), default=1, show_default=True, metavar="N",
-                     help="Processes on this machine."),
-        click.option("--cluster", metavar="ADDRESS", help="The scheduler of a Dask cluster, e.g. tcp://10.0.0.1:8786."),
-        FAST,
+        *SETTINGS,
+        *MADE_WHERE,
         click.option("--resume", is_flag=True, help="Go on with a study that did not end."),
         click.option("--expect", is_flag=True,
                      help="Verify what COMMANDS promises under `expect`: status 1 where it is not kept."),
         click.option("--out", "-o", type=Result(),
                      help="A folder for tables and pictures; may be left out with --expect."),
         FORCE,
-    ]  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
+    ])  # fmt: skip
 
 
 def compare_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options of a comparison: which two settings, of which runs, made where."""
-    options = [
+    return _with(command, [
         click.argument("commands", metavar="COMMANDS|COMPARE.yaml"),
         click.option("--a", "a", metavar="KEY=VALUE,…",
                      help="What one side sets: numbers of the world, gate, guard, filter; nothing where left out."),
         click.option("--b", "b", metavar="KEY=VALUE,…", help="What the other side sets."),
-        click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names."),
-        click.option("--runs", type=click.IntRange(1, 10**9), metavar="N",
+        WORLD,
+        click.option("--runs", type=Whole(1, MOST_RUNS), metavar="N",
                      help="How many runs; 10000 where nothing says otherwise."),
-        click.option("--seed", type=click.IntRange(0, MOST), help="In place of the file's seed."),
+        SEED,
         click.option("--filter", "filters", metavar="NAME", help="In place of the file's filter, on both sides."),
-        SET,
-        GATE,
-        GUARD,
-        click.option("--reading", type=click.Choice(READINGS),
-                     help="Which to follow where a document's print, its code and the truth differ."),
-        click.option("--workers", type=click.IntRange(1, 1024), default=1, show_default=True, metavar="N",
-                     help="Processes on this machine."),
-        click.option("--cluster", metavar="ADDRESS", help="The scheduler of a Dask cluster, e.g. tcp://10.0.0.1:8786."),
-        FAST,
+        *SETTINGS,
+        *MADE_WHERE,
         click.option("--out", "-o", type=Result(), help="A folder for a table, a picture and what repeats them."),
         FORCE,
-    ]  # fmt: skip
+    ])  # fmt: skip
+
+
+def _with(command: Callable[..., Any], options: Sequence[Callable[..., Any]]) -> Callable[..., Any]:
+    """A command that has the options, told by --help in their order."""
     for option in reversed(options):
         command = option(command)
     return command

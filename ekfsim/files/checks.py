@@ -189,7 +189,7 @@ def expanded(file: Sound, path: Path) -> int:
     return total
 
 
-def angle_warnings(file: Sound) -> Iterator[str]:
+def angle_warnings(file: Sound) -> Iterator[Mistake]:
     """Angles that are hardly meant as degrees."""
     for path, node in file.root.walk():
         is_angle, is_rate = path[-1:] in (("theta",), ("angle",)), path[-1:] in (("omega",), ("turnRate",))
@@ -204,7 +204,7 @@ def angle_warnings(file: Sound) -> Iterator[str]:
             wrong, right = f"{node.written} looks like radians", f"{what}: write {math.degrees(number):.0f}"
         else:
             continue
-        yield str(at(file.file, node.mark, path, wrong, right))
+        yield at(file.file, node.mark, path, wrong, right)
 
 
 def kidnap_warnings(file: Sound, floor_plan: Map) -> Iterator[str]:

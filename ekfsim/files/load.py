@@ -16,7 +16,7 @@ from ekfsim.files.marked import Mark, Node, parse
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import resolve, source_name
 from ekfsim.files.schema import MODELS, Kind
-from ekfsim.files.settings import Setting, overruled, refusal
+from ekfsim.files.settings import Setting, overruled, pinned, refusal, remark
 from ekfsim.files.source import bytes_of, text_of
 from ekfsim.files.system_checks import aliases, check_fit, check_system, check_ways, system_warnings
 from ekfsim.files.telling import at, details_of, tell
@@ -231,6 +231,7 @@ def read(path: Path, shown: str, kind: Kind | None, settings: Sequence[Setting] 
     kind = kind or kind_of_tree(root)
     if other := other_kind(root, kind):
         return File(kind, [*mistakes, at(shown, *other)])
+    warnings = [] if kind == "commands" else list(pinned(root, settings))
     root = overruled(root, kind, settings)
     keys, wrong = None, set[tuple[str | int, ...]]()
     try:
@@ -242,7 +243,8 @@ def read(path: Path, shown: str, kind: Kind | None, settings: Sequence[Setting] 
     mistakes += (
         (*check_world(sound), *check_system(sound)) if kind == "world" else (*check_commands(sound), *check_ways(sound))
     )
-    return File(kind, sorted(mistakes, key=in_order_of_place), sound, keys, list(angle_warnings(sound)))
+    warnings += [remark(warning, settings) for warning in angle_warnings(sound)]
+    return File(kind, sorted(mistakes, key=in_order_of_place), sound, keys, warnings)
 
 
 def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:

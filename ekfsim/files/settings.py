@@ -1,7 +1,7 @@
 """Single numbers that overrule a world or commands file: `noise.rangeSigmaRatio=0.02`, set once or swept."""
 
 import dataclasses
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ekfsim.errors import InputError, Mistake, Place, UsageError
@@ -13,6 +13,7 @@ OF_COMMANDS = ("gate", "guard")  # the rest belongs to the world
 OF_WORLDS = ("noise", "belief", "faults", "start", "robot", "sensors")
 OFF = "off"
 POSE = ("x", "y", "theta")
+BELIEVED = {"noise.": "belief.noise.", "start.sigma.": "belief.sigma.", "start.": "belief.start."}  # unless told apart
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +115,17 @@ def overruled(root: Node, kind: Kind, settings: Iterable[Setting]) -> Node:
     return root
 
 
+def pinned(root: Node, settings: Sequence[Setting]) -> Iterator[str]:
+    """Warnings of settings that change the truth alone, for the file tells the filter a number of its own."""
+    keys = {one.key for one in settings}
+    for one in settings:
+        start = next((start for start in BELIEVED if one.key.startswith(start)), None)
+        belief = "" if start is None else BELIEVED[start] + one.key.removeprefix(start)
+        if belief and belief not in keys and (held := root.at(tuple(belief.split(".")))) is not None:
+            wrong = f"only the truth changes, the filter goes on believing {held.written}"
+            yield f"{one.key}: {wrong}: the world file has '{belief}'; set that as well"
+
+
 def _overruled(root: Node, one: Setting) -> Node:
     path = path_of(one)
     if path[0] == "sensors":
@@ -184,6 +196,12 @@ def refusal(mistakes: Iterable[Mistake], settings: Sequence[Setting]) -> UsageEr
             field = first.told.removeprefix(f"{first.place}: ")
             placed[Mistake(first.place, field, mistake.wrong, mistake.right)] = None
     return InputError(list(placed)) if len(placed) == len(lines) else UsageError("\n".join(lines))
+
+
+def remark(warning: Mistake, settings: Sequence[Setting]) -> str:
+    """How a warning is told: at its place in the file, or by the setting that it is about."""
+    told = next((one.told for one in settings if _about(warning.field, one)), None)
+    return str(warning) if told is None else f"{told}: {warning.wrong}; {warning.right}"
 
 
 def _about(field: str, one: Setting) -> bool:

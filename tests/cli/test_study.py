@@ -179,6 +179,8 @@ def test_a_recording_is_refused():
         (["--filter", "ekf,ekf"], "--filter ekf,ekf: 'ekf' stands twice; delete one"),
         (["--sweep", "noise.rangeSigmaRatio=" + ",".join(map(str, range(5001))), "--filter", "ekf,ukf"],
          "the table would have 10002 rows, more than 10000; sweep fewer values"),
+        (["--workers", 2, "--cluster", "tcp://127.0.0.1:9"],
+         "--workers: a cluster has its own; leave this out, or --cluster"),
         (["-o", "short.yaml/out"], "short.yaml/out: 'short.yaml' is no folder"),
     ],
 )  # fmt: skip

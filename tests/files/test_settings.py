@@ -46,6 +46,31 @@ def test_a_number_of_the_noise_reaches_the_filter_unless_belief_pins_it(place):
     assert (world.noise.range, world.told.noise.range) == (0.01, 0.4)
 
 
+def remarks(*settings):
+    return read_scene("commands.yaml", settings=[setting(text) for text in settings]).warnings
+
+
+def test_a_number_that_belief_pins_is_not_changed_for_the_filter_in_silence(place):
+    (place / "world.yaml").write_text(
+        f"{WORLD}belief: {{noise: {{rangeSigmaRatio: 0.02}}, start: {{x: 0, y: 0, theta: 0}}, sigma: {{x: 1}}}}\n"
+    )
+    assert remarks("noise.rangeSigmaRatio=0.3", "noise.odometryAngSigmaRatio=0.2", "gate=0.5") == [
+        "noise.rangeSigmaRatio: only the truth changes, the filter goes on believing 0.02: the world file has "
+        "'belief.noise.rangeSigmaRatio'; set that as well"
+    ]
+    assert remarks("noise.rangeSigmaRatio=0.3", "belief.noise.rangeSigmaRatio=0.3") == []
+    assert [line.partition(":")[0] for line in remarks("start.x=2", "start.sigma.x=2", "start.sigma.y=2")] == [
+        "start.x",
+        "start.sigma.x",
+    ]
+
+
+def test_a_warning_about_a_setting_is_told_by_it():
+    assert remarks("start.theta=1.5708") == [
+        "--set start.theta=1.5708: 1.5708 looks like radians; angles are in degrees: write 90"
+    ]
+
+
 def test_what_a_file_does_not_name_starts_from_its_default():
     world = scene("faults.rangeBias=0.1", "belief.start.theta=40", "start.sigma.y=0.2", "belief.sigma.x=0.3").world
     assert (world.faults.range_bias, world.faults.range_scale) == (0.1, 1.0)
