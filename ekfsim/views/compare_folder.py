@@ -7,15 +7,13 @@ from pathlib import Path
 from typing import TextIO
 
 from ekfsim.files.load_study import FILTER
-from ekfsim.files.source import bytes_of
 from ekfsim.files.writing import whole_folder
 from ekfsim.study.comparison import Comparison
 from ekfsim.study.pairs import Pairs
-from ekfsim.study.plan import world_of
 from ekfsim.version import VERSION
 from ekfsim.views.compare_picture import draw_comparison
 from ekfsim.views.compare_words import measures, settings
-from ekfsim.views.study_folder import written
+from ekfsim.views.study_folder import first_lines, last_lines, write_to_repeat, written
 
 FILES = ("compare.csv", "compare.png", "compare.yaml", "commands.yaml", "world.yaml")
 HEAD = ("measure", "unit", "runs", "a", "b", "difference", "low", "high", "only_a", "only_b")
@@ -28,10 +26,7 @@ def write_comparison(comparison: Comparison, found: Pairs, out: Path, force: boo
         with (folder / "compare.csv").open("w", newline="", encoding="utf-8") as file:
             write_table(file, comparison, found)
         draw_comparison(comparison, found, folder / "compare.png")
-        commands, world = comparison.request.commands, world_of(comparison.request)
-        (folder / "commands.yaml").write_bytes(bytes_of(commands, str(commands)))
-        (folder / "world.yaml").write_bytes(bytes_of(world, str(world)))
-        (folder / "compare.yaml").write_text("".join(f"{line}\n" for line in lines(comparison)), encoding="utf-8")
+        write_to_repeat(comparison.request, folder / "compare.yaml", lines(comparison))
 
 
 def write_table(file: TextIO, comparison: Comparison, found: Pairs) -> None:
@@ -47,21 +42,12 @@ def write_table(file: TextIO, comparison: Comparison, found: Pairs) -> None:
 
 
 def lines(comparison: Comparison) -> Iterator[str]:
-    """A file of this comparison; the commands and the world lie beside it as they were."""
+    """A file of this comparison."""
     request = comparison.request
     yield "# `ekfsim compare compare.yaml` makes this comparison again."
-    yield "study: commands.yaml"
-    yield "world: world.yaml"
-    yield f"runs: {request.runs}"
-    yield f"seed: {comparison.a.seed}"
-    if request.settings:
-        yield "set:"
-        yield from (f"  {one.key}: {written(one)}" for one in request.settings)
+    yield from first_lines(request, comparison.a.seed)
     for name, plan, told in (("a", comparison.a, request.a), ("b", comparison.b, request.b)):
         yield f"{name}:"
         yield f"  {FILTER}: {plan.cases[0].filter}"
         yield from (f"  {one.key}: {written(one)}" for one in told if one.key != FILTER)
-    yield f"reading: {request.reading}"
-    if request.fast:
-        yield "fast: true"
-    yield f"ekfsim: '{VERSION}'"
+    yield from last_lines(request)

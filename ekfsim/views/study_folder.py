@@ -1,8 +1,9 @@
 """The folder of a study: two tables, three pictures, and all that is needed to repeat it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
+from ekfsim.files.load_study import Request
 from ekfsim.files.marked import scalar
 from ekfsim.files.settings import Setting
 from ekfsim.files.source import bytes_of
@@ -27,25 +28,40 @@ def write_study(plan: Plan, results: Sequence[Result], out: Path, force: bool) -
         with (folder / "steps.csv").open("w", newline="", encoding="utf-8") as file:
             write_steps(file, plan, results)
         draw_study(plan, results, folder)
-        commands, world = plan.request.commands, world_of(plan.request)
-        (folder / "commands.yaml").write_bytes(bytes_of(commands, str(commands)))
-        (folder / "world.yaml").write_bytes(bytes_of(world, str(world)))
-        (folder / "study.yaml").write_text("".join(f"{line}\n" for line in study_lines(plan)), encoding="utf-8")
+        write_to_repeat(plan.request, folder / "study.yaml", study_lines(plan))
+
+
+def write_to_repeat(request: Request, file: Path, lines: Iterable[str]) -> None:
+    """Write a study file, and beside it the commands and the world as they were."""
+    world = world_of(request)
+    file.with_name("commands.yaml").write_bytes(bytes_of(request.commands, str(request.commands)))
+    file.with_name("world.yaml").write_bytes(bytes_of(world, str(world)))
+    file.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
 
 
 def study_lines(plan: Plan) -> Iterator[str]:
-    """A study file of this study; the commands and the world lie beside it as they were."""
+    """A study file of this study."""
     request = plan.request
     yield "# `ekfsim study study.yaml -o FOLDER` makes this study again."
-    yield "study: commands.yaml"
-    yield "world: world.yaml"
-    yield f"runs: {request.runs}"
-    yield f"seed: {plan.seed}"
+    yield from first_lines(request, plan.seed)
     yield f"filters: [{', '.join(plan.filters)}]"
     if request.sweep:
         yield "sweep:"
         for values in request.sweep:
             yield f"  {values[0].key}: [{', '.join(map(written, values))}]"
+    yield from last_lines(request)
+
+
+def first_lines(request: Request, seed: int) -> Iterator[str]:
+    """Which runs of what."""
+    yield "study: commands.yaml"
+    yield "world: world.yaml"
+    yield f"runs: {request.runs}"
+    yield f"seed: {seed}"
+
+
+def last_lines(request: Request) -> Iterator[str]:
+    """What is set for all cells or for both sides, and how it is calculated."""
     if request.settings:
         yield "set:"
         yield from (f"  {one.key}: {written(one)}" for one in request.settings)

@@ -7,11 +7,9 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import PercentFormatter
 
 from ekfsim.files.marked import scalar
@@ -20,14 +18,14 @@ from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
 from ekfsim.study.verdict import MOST_LOST
 from ekfsim.version import VERSION
-from ekfsim.views.lettering import drawable, wrapped
+from ekfsim.views.lettering import wrapped
+from ekfsim.views.sheet import GREY, PENS, draw_shares, numbers, panel, save, sheet
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")  # of the filters
-GREY = "#666666"
-DPI = 120
 FAINT = 0.1  # how far from where it should be a share must lie to have the deepest colour of a map
 MOST_MAPS = 12  # of two swept keys, in one row of pictures
-FOOT, FOOT_LINES = 0.24, 2  # in, for the lines that tell what made it
+LOGARITHMIC, MOST_TICKS = 20, 8  # values that reach so many times as far; values that are all written at the axis
+MOST_MARKED = 60  # steps of which each has a dot
+LETTER = 0.075  # in, of the name of a key beside a map
 
 
 @dataclass(frozen=True)
@@ -65,28 +63,26 @@ PICTURES: dict[str, tuple[str, tuple[Quantity, ...]]] = {
 def draw_study(plan: Plan, results: Sequence[Result], folder: Path) -> None:
     """Draw nees.png, coverage.png and divergence.png into a folder."""
     for name, (title, quantities) in PICTURES.items():
-        figure = picture(plan, results, title, quantities)
-        notes = {"Software": f"ekfsim {VERSION}", "Description": told(plan)}
-        figure.savefig(folder / f"{name}.png", dpi=DPI, metadata=notes)
+        save(picture(plan, results, title, quantities), folder / f"{name}.png", told(plan))
 
 
 def picture(plan: Plan, results: Sequence[Result], title: str, quantities: Sequence[Quantity]) -> Figure:
     """One picture: lines over the steps where nothing is swept, over the values of one key, maps for more."""
-    if len(plan.keys) < 2:
-        figure = sheet(8.0, 0.8 + 2.3 * len(quantities) + (1.2 if len(quantities) == 1 else 0))
-        rows = figure.subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
-        draw = _over_steps if not plan.keys else _over_values
-        for axes, quantity in zip(rows, quantities, strict=True):
-            draw(axes, plan, results, quantity)
-        marks, labels = rows[0].get_legend_handles_labels()
-        first = labels.index(quantities[0].meant_words)  # told last
-        order = [*(n for n in range(len(marks)) if n != first), first]
-        rows[0].legend([marks[n] for n in order], [labels[n] for n in order], loc="best", fontsize=8, framealpha=0.9)
-    else:
-        figure = _maps(plan, results, quantities)
-    figure.suptitle(title if not plan.keys else f"{title}, at the last step", fontsize=12)
-    lines = wrapped([drawable(told(plan))], int(21 * figure.get_figwidth()), FOOT_LINES)
-    figure.text(0.995, 0.004, "\n".join(lines), fontsize=5.5, ha="right", va="bottom", color=GREY)
+    if plan.keys:
+        title = f"{title}, at the last step"
+    if len(plan.keys) > 1:
+        return _maps(plan, results, title, quantities)
+    figure = sheet(8.0, 1.0 + 2.3 * len(quantities) + (1.2 if len(quantities) == 1 else 0), title, told(plan))
+    rows = figure.subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, quantity in zip(rows, quantities, strict=True):
+        if plan.keys:
+            _over_values(axes, plan, results, quantity)
+        else:
+            _over_steps(axes, results, quantity)
+        axes.set_title(f"grey line: {quantity.meant_words}", fontsize=8, loc="right", color=GREY)
+    rows[0].legend(  # above its title: on the lines it would hide some
+        loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=2.2, ncols=len(PENS), fontsize=8, frameon=False
+    )
     return figure
 
 
@@ -103,25 +99,13 @@ def told(plan: Plan) -> str:
     return ", ".join(f for f in facts if f.partition(" ")[0] not in swept and not f.endswith(" None"))
 
 
-def sheet(width: float, height: float) -> Figure:
-    """A figure that no window manages, with room for its foot. width, height : in"""
-    figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
-    FigureCanvasAgg(figure)
-    engine = figure.get_layout_engine()
-    assert isinstance(engine, ConstrainedLayoutEngine)
-    engine.set(rect=(0, FOOT / height, 1, 1 - FOOT / height))
-    return figure
-
-
-def _over_steps(axes: Axes, plan: Plan, results: Sequence[Result], quantity: Quantity) -> None:
+def _over_steps(axes: Axes, results: Sequence[Result], quantity: Quantity) -> None:
     """A line for each filter, its interval as a band."""
     clocked = not math.isnan(results[0].last.t)
-    for result, colour in zip(results, COLOURS, strict=False):
+    for result, pen in zip(results, PENS, strict=False):
         x = [at.t if clocked else at.step for at in result.steps]
-        y = np.array([_numbers(quantity.of(at)) for at in result.steps])
-        marker = "o" if len(x) < 60 else ""
-        axes.plot(x, y[:, 0], color=colour, marker=marker, ms=3, lw=1.4, label=result.case.filter)
-        axes.fill_between(x, y[:, 1], y[:, 2], color=colour, alpha=0.2, lw=0)
+        marker = "o" if len(x) < MOST_MARKED else ""
+        draw_shares(axes, x, [quantity.of(at) for at in result.steps], pen, result.case.filter, marker)
     _frame(axes, quantity)
     if axes.get_subplotspec().is_last_row():  # type: ignore[union-attr]  # each has one
         axes.set_xlabel("t (s)" if clocked else "step")
@@ -130,47 +114,44 @@ def _over_steps(axes: Axes, plan: Plan, results: Sequence[Result], quantity: Qua
 def _over_values(axes: Axes, plan: Plan, results: Sequence[Result], quantity: Quantity) -> None:
     """The last step over the swept values: a line for each filter, its intervals as bars."""
     values = [one.value for one in plan.request.sweep[0]]
-    numbers = [scalar(value) for value in values]
-    metric = all(isinstance(n, int | float) for n in numbers)
-    for result_colour, name in zip(COLOURS, plan.filters, strict=False):
-        shares = [quantity.of(result.last) for result in results if result.case.filter == name]
-        y = np.array([_numbers(share) for share in shares])
-        x = np.array(numbers if metric else range(len(values)), float)
-        order = np.argsort(x)
-        bars = np.maximum(np.abs(y[order, 1:].T - y[order, 0]), 0.0)
-        axes.errorbar(x[order], y[order, 0], bars, color=result_colour, marker="o", ms=4, lw=1.4, capsize=3, label=name)
-    if metric and min(map(float, numbers)) > 0 and max(map(float, numbers)) / min(map(float, numbers)) > 20:  # type: ignore[arg-type]
+    known = [value for value in map(scalar, values) if isinstance(value, int | float)]
+    metric = len(known) == len(values)  # words stand in their order
+    x = np.array(known if metric else range(len(values)), float)
+    order = np.argsort(x)
+    for pen, name in zip(PENS, plan.filters, strict=False):
+        y = numbers([quantity.of(result.last) for result in results if result.case.filter == name])[order]
+        bars = np.maximum(np.abs(y[:, 1:].T - y[:, 0]), 0.0)
+        axes.errorbar(
+            x[order], y[:, 0], bars, color=pen.colour, ls=pen.style, lw=pen.width, elinewidth=1.2, marker="o", ms=4,
+            capsize=3, label=name,
+        )  # fmt: skip
+    if metric and x.min() > 0 and x.max() / x.min() > LOGARITHMIC:
         axes.set_xscale("log")
-    if not metric or len(values) <= 8:
-        axes.set_xticks(numbers if metric else range(len(values)), values)  # type: ignore[arg-type]
+    if not metric or len(values) <= MOST_TICKS:
+        axes.set_xticks(x, values)
         axes.minorticks_off()
     _frame(axes, quantity)
-    if axes.get_subplotspec().is_last_row():  # type: ignore[union-attr]
+    if axes.get_subplotspec().is_last_row():  # type: ignore[union-attr]  # each has one
         axes.set_xlabel(plan.keys[0])
 
 
 def _frame(axes: Axes, quantity: Quantity) -> None:
     """Where the share should lie, and axes in percent from what is least to what is most."""
-    axes.axhline(quantity.meant, color=GREY, lw=1, ls="--", label=quantity.meant_words)
+    axes.axhline(quantity.meant, color=GREY, lw=1, ls="--")
     low, high = axes.get_ylim()
     axes.set_ylim(max(low, -0.02), min(high, 1.02))
-    axes.set_title(quantity.title, fontsize=10, loc="left")
-    axes.yaxis.set_major_formatter(PercentFormatter(1.0, symbol=" %"))
-    axes.grid(True, color="#DDDDDD", lw=0.6)
-    axes.set_axisbelow(True)
+    panel(axes, quantity.title)
 
 
-def _numbers(share: Share) -> tuple[float, float, float]:
-    return share.value, share.low, share.high
-
-
-def _maps(plan: Plan, results: Sequence[Result], quantities: Sequence[Quantity]) -> Figure:
+def _maps(plan: Plan, results: Sequence[Result], heading: str, quantities: Sequence[Quantity]) -> Figure:
     """Heat maps of the last two swept keys: a row for each quantity, a column for each filter and other values."""
     held = list(_columns(plan, results))
     down, across = ([one.value for one in values] for values in plan.request.sweep[-2:])
     shown = held[:MOST_MAPS]
-    wide, high = max(0.62 * len(across), 2.2) + 0.9, max(0.36 * len(down), 1.4) + 0.9
-    figure = sheet(max(wide * len(shown) + 0.9, 6.0), high * len(quantities) + 0.7)
+    wide, inside = max(0.62 * len(across), 2.2) + 0.9, max(0.36 * len(down), 1.4)
+    beside = plan.keys[-2] if LETTER * len(plan.keys[-2]) < inside else plan.keys[-2].replace(".", ".\n", 1)
+    width, height = max(wide * len(shown) + 0.9, 6.0), (inside + 0.9) * len(quantities) + 0.7
+    figure = sheet(width, height, heading, told(plan))
     grid = figure.subplots(len(quantities), len(shown), squeeze=False, sharex=True, sharey=True)
     for row, quantity in zip(grid, quantities, strict=True):
         shares = [np.array([quantity.of(result.last).value for result in cells]) for _, cells in shown]
@@ -181,7 +162,7 @@ def _maps(plan: Plan, results: Sequence[Result], quantities: Sequence[Quantity])
             axes.set_title("\n".join(wrapped(title.split("\n"), int(13 * wide), 6)), fontsize=9)
             axes.set_xticks(range(len(across)), across, rotation=45 if len(across) > 6 else 0)
             axes.set_yticks(range(len(down)), down)
-        row[0].set_ylabel(plan.keys[-2], fontsize=9)
+        row[0].set_ylabel(beside, fontsize=9)
         bar = figure.colorbar(image, ax=row.tolist(), format=PercentFormatter(1.0, symbol=" %"))
         bar.ax.set_ylim(max(norm.vmin or 0.0, 0.0), min(norm.vmax or 1.0, 1.0))
     grid[-1][(len(shown) - 1) // 2].set_xlabel(plan.keys[-1])

@@ -66,6 +66,9 @@ def test_without_a_sweep_a_line_over_the_steps_with_its_interval():
             assert heights.min() == min(share.low for share in shares)
             assert line.get_label() == result.case.filter
         assert axes.lines[-1].get_ydata() == [meant, meant]
+        assert axes.get_title(loc="right") == f"grey line: {100 * meant:g} %, where the filter is honest"
+    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["ekf", "ukf"]
+    assert figure.axes[0].get_legend().get_window_extent().y0 > figure.axes[0].get_window_extent().y1  # hides no line
     assert figure.axes[-1].get_xlabel() == "step"
 
 
@@ -101,7 +104,7 @@ def test_two_keys_make_a_map_with_its_numbers():
         assert [text.get_text() for text in axes.texts] == [f"{100 * share:.1f}" for share in shares]
     assert [label.get_text() for label in maps[0].get_yticklabels()] == ["0.01", "0.1"]
     assert maps[0].get_xlabel() == "guard"
-    assert maps[0].get_ylabel() == "noise.rangeSigmaRatio"
+    assert maps[0].get_ylabel() == "noise.\nrangeSigmaRatio"
 
 
 def test_of_very_many_maps_the_rest_is_told():
