@@ -5,6 +5,7 @@ import functools
 import itertools
 import os
 import pickle
+import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -75,12 +76,12 @@ def pool(workers: int) -> Engine:
     def engine(work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
         before = set(active_children())
         waiting, parcels = iter(tasks), Parcels(work)
-        with _one_thread_each():
+        with _beginnings():
             executor = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_begin_worker)
         try:
             running: dict[Future[T], Task] = {}
             for task in itertools.islice(waiting, AHEAD * workers):
-                with _one_thread_each():  # processes are made as blocks come
+                with _beginnings():  # processes are made as blocks come
                     running[executor.submit(do_packed, *parcels(task))] = task
             while running:
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
@@ -98,8 +99,13 @@ def pool(workers: int) -> Engine:
 
 
 @contextlib.contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """Processes that begin in this block calculate with one thread each: there are as many as there are cores."""
+def _beginnings() -> Iterator[None]:
+    """Processes that begin in this block calculate with one thread each: there are as many as there are cores.
+
+    They hear no Ctrl-C before they are told to leave it to their parent, which hears it when the block ends.
+    """
+    mask = getattr(signal, "pthread_sigmask", None)  # Windows has none
+    heard = mask(signal.SIG_BLOCK, {signal.SIGINT}) if mask else None
     names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
     held = {name: os.environ.get(name) for name in names}
     os.environ.update(dict.fromkeys(names, "1"))
@@ -111,12 +117,12 @@ def _one_thread_each() -> Iterator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+        if mask:
+            mask(signal.SIG_SETMASK, heard)
 
 
 def _begin_worker() -> None:
     """A worker leaves interrupts to its parent, and does not outlive it."""
-    import signal
-
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = parent_process()
     assert parent is not None

@@ -327,6 +327,15 @@ def test_a_killed_study_goes_on_and_leaves_no_worker_behind(place, whole, worker
     check_resumed(whole, "--workers", 2)
 
 
+def test_an_interrupt_while_workers_begin_is_a_line(place):
+    running = started(*BLOCKS, "--workers", 2, start_new_session=True)
+    wait_for(lambda: any(b"spawn_main" in command_of(child) for child in children_of(running.pid)), running)
+    os.killpg(running.pid, signal.SIGINT)
+    told = ended(running)
+    assert (told.status, told.err.strip()) == (130, "ekfsim: interrupted")
+    assert not (place / "out.partial").exists()
+
+
 def test_a_dead_worker_is_told_in_a_line(place, whole):
     running = started(*BLOCKS, "--workers", 2)
     wait_for(journal_holds(place, 3), running)
