@@ -21,7 +21,7 @@ from ekfsim.world import World
 HOLDS = "Robot*_Odometry.dat, Robot*_Measurement.dat, Barcodes.dat and Landmark_Groundtruth.dat"
 ROBOTS = range(1, 6)  # the subjects that move
 ODOMETRY = Wanted(("t", "speed", "turn rate"), (0, 1, 2), range(3, 4))
-MEASUREMENT = Wanted(("t", "barcode", "range", "bearing"), (0, 1, 2, 3), range(4, 5))
+MEASUREMENT = Wanted(("t", "barcode", "range", "bearing"), (0, 1, 2, 3), range(4, 5), ranges=frozenset({"range"}))
 GROUNDTRUTH = Wanted(("t", "x", "y", "orientation"), (0, 1, 2, 3), range(4, 5))
 BARCODES = Wanted(("subject", "barcode"), (0, 1), range(2, 3))
 LANDMARKS = Wanted(("subject", "x", "y"), (0, 1, 2), range(3, 6))

@@ -48,7 +48,9 @@ def read_pylon(path: Path, world: World, reading: DocumentReading) -> Recorded:
     u = np.column_stack([rows.values[:, 6:8], θ, dt])
     # Eq. 8 is printed for another lidar's frame, and its letter leaves nothing to localize with: every reading of the
     # document turns the offset rightly.
-    z, fixes = to_global(rows.values[:, 1:3], θ), metres(rows.values[:, 3:5])
+    beam = rows.values[:, 1:3]
+    beam = np.where((beam == 0).all(axis=1, keepdims=True), np.nan, beam)  # no pylon stands within the lidar
+    z, fixes = to_global(beam, θ), metres(rows.values[:, 3:5])
     motion, pylon = world.robot.motion(reading), only(world, reading, Pylon)
     entries = [Entry(0, None, t=0.0)]
     for t, given, offset, fix in zip(rows.t.tolist(), u, z, fixes, strict=True):

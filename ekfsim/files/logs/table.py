@@ -1,7 +1,7 @@
 """Lines → numbers: quickly where all is well, and line by line where something is wrong.
 
 What no person would use is left out, and told: a last line that was cut short, numbers that are none (nan, inf), or
-cannot be meant (denormals, a million metres). Whatever else is wrong is refused with its place.
+cannot be meant (denormals, a million metres, a range of 0 or less). Whatever else is wrong is refused with its place.
 """
 
 import math
@@ -34,6 +34,7 @@ class Wanted:
     places: tuple[int, ...]
     widths: range  # how many columns a row may have
     maybe: frozenset[str] = frozenset()  # columns that may say nan
+    ranges: frozenset[str] = frozenset()  # columns that are ranges: where nothing answers, many sensors say 0 or −1
 
     def limits(self) -> Array:
         """The magnitude beyond which a number cannot be meant."""
@@ -64,14 +65,16 @@ class Rows:
         return f"{self.file}:{self.lines[row]}"
 
 
-def named_table(path: Path, columns: Sequence[tuple[str, ...]], warnings: list[str]) -> Rows:
+def named_table(
+    path: Path, columns: Sequence[tuple[str, ...]], warnings: list[str], ranges: frozenset[str] = frozenset()
+) -> Rows:
     """A table whose first line names its columns; each wanted one may go by several names.
 
     Raises UsageError where there is no such file, InputError with what is wrong in it.
     """
     lines = lines_of(path)
     width, places = places_of(lines, columns)
-    wanted = Wanted(tuple(names[0] for names in columns), tuple(places), range(width, width + 1))
+    wanted = Wanted(tuple(names[0] for names in columns), tuple(places), range(width, width + 1), ranges=ranges)
     body = replace(lines[1:], ended=lines.ended or len(lines) == 1)
     return numbers_of(body, wanted, separator_of(lines.texts[0]), warnings)
 
@@ -194,15 +197,26 @@ def _sane(rows: Rows, wanted: Wanted, warnings: list[str]) -> Rows:
     size = np.abs(rows.values)
     allowed = np.isnan(rows.values) & np.array([name in wanted.maybe for name in wanted.names])
     odd = ~allowed & (~(size <= wanted.limits()) | ((size > 0) & (size < sys.float_info.min)))
+    odd |= (rows.values <= 0) & np.array([name in wanted.ranges for name in wanted.names])
     bad = np.flatnonzero(odd.any(axis=1))
     for row in bad[:MOST_WARNED]:
         column = int(np.argmax(odd[row]))
         value = float(rows.values[row, column])
-        what = "no number" if not math.isfinite(value) else "a denormal" if abs(value) < 1 else "absurdly large"
-        warnings.append(f"{rows.at(row)}: {wanted.names[column]}: {value:g} is {what}: this row is left out")
+        name = wanted.names[column]
+        why = _why(value, name in wanted.ranges)
+        warnings.append(f"{rows.at(row)}: {name}: {value:g} is {why}: this row is left out")
     if len(bad) > MOST_WARNED:
         warnings.append(f"{rows.at(bad[MOST_WARNED])}: so {_are_rows(len(bad) - MOST_WARNED)} from here on")
     return rows[~odd.any(axis=1)] if len(bad) else rows
+
+
+def _why(value: float, is_range: bool) -> str:
+    """Why a number cannot be meant."""
+    if not math.isfinite(value):
+        return "no number"
+    if 0 < abs(value) < sys.float_info.min:
+        return "a denormal"
+    return "no range" if is_range and value <= 0 else "absurdly large"
 
 
 def _are_rows(count: int) -> str:

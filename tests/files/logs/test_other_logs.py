@@ -69,12 +69,13 @@ def test_the_clock_of_a_pylon_log_runs_over(tmp_path):
 def test_rows_of_a_pylon_log_out_of_order_or_without_a_pylon(tmp_path):
     rows = [(0, 5 + k, START + 100_000 * k, 0) for k in (0, 2, 1, 3)]
     rows[3] = ("nan", "nan", START + 300_000, 0)
+    rows.append((0, 0, START + 400_000, 0))  # no return, as many a lidar tells it
     found = read("pylon", pylon(tmp_path / "log", *rows))
     np.testing.assert_allclose([entry.given.z[0] for entry in readings(found)], [5, 6, 7])
-    assert len(controls(found)) == 4
+    assert len(controls(found)) == 5
     assert told(found) == [
         "/walk.csv:3: Time Stamp lies 0.1 s before the row above: the rows are put in order of time",
-        "/walk.csv: in 1 of 4 rows the lidar did not see the pylon",
+        "/walk.csv: in 2 of 5 rows the lidar did not see the pylon",
     ]
 
 
@@ -157,6 +158,18 @@ def test_what_is_wrong_in_mrclam(tmp_path, file, text, wrong):
     with pytest.raises(UsageError) as refused:
         read("mrclam", lay(tmp_path / "log", **{**MRCLAM, file: text}))
     assert wrong in str(refused.value)
+
+
+@pytest.mark.parametrize("number", ["0", "-1.5"])
+def test_a_range_of_nothing_is_left_out_and_told(tmp_path, number):
+    sound = MRCLAM["Robot3_Measurement.dat"]
+    odd = sound.replace("100.20 63 2 0\n", f"100.15 63 {number} 0\n100.20 63 2 0\n")
+    found = read("mrclam", lay(tmp_path / "log", **{**MRCLAM, "Robot3_Measurement.dat": odd}))
+    np.testing.assert_allclose([e.given.z[0] for e in readings(found)], [2, 2.1, 2])
+    assert told(found)[0] == f"/Robot3_Measurement.dat:5: range: {number} is no range: this row is left out"
+    near = read("ranges", plaza(tmp_path / "plaza", ranges=((0.05, 4, 2.242), (0.3, 5, float(number)))))
+    assert len(readings(near)) == 1
+    assert near.warnings == [f"{tmp_path}/plaza/ranges.csv:3: range: {number} is no range: this row is left out"]
 
 
 def test_mrclam_wants_the_files_of_one_robot(tmp_path):
