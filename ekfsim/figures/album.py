@@ -1,6 +1,7 @@
 """A folder of figures and tables with one page of captions: what to see, and how it compares with the print."""
 
 import csv
+import re
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -16,6 +17,7 @@ from ekfsim.views.lettering import drawable
 PATTERNS = ("*.png", "*.svg", "*.pdf", "*.csv", "captions.md")  # what an album consists of
 BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = "#0072B2", "#56B4E9", "#009E73", "#D55E00", "#CC79A7", "#E69F00"
 GREY, BLACK = "#777777", "#000000"
+NEGATIVE = re.compile(r"^−(?=[\d.]+$)")  # the minus of a number as it is printed, which no program reads
 DPI = 120
 SOURCE_LINE = 0.14  # in, at the foot of a figure
 SOURCE_LETTERS = 21  # of it, to an inch
@@ -56,7 +58,8 @@ class Album:
     def table(self, name: str, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], caption: str) -> None:
         """Write a table as CSV and into the captions."""
         with (self.folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file, lineterminator="\n").writerows([header, *rows])
+            plain = [[NEGATIVE.sub("-", cell) for cell in row] for row in rows]
+            csv.writer(file, lineterminator="\n").writerows([header, *plain])
         lines = ["| " + " | ".join(cells) + " |" for cells in (header, ["---"] * len(header), *rows)]
         self.pages.append(f"## {title}\n\n" + "\n".join(lines) + f"\n\n{filled(caption)}\n")
 
