@@ -71,6 +71,7 @@ def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
     beginning = Beginning(
         first_belief(scene), scene.world.layout.headings, scene.gate, lambda: particle_generators(scene.seed, numbers)
     )
+    # the code of these two documents holds readings against the state of before the motion
     if scene.filter == "ekf" and scene.world.system in ("mower", "gnss") and scene.reading == "coded":
         return ListingEKF.begin(beginning)
     return FILTERS[scene.filter].begin(beginning)
@@ -79,7 +80,7 @@ def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
 def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
     """Localize in a scene: every Step of its run, or of N runs side by side. runs : (N,)"""
     entries = simulate(scene, runs) if scene.log is None else iter(scene.log.entries)
-    if scene.world.system == "gnss" and scene.reading == "coded":
+    if scene.world.system == "gnss" and scene.reading == "coded":  # its authors have a fix at every motion input
         entries = interpolated(entries)
     belief = first_belief(scene, np.shape(scene.run if runs is None else runs))
     return localize(entries, filter_of(scene, runs), belief, scene.guard, scene.world.layout)
