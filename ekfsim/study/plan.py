@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 from ekfsim.errors import UsageError
-from ekfsim.files.load import read_scene
+from ekfsim.files.commands_file import CommandsKeys
+from ekfsim.files.load import read, read_scene
 from ekfsim.files.load_study import Request
 from ekfsim.files.marked import parse
 from ekfsim.files.settings import Setting
@@ -62,6 +63,9 @@ class Plan:
             raise UsageError(f"{request.name}: puts two settings side by side; run it with `ekfsim compare`")
         if request.fast and not backend.compiles():
             raise UsageError("--fast needs Numba; install it with: pip install 'ekfsim[fast]'")
+        keys = read(request.commands, str(request.commands), "commands").keys
+        if isinstance(keys, CommandsKeys) and keys.recording is not None:
+            raise UsageError(f"{request.commands_name}: a recording is one run only; study a simulated one")
         rows = math.prod(map(len, request.sweep)) * max(len(request.filters), 1)
         if rows > MOST_CASES:
             raise UsageError(f"the table would have {rows} rows, more than {MOST_CASES}; sweep fewer values")
@@ -73,8 +77,6 @@ class Plan:
             loaded = read_scene(request.commands, request.world, None, request.reading, (*request.settings, *values))
             scene = loaded.get()
             warnings |= dict.fromkeys(loaded.warnings)
-            if scene.log is not None:
-                raise UsageError(f"{request.commands_name}: a recording is one run only; study a simulated one")
             seeded = scene if request.seed is None else replace(scene, seed=request.seed)
             cases += [Case(values, replace(seeded, filter=name)) for name in request.filters or (scene.filter,)]
         return cls(request, tuple(cases), tuple(warnings))

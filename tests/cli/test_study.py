@@ -138,11 +138,12 @@ def test_the_other_systems_are_studied_too(place, name):
     assert all(float(row["t"]) > 0 and row["nis_readings"] != "0" for row in found)
 
 
-def test_a_recording_is_refused():
-    told = ekfsim("study", "pylon_log", "-o", "out")
-    assert told.status == 2
-    assert len(told.err.splitlines()) == 1
-    assert "recording" in told.err
+@pytest.mark.parametrize("command", [["study", "-o", "out"], ["compare", "--b", "filter=ukf"]])
+def test_a_recording_is_refused(command):
+    first, *others = command
+    refused = ekfsim(first, "gnss_log", *others)
+    assert refused.status == 2
+    assert refused.err == "ekfsim: gnss_log: a recording is one run only; study a simulated one\n"
 
 
 @pytest.mark.parametrize(
