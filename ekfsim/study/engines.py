@@ -19,6 +19,7 @@ from ekfsim.version import VERSION
 
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
+SECONDS = 1.0  # for a thread that ends as the processes do
 AHEAD = 3  # blocks for each worker that are handed out at once, so that none waits
 
 
@@ -74,38 +75,38 @@ def pool(workers: int) -> Engine:
     """An engine of processes on this machine."""
 
     def engine(work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
-        before = set(active_children())
+        before, threads = set(active_children()), set(threading.enumerate())
         waiting, parcels = iter(tasks), Parcels(work)
-        with _beginnings():
+        with _one_thread_each():
             executor = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_begin_worker)
-        try:
-            running: dict[Future[T], Task] = {}
-            for task in itertools.islice(waiting, AHEAD * workers):
-                with _beginnings():  # processes are made as blocks come
+        running: dict[Future[T], Task] = {}
+
+        def hand_out(many: int) -> None:
+            for task in itertools.islice(waiting, many):
+                with _heeding_signals_later(), _one_thread_each():  # processes are made as blocks come
                     running[executor.submit(do_packed, *parcels(task))] = task
+
+        try:
+            hand_out(AHEAD * workers)
             while running:
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
                     yield running.pop(future), future.result()
-                    for task in itertools.islice(waiting, 1):
-                        running[executor.submit(do_packed, *parcels(task))] = task
+                    hand_out(1)
         except BrokenProcessPool:
             raise RunError("a worker process died: it was killed, or there is too little memory for so many") from None
         finally:
             executor.shutdown(wait=False, cancel_futures=True)
             for child in set(active_children()) - before:
                 child.terminate()
+            for thread in set(threading.enumerate()) - threads:
+                thread.join(SECONDS)  # else one of them may still be at work when all else is torn down
 
     return engine
 
 
 @contextlib.contextmanager
-def _beginnings() -> Iterator[None]:
-    """Processes that begin in this block calculate with one thread each: there are as many as there are cores.
-
-    They hear no Ctrl-C before they are told to leave it to their parent, which hears it when the block ends.
-    """
-    mask = getattr(signal, "pthread_sigmask", None)  # Windows has none
-    heard = mask(signal.SIG_BLOCK, {signal.SIGINT}) if mask else None
+def _one_thread_each() -> Iterator[None]:
+    """Processes that begin in this block calculate with one thread each: there are as many as there are cores."""
     names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
     held = {name: os.environ.get(name) for name in names}
     os.environ.update(dict.fromkeys(names, "1"))
@@ -117,8 +118,35 @@ def _beginnings() -> Iterator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+
+
+@contextlib.contextmanager
+def _heeding_signals_later() -> Iterator[None]:
+    """What asks us to end is heeded after this block: then all processes that begin in it are known, and end with us.
+
+    They themselves hear no Ctrl-C before `_begin_worker` has told them to leave it to us.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    numbers = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    handlers = {number: signal.getsignal(number) for number in numbers}
+    mask = getattr(signal, "pthread_sigmask", None)  # Windows has none
+    heard = mask(signal.SIG_BLOCK, {signal.SIGINT}) if mask else None
+    try:
+        for number, handler in handlers.items():
+            if callable(handler):  # what is ignored stays ignored
+                signal.signal(number, lambda number, _: came.append(number))
+        yield
+    finally:
+        for number, handler in handlers.items():
+            if callable(handler):
+                signal.signal(number, handler)
         if mask:
             mask(signal.SIG_SETMASK, heard)
+        if came:
+            signal.raise_signal(came[0])
 
 
 def _begin_worker() -> None:
