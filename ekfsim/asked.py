@@ -1,6 +1,6 @@
 """What a command line asks for → the scenes that are played, and where a study's runs are made."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from ekfsim.errors import UsageError
 from ekfsim.process import say, shown
@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 def scene_of(
     commands: str, world: str | None = None, seed: int | None = None, run_number: int = 0,
-    filter_name: str | None = None, gate: float | None = None, guard: str | None = None, log: str | None = None,
-    reading: str = "corrected", settings: tuple[str, ...] = (),
+    filter_name: str | None = None, gate: float | Literal["off"] | None = None, guard: str | None = None,
+    log: str | None = None, reading: str = "corrected", settings: tuple[str, ...] = (),
 ) -> "Scene":  # fmt: skip
     """The scene of a commands file, overruled by the options that were given. filter_name : one, or several: ekf,ukf"""
     from dataclasses import replace
@@ -31,6 +31,8 @@ def scene_of(
     for warning in found.warnings:
         say(warning)
     scene = found.get()
+    if gate == "off":
+        scene, gate = replace(scene, gate=None), None
     chosen: dict[str, Any] = {"seed": seed, "run": run_number, "gate": gate, "guard": guard}
     chosen |= {"filter": names[0] if names else None, "beside": names[1:]}
     for name in ("world_source", "commands_source", "log_source"):  # every output holds them, in a line

@@ -48,6 +48,14 @@ class Probability(click.FloatRange):
         return number
 
 
+class Gate(Probability):
+    """A probability, or "off"."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """A float, or "off". Fails for anything else."""
+        return value if value == "off" else super().convert(value, param, ctx)
+
+
 class Result(click.Path):
     """Where a result is to be written."""
 
@@ -63,8 +71,8 @@ class Result(click.Path):
         return super().convert(value, param, ctx)
 
 
-GATE = click.option("--gate", type=Probability(), metavar="P",
-                    help="Refuse readings whose NIS lies beyond this χ² quantile.")  # fmt: skip
+GATE = click.option("--gate", type=Gate(), metavar="P|off",
+                    help="Refuse readings whose NIS lies beyond this χ² quantile; off refuses none.")  # fmt: skip
 GUARD = click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams.")
 
 

@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from ekfsim.version import VERSION
 from ekfsim.views.lettering import drawable
 
 PATTERNS = ("*.png", "*.svg", "*.pdf", "*.csv", "captions.md")  # what an album consists of
@@ -52,14 +53,15 @@ class Album:
             engine.set(rect=(0, foot, 1, 1 - foot))
         figure.text(0.995, 0.004, "\n".join(made_by), fontsize=5.5, ha="right", va="bottom", color="#777777")
         for ending in self.formats:
-            figure.savefig(self.folder / f"{name}.{ending}", dpi=DPI)
+            notes = metadata(ending, title, source or self.source)
+            figure.savefig(self.folder / f"{name}.{ending}", dpi=DPI, metadata=notes)
         self.pages.append(f"## {title}\n\n![{title}]({name}.{self.formats[0]})\n\n{filled(caption)}\n")
 
     def table(self, name: str, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], caption: str) -> None:
-        """Write a table as CSV and into the captions."""
+        """Write a table into the captions, and as CSV with a last column that says what made it."""
         with (self.folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
-            plain = [[NEGATIVE.sub("-", cell) for cell in row] for row in rows]
-            csv.writer(file, lineterminator="\n").writerows([header, *plain])
+            plain = [[*(NEGATIVE.sub("-", cell) for cell in row), self.source] for row in rows]
+            csv.writer(file, lineterminator="\n").writerows([[*header, "made by"], *plain])
         lines = ["| " + " | ".join(cells) + " |" for cells in (header, ["---"] * len(header), *rows)]
         self.pages.append(f"## {title}\n\n" + "\n".join(lines) + f"\n\n{filled(caption)}\n")
 
@@ -71,6 +73,16 @@ class Album:
         """Write the page of captions."""
         text = "\n".join([f"# {self.title}\n", f"{self.source}\n", *self.pages])
         (self.folder / "captions.md").write_text(text, encoding="utf-8")
+
+
+def metadata(ending: str, title: str, source: str) -> dict[str, str | None]:
+    """The notes in a picture's file, under the names that its format has; and no date, which would differ each time."""
+    match ending:
+        case "svg":
+            return {"Title": title, "Description": source, "Creator": f"ekfsim {VERSION}", "Date": None}
+        case "pdf":
+            return {"Title": title, "Subject": source, "Creator": f"ekfsim {VERSION}", "CreationDate": None}
+    return {"Title": title, "Description": source, "Software": f"ekfsim {VERSION}"}
 
 
 def filled(text: str) -> str:

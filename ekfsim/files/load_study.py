@@ -61,7 +61,7 @@ class Request:
 
 def asked(
     commands: str, world: str | None, runs: int | None, seed: int | None, filters: str | None, sweeps: Sequence[str],
-    settings: Sequence[str], gate: float | None, guard: str | None,
+    settings: Sequence[str], gate: float | str | None, guard: str | None,
     reading: DocumentReading | None, fast: bool,
 ) -> Request:  # fmt: skip
     """What the command line asks for: a file, overruled by its options. Raises UsageError or InputError."""

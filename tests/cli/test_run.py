@@ -82,6 +82,12 @@ def test_a_gate_refuses_readings():
     assert "not used" not in told("short.yaml", "-q", "--gate", "0.999999999")
 
 
+def test_a_gate_of_the_file_is_put_off(place):
+    (place / "gated.yaml").write_text((place / "short.yaml").read_text() + "gate: 1.0e-9\n")
+    assert "refused by the gate" in told("gated.yaml", "-q")
+    assert "not used" not in told("gated.yaml", "-q", "--gate", "off")
+
+
 def test_a_guard_leaves_ambiguous_beams_out(place):
     (place / "corner.yaml").write_text("world: world.yaml\ncommands: [{sense: {angle: 26}}]")  # past the desk's corner
     assert "This beam is ambiguous" in told("corner.yaml")

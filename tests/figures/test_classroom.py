@@ -48,7 +48,7 @@ def test_every_proof_gives_what_was_expected(album):
             "two-beams", "dead-reckoning", "unsure-start", "coverage",
         )
     }  # fmt: skip
-    for _, what, expected, measured in rows:
+    for _, what, expected, measured, _ in rows:
         if "runs" in what:
             shares = [float(share) for share in re.findall(r"[\d.]+", measured)]
             assert shares == pytest.approx([95.4, 95.4], abs=2)

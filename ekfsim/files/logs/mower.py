@@ -8,7 +8,7 @@ import numpy as np
 
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.logs.folder import find, folder_of
-from ekfsim.files.logs.ordering import tell_gaps, tell_repeated
+from ekfsim.files.logs.ordering import tell_back, tell_gaps, tell_repeated
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.table import Rows, Wanted, bare_table, some
 from ekfsim.files.logs.targets import of_landmarks
@@ -124,6 +124,7 @@ def _by_row(
 
     It must not be later than dT after it, or the listing's window t − dT ≤ t_m ≤ t would not hold.
     """
+    tell_back(angles, warnings)
     row: Integers = np.searchsorted(poses.t, angles.t, side="left")
     last = len(poses) - 1
     used = (row <= last) & (angles.t >= poses.t[np.minimum(row, last)] - dT)

@@ -9,13 +9,20 @@ LONG = 10  # a gap is longer than so many usual steps
 
 def in_order(rows: Rows, warnings: list[str]) -> Rows:
     """The rows by time, those of one instant as they stand in the file, and none twice."""
-    back = np.flatnonzero(np.diff(rows.t) < 0) + 1
-    if len(back):
-        first, more = int(back[0]), f", and so do {len(back) - 1} more" if len(back) > 1 else ""
-        told = f"{rows.at(first)}: the time {rows.t[first]:.12g} lies before that of the row above{more}"
-        warnings.append(f"{told}: the rows are put in order of time")
+    if tell_back(rows, warnings):
         rows = rows[np.argsort(rows.t, kind="stable")]
     return _once(rows, warnings)
+
+
+def tell_back(rows: Rows, warnings: list[str]) -> bool:
+    """Whether a time lies before that of the row above; a warning says that the rows are put in order."""
+    back = np.flatnonzero(np.diff(rows.t) < 0) + 1
+    if not len(back):
+        return False
+    first, more = int(back[0]), f", and so do {len(back) - 1} more" if len(back) > 1 else ""
+    told = f"{rows.at(first)}: the time {rows.t[first]:.12g} lies before that of the row above{more}"
+    warnings.append(f"{told}: the rows are put in order of time")
+    return True
 
 
 def _once(rows: Rows, warnings: list[str]) -> Rows:

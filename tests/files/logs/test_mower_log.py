@@ -144,6 +144,19 @@ def test_a_reading_is_used_once_where_two_rows_share_a_stamp(tmp_path):
     assert any(":22: the time 1000.2 is that of the row above, too" in told for told in warnings)
 
 
+def test_markers_out_of_order_are_put_in_order_and_told(tmp_path):
+    poses, angles = short_log()
+    _, steps, warnings = ours(write(tmp_path / "log", poses, angles[::-1]), "corrected")
+    assert [step.entry.given.name for step in steps if step.correction is not None] == [
+        "marker 0",
+        "marker 0",
+        "marker 1",
+    ]
+    assert [told.partition("angles.txt")[2] for told in warnings if "angles.txt" in told] == [
+        ":3: the time 999.996 lies before that of the row above: the rows are put in order of time"
+    ]
+
+
 def test_a_stamp_that_goes_back_is_refused_at_its_line(tmp_path):
     poses, angles = short_log()
     poses[[30, 31], 2] = poses[[31, 30], 2]
