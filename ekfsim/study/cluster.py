@@ -11,6 +11,7 @@ from ekfsim.study.engines import Engine, Parcels, T, Work, do_packed
 from ekfsim.study.plan import Task
 
 SECONDS = 10  # for a scheduler that does not answer
+GREETING = 1_000_000  # bytes; a scheduler speaks first, and begins by saying how many
 RETRIES = 3  # of a block whose worker failed or died
 AHEAD = 4  # blocks for each worker that are handed out at once
 
@@ -51,7 +52,9 @@ def _connected(distributed: Any, address: str) -> Any:
     if scheme not in ("", "tcp", "tls") or not host or not port.isdigit():
         raise UsageError(f"--cluster {address}: is no address of a scheduler; write e.g. tcp://127.0.0.1:8786")
     try:
-        socket.create_connection((host.strip("[]"), int(port)), timeout=SECONDS).close()
+        with socket.create_connection((host.strip("[]"), int(port)), timeout=SECONDS) as wire:
+            if scheme != "tls" and not 0 < int.from_bytes(wire.recv(8, socket.MSG_WAITALL), "little") < GREETING:
+                raise RunError(f"no scheduler at {address}: something else answers there")
         return distributed.Client(address, timeout=SECONDS, set_as_default=False)
     except (OSError, OverflowError, UnicodeError, TimeoutError) as error:
         why = f"{error.strerror}" if isinstance(error, OSError) and error.strerror else "it does not answer"

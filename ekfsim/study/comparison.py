@@ -71,6 +71,8 @@ def told_side(text: str, option: str) -> tuple[Setting, ...]:
     """What KEY=VALUE,… sets: filter too. Raises UsageError where it means nothing."""
     found = []
     for part in text.split(","):
+        if "," in text and "=" not in part:
+            raise UsageError(f"{option} {text}: '{part}' is no KEY=VALUE; write e.g. {option} guard=skip,gate=0.99")
         key, _, value = (word.strip() for word in part.partition("="))
         if key == FILTER:
             filters_in(value, f"{option} {FILTER}")

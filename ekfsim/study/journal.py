@@ -69,20 +69,23 @@ def journal_in(folder: Path, plan: Plan, resume: bool, force: bool) -> Iterator[
     with told(folder):
         folder.mkdir(parents=True, exist_ok=True)
         file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+b")
-    with file:
+    journal, ours = None, False
+    try:
         _lock(file, folder)  # before anything in it is touched: it may be another's
         if os.fstat(file.fileno()).st_size and not (resume or force):
             right = "go on with --resume, or begin anew with --force"
             raise UsageError(f"{folder}: holds what was done of a study that did not end; {right}")
+        ours = True
         with told(path):
             if not resume:
                 file.truncate(0)
             journal = Journal(path, file, _begun(file, plan, path))
-        try:
-            yield journal
-        finally:
-            if not len(journal):
-                remove(folder)
+        yield journal
+    finally:
+        with suppress(OSError):  # what a full disk did not take is told already
+            file.close()
+        if ours and not (path.stat().st_size if journal is None else len(journal)):
+            remove(folder)
 
 
 def remove(folder: Path) -> None:

@@ -93,6 +93,8 @@ def test_the_options_of_either_side_win_over_those_of_both():
         (["--a", "gate=0.9", "--b", "gate=0.90,gate=0.5"], "--b gate=0.90,gate=0.5: 'gate' is set twice; keep one of"),
         (["--a", "guard"], "--a guard: this is no KEY=VALUE; write e.g. --a noise.rangeSigmaRatio=0.02"),
         (["--a", ""], "--a : this is no KEY=VALUE;"),
+        (["--a", "guard=off,"], "--a guard=off,: '' is no KEY=VALUE; write e.g. --a guard=skip,gate=0.99"),
+        (["--b", "filter=ekf,ukf"], "--b filter=ekf,ukf: 'ukf' is no KEY=VALUE; write e.g. --b guard=skip,gate=0.99"),
         (["--a", "gaurd=off"], "--a gaurd=off: unknown key 'gaurd'; did you mean 'guard'?"),
         (["--b", "guard=maybe"], "--b guard=maybe: 'maybe' is not known here; write off, warn or skip"),
         (["--b", "filter=oracle"], "--b filter oracle: there is no such filter; known: kf, ekf, iekf, ukf, pf"),

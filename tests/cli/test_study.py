@@ -5,13 +5,14 @@ import json
 import os
 import shutil
 import signal
+import subprocess
 import time
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import yaml
-from program import SHORT, WORLD, ekfsim, ended, lay_out, left_in, process, started, wait_for
+from program import COMMAND, SHORT, WORLD, ekfsim, ended, lay_out, left_in, process, started, wait_for
 
 from ekfsim.errors import UsageError
 from ekfsim.files.load_study import read_request
@@ -395,6 +396,19 @@ def test_resume_without_a_journal_starts_from_nothing(place):
     assert told.status == 0
     assert told.err == "ekfsim: out.partial: nothing is kept there to go on with; this is a study from the beginning\n"
     assert left_in(place / "out") == FOLDER
+
+
+@pytest.mark.skipif(os.name != "posix", reason="there is no `ulimit`")
+@pytest.mark.parametrize(("kB", "left"), [(0, []), (60, ["out.partial"])])
+def test_a_disk_that_takes_no_more_is_told_in_a_line(place, kB, left):
+    limited = ["bash", "-c", f'ulimit -f {kB}; exec "$@"', "bash", *COMMAND]
+    words = [str(word) for word in ("study", "short.yaml", "--runs", 10**6, "-o", "out")]
+    told = subprocess.run([*limited, *words], capture_output=True, text=True, check=False)
+    assert told.returncode == 1
+    (line,) = told.stderr.splitlines()
+    assert line.startswith("ekfsim: out.partial/journal.jsonl: writing failed: File too large")
+    assert line.endswith("are kept in out.partial, --resume goes on with the rest") == bool(left)
+    assert sorted(path.name for path in place.glob("out*")) == left
 
 
 def test_two_at_one_place_are_one_too_many(place):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import socket
 import subprocess
 import sys
 import time
@@ -155,6 +156,17 @@ def test_a_scheduler_that_is_not_there_is_told_in_a_line(place):
             2,
             ["ekfsim: --cluster nowhere: is no address of a scheduler; write e.g. tcp://127.0.0.1:8786"],
         )
+    assert not (place / "out.partial").exists()
+
+
+def test_what_answers_and_is_no_scheduler_is_told_in_a_line(place):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with running(*study("out", "--cluster", address), stderr=subprocess.PIPE) as process:
+            wire, _ = server.accept()
+            wire.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+            assert ended(process) == (1, [f"ekfsim: no scheduler at {address}: something else answers there"])
+            wire.close()
     assert not (place / "out.partial").exists()
 
 
