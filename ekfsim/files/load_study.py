@@ -20,6 +20,7 @@ from ekfsim.systems.document import DocumentReading
 
 SIDES = ("a", "b")  # of a comparison
 FILTER = "filter"  # a key that only they have
+SWEEP = "sweep"
 
 
 @dataclass(frozen=True)
@@ -92,18 +93,19 @@ def read_request(name: str) -> Request:
         keys = StudyKeys.model_validate(root.plain())
     except ValidationError as error:
         mistakes += tell(error, "study", root, str(path))
-    else:
-        mistakes += setting_mistakes(root, keys, str(path))
-        mistakes += side_mistakes(root, str(path))
+    mistakes += setting_mistakes(root, str(path))
+    mistakes += side_mistakes(root, str(path))
     if mistakes:
         raise InputError(sorted(mistakes, key=lambda mistake: (mistake.place.line, mistake.place.column)))
     commands, commands_name = beside(path, keys.study, "commands", root)
     world, world_name = (None, None) if keys.world is None else beside(path, keys.world, "worlds", root)
+    told = list(told_in(root, str(path)))
+    fixed = tuple(one for route, values in told if route[0] != SWEEP for one in values)
+    sweep = tuple(tuple(values) for route, values in told if route[0] == SWEEP)
     a, b = (tuple(side_of(root, side, str(path))) for side in SIDES)
     return Request(
-        commands, world, keys.runs, keys.seed, tuple(keys.filters or ()), tuple(settings_of(root, keys, str(path))),
-        tuple(map(tuple, sweep_of(root, keys, str(path)))), keys.reading, keys.fast, a, b, keys.ekfsim,
-        name, commands_name, world_name,
+        commands, world, keys.runs, keys.seed, tuple(keys.filters or ()), fixed, sweep, keys.reading, keys.fast, a, b,
+        keys.ekfsim, name, commands_name, world_name,
     )  # fmt: skip
 
 
@@ -128,19 +130,20 @@ def beside(path: Path, named: str, folder: str, root: Node) -> tuple[Path, str]:
     return known[named], named
 
 
-def settings_of(root: Node, keys: StudyKeys, file: str) -> Iterator[Setting]:
-    """What a study file sets for all cells."""
-    for key in keys.set:
-        yield setting_at(root, ("set", key), key, file)
-    for key in OF_COMMANDS:
-        if root.at((key,)) is not None:
-            yield setting_at(root, (key,), key, file)
+def told_in(root: Node, file: str) -> Iterator[tuple[Route, list[Setting]]]:
+    """Where a study file tells a key, and the values it gives it; what is no number and no word is left out."""
+    routes: list[tuple[Route, str]] = [(("set", key), key) for key in keys_of(root, "set")]
+    routes += [((key,), key) for key in OF_COMMANDS if key in root.keys]
+    routes += [((SWEEP, key), key) for key in keys_of(root, SWEEP)]
+    for route, key in routes:
+        node = root.nearest(route)
+        places: list[Route] = [(*route, n) for n in range(len(node.value))] if isinstance(node.value, list) else [route]
+        yield route, [setting_at(root, place, key, file) for place in places if root.nearest(place).written]
 
 
-def sweep_of(root: Node, keys: StudyKeys, file: str) -> Iterator[list[Setting]]:
-    """What a study file sweeps."""
-    for key, values in keys.sweep.items():
-        yield [setting_at(root, ("sweep", key, n), key, file) for n in range(len(values))]
+def keys_of(root: Node, name: str) -> Iterator[str]:
+    """The keys of a mapping of the file; none where it has no such mapping."""
+    yield from node.keys if (node := root.at((name,))) is not None else ()
 
 
 def side_of(root: Node, side: str, file: str) -> Iterator[Setting]:
@@ -156,21 +159,19 @@ def setting_at(root: Node, path: tuple[str | int, ...], key: str, file: str) -> 
     return Setting(key, node.written, f"{place}: {field_of(path)}", place)
 
 
-def setting_mistakes(root: Node, keys: StudyKeys, file: str) -> Iterator[Mistake]:
+def setting_mistakes(root: Node, file: str) -> Iterator[Mistake]:
     """Keys that no file has, keys that are told twice, and values that stand twice, each at its place."""
     told: dict[str, str] = {}
-    groups = [[one] for one in settings_of(root, keys, file)] + list(sweep_of(root, keys, file))
-    for values, path in zip(groups, paths_of(root, keys), strict=True):
-        key = values[0].key
-        mark = root.nearest(path[:-1]).keys.get(str(path[-1]), root.mark)
-        if fault := fault_of(values[0]):
-            yield at(file, mark, path[:-1], *fault)
+    for route, values in told_in(root, file):
+        key, mark = str(route[-1]), root.nearest(route[:-1]).keys[str(route[-1])]
+        if values and (fault := fault_of(values[0])):
+            yield at(file, mark, route[:-1], *fault)
         if key in told:
-            yield at(file, mark, path, f"'{key}' is told already by '{told[key]}'", "keep one of them")
-        if (second := repeated(values)) is not None:
-            place: Route = (*path, values.index(second))
-            yield at(file, root.nearest(place).mark, place, f"{second.value} stands twice", "delete one")
-        told[key] = field_of(path)
+            yield at(file, mark, route, f"'{key}' is told already by '{told[key]}'", "keep one of them")
+        if (second := repeated(values)) is not None and second.place is not None:
+            mark = second.place.line, second.place.column
+            yield at(file, mark, (*route, values.index(second)), f"{second.value} stands twice", "delete one")
+        told[key] = field_of(route)
 
 
 def side_mistakes(root: Node, file: str) -> Iterator[Mistake]:
@@ -182,10 +183,3 @@ def side_mistakes(root: Node, file: str) -> Iterator[Mistake]:
                 yield at(file, root.nearest((side, FILTER)).mark, (side, FILTER), f"'{one.value}' is no filter", right)
             elif one.key != FILTER and (fault := fault_of(one)):
                 yield at(file, root.nearest((side,)).keys[one.key], (side,), *fault)
-
-
-def paths_of(root: Node, keys: StudyKeys) -> Iterator[tuple[str, ...]]:
-    """Where the settings of each key stand."""
-    yield from (("set", key) for key in keys.set)
-    yield from ((key,) for key in OF_COMMANDS if root.at((key,)) is not None)
-    yield from (("sweep", key) for key in keys.sweep)
