@@ -20,6 +20,7 @@ from ekfsim.systems.robots import PylonCart
 
 GPS_SIGMA, GPS_PERIOD = 0.4, 2.0  # m, s: of the pylon cart's GPS, which is recorded and not used
 SOON = 1e-9  # of a period: what rounding makes of an instant
+TICKS_AT_ONCE = 8_000  # of one run: the first picture does not wait for the last tick
 AT_ONCE = 100_000  # ticks times runs that are worked out together: one by one is slow, all at once takes much memory
 DISTURBANCE, INPUT, FIX, READING = range(4)  # the streams of random numbers, the last one for each target
 
@@ -137,6 +138,6 @@ def _process(motion: Motion, layout: Layout) -> Array:
 
 def _blocks(ticks: int, runs: int) -> Iterator[Integers]:
     """The numbers of all ticks from 0, some at a time."""
-    many = max(AT_ONCE // runs, 1)
+    many = max(min(AT_ONCE // runs, TICKS_AT_ONCE), 1)
     for first in range(0, ticks, many):
         yield np.arange(first, min(first + many, ticks))

@@ -33,29 +33,29 @@ class Driver:
         self._dt = 1 / rate
         speed = np.append(course.speed, course.speed[-1:])  # after the last tick it would go on as it went
         turn_rate = np.append(course.turn_rate, course.turn_rate[-1:])
-        self._asked = np.column_stack([speed, turn_rate, np.sign(speed), wanted]).tolist()
+        self._asked = np.column_stack([speed, turn_rate, np.sign(speed), wanted])  # (T + 1, 6)
         self._gains = (ALONG, ACROSS, AROUND) if course.held else (0.0, 0.0, 0.0)
         self._root, self._disturbances = square_root(process), disturbances
         pose = start.tolist() if one else list(start.T)
-        self._here = (*pose, *self._steered(0, *pose))
+        self._here = (*pose, *self._steered(self._asked[0].tolist(), *pose))
 
     def advance(self, ticks: Integers) -> tuple[Tick, Array]:
         """How the robot moves in each of the next T ticks, and its pose (T, …, 3) when it has been disturbed, too."""
         noise: Any = np.moveaxis(np.matvec(self._root, self._disturbances.normals(len(ticks), 3)), -1, 1)
-        rows = [self._here]
-        for tick, (ex, ey, eθ) in zip(ticks.tolist(), noise.tolist() if noise.ndim == 2 else noise, strict=True):
+        rows, asked = [self._here], self._asked[ticks + 1].tolist()
+        for following, (ex, ey, eθ) in zip(asked, noise.tolist() if noise.ndim == 2 else noise, strict=True):
             x, y, θ, distance, turn = rows[-1]
             middle = θ + turn / 2
             x, y = x + distance * self._cos(middle) + ex, y + distance * self._sin(middle) + ey
             θ = self._wrap(θ + turn + eθ)
-            rows.append((x, y, θ, *self._steered(tick + 1, x, y, θ)))
+            rows.append((x, y, θ, *self._steered(following, x, y, θ)))
         self._here = rows[-1]
         states = np.moveaxis(np.array(rows), 1, -1)
         return _ticks(states, self._dt), states[1:, ..., :3]
 
-    def _steered(self, tick: int, x: Any, y: Any, θ: Any) -> tuple[Any, Any]:
+    def _steered(self, asked: list[float], x: Any, y: Any, θ: Any) -> tuple[Any, Any]:
         """Way and turn of a tick: what the course asks for, and back towards the wanted pose."""
-        speed, turn_rate, sign, x_wanted, y_wanted, θ_wanted = self._asked[tick]
+        speed, turn_rate, sign, x_wanted, y_wanted, θ_wanted = asked
         along, across, around = self._gains
         dx, dy, c, s = x_wanted - x, y_wanted - y, self._cos(θ), self._sin(θ)
         speed = speed + along * (c * dx + s * dy)
