@@ -3,9 +3,9 @@
 A notebook needs no more than this module:
 
 >>> import ekfsim
->>> scene = ekfsim.load_scene("square")                      # a path, or the name of one that comes along
->>> steps = list(ekfsim.play(scene))                          # simulate and localize; a Step for each command
->>> views = list(ekfsim.Playback(steps, scene.world.layout))  # one for each press of n; view 0 is the start
+>>> scene = ekfsim.load_scene("square")   # a path, or the name of one that comes along
+>>> steps = list(ekfsim.play(scene))       # simulate and localize; a Step for each command
+>>> views = list(ekfsim.Playback(steps))   # one for each press of n; view 0 is the start
 >>> print(ekfsim.narrate(views[1], scene).splitlines()[0])
 ==>The robot moved: distance=3, angle=90
 

@@ -75,7 +75,7 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
             bar.update(1)
 
         animation.render(
-            together(steps_of(first), map(steps_of, others), scene.world.layout), scene, extent, out,
+            together(steps_of(first), map(steps_of, others)), scene, extent, out,
             look=Look(confidence, conditional), every=every, force=force, progress=made_one,
         )  # fmt: skip
     click.echo(f"{shown(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
@@ -109,7 +109,7 @@ def run(
         for one, result, files in zip(alone, results, outputs.for_each(scene), strict=True):
             sinks = stack.enter_context(files.open(one, confidence, result))
             runs.append(kept(steps_of(one), [result.add, *(sink.write for sink in sinks)]))
-        for view in together(runs[0], runs[1:], scene.world.layout):
+        for view in together(runs[0], runs[1:]):
             heed()
             if not quiet:
                 sys.stdout.write(narrate(view, scene, confidence))

@@ -44,7 +44,7 @@ def advance(filter: Filter, belief: Belief, entry: Entry, guard: Guard = "warn",
             skip = guard == "skip" and sighting is not None and sighting.ambiguous
             posterior, correction = filter.update(belief, sensor, z, skip)
     measured = None if entry.truth is None else nees(posterior, entry.truth, layout)
-    return Step(entry, belief, posterior, prediction, correction, sighting, measured)
+    return Step(entry, belief, posterior, prediction, correction, sighting, measured, layout)
 
 
 def first_belief(scene: Scene, axes: tuple[int, ...] = ()) -> Gaussian:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.laser import Sighting
+from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.protocols import Motion, Sensor
 
 
@@ -143,3 +144,4 @@ class Step:
     correction: Correction | None = None  # ν, S, H, K, NIS, refused, after a reading
     sighting: Sighting | None = None  # what the laser alone knows
     nees: Nees | None = None  # where the truth is known
+    layout: Layout = POSE  # what the entries of its states are

@@ -45,7 +45,7 @@ def draw(view: View | Step, scene: Scene, ax: Axes, look: Look = STANDARD, limit
     artists: `picture = draw(view, scene, ax)`, then `picture.show(other, None)`.
     """
     if isinstance(view, Step):
-        view = View(0, view, False, [], 0, layout=scene.world.layout)
+        view = View(0, view, False, [], 0)
     main = Main(
         ax, scene, limits or limits_of_run.of(scene, [view.step], look.probability), look.probability, look.conditional
     )

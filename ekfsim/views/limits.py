@@ -12,7 +12,7 @@ from ekfsim.filters.belief import Belief
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import radius_factor
 from ekfsim.models.laser import Laser
-from ekfsim.models.layout import POSE, Layout
+from ekfsim.models.layout import Layout
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.playback import View
@@ -144,7 +144,7 @@ def of(scene: Scene, steps: Iterable[Step], probability: float = 0.954) -> Limit
         if entry.fix is not None:
             may.hold(*entry.fix.tolist())
         if isinstance(entry.given, Reading):
-            for x, y in _reached(step, layout):
+            for x, y in _reached(step):
                 may.hold(x, y)
     core, wide = must.limits or Limits(0.0, 0.0, 1.0, 1.0), may.limits
     if wide is not None:
@@ -172,26 +172,26 @@ def _hold(must: _Box, may: _Box, belief: Belief, layout: Layout, k: float) -> No
 
 def including(limits: Limits, view: View) -> Limits:
     """The same limits where they hold the view's estimate and truth, else doubled until they do."""
-    points = np.concatenate([positions(each.step, each.layout) for each in (view, *view.others)])
+    points = np.concatenate([positions(each.step) for each in (view, *view.others)])
     if limits.hold(points):
         return limits
     return limits.joined(Limits.around(points).grown(limits.size / 2))
 
 
-def positions(step: Step, layout: Layout = POSE) -> Array:
+def positions(step: Step) -> Array:
     """What must never be cut off: the estimates before and after, and the truth : (n, 2) m"""
-    known = [layout.pose(step.prior.mean), layout.pose(step.posterior.mean)]
+    known = [step.layout.pose(step.prior.mean), step.layout.pose(step.posterior.mean)]
     return np.array([pose[:2] for pose in (*known, *([] if step.entry.truth is None else [step.entry.truth]))])
 
 
-def _reached(step: Step, layout: Layout) -> Iterator[list[float]]:
+def _reached(step: Step) -> Iterator[list[float]]:
     """The end of what is drawn of a reading, x and y in m."""
     given = step.entry.given
     if isinstance(given, Reading) and isinstance(given.sensor, Laser):
         x, y, θ = step.prior.mean.tolist()
         direction = θ + given.sensor.bearing
         yield [x + float(given.z[0]) * math.cos(direction), y + float(given.z[0]) * math.sin(direction)]
-    elif (seen := sight(step, layout)) is not None:
+    elif (seen := sight(step)) is not None:
         yield from seen.end.tolist()
         yield from seen.place.tolist()
 

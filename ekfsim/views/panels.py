@@ -35,7 +35,7 @@ NARROWEST = 1e-4  # m
 
 def reading(view: View, scene: Scene) -> Beam | Sight | None:
     """What is drawn of a reading, while it is shown."""
-    return (beam(view.step, scene) or sight(view.step, view.layout)) if view.beam else None
+    return (beam(view.step, scene) or sight(view.step)) if view.beam else None
 
 
 class Main:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ekfsim.filters.belief import Belief, Gaussian, posed
 from ekfsim.geometry import Array
-from ekfsim.models.layout import POSE, Layout
+from ekfsim.models.layout import Layout
 from ekfsim.records import Control, Move, Reading, Step
 
 GATHERED = 200  # motion inputs of a driven or recorded robot in one view, at most
@@ -29,7 +29,6 @@ class View:
     corners: int  # how many of them lie behind this view
     inputs: int = 1  # how many steps the view gathers
     before: Belief | None = None  # the belief before the first of them, where more than one may be gathered
-    layout: Layout = POSE  # of the state that is estimated
     since: float | None = None  # s, the instant of the first of the steps, as stamped
     start: float = 0.0  # s, the stamp of the start
     others: tuple["View", ...] = ()  # the same view as other filters have it, that watch beside
@@ -38,6 +37,11 @@ class View:
     def belief(self) -> Belief:
         """The belief that is shown: the prior while the beam is, the posterior after."""
         return self.step.prior if self.beam else self.step.posterior
+
+    @property
+    def layout(self) -> Layout:
+        """What the entries of the estimated state are."""
+        return self.step.layout
 
     @property
     def pose(self) -> Gaussian:
@@ -55,7 +59,7 @@ class View:
         return np.array([*self.settled[: self.corners], _position(self.belief, self.layout)])
 
 
-def views(steps: Iterable[Step], layout: Layout = POSE) -> Iterator[View]:
+def views(steps: Iterable[Step]) -> Iterator[View]:
     """Every view of a run, in order. Until the next motion the path's last corner moves with each revised estimate."""
     settled: list[Array] = []
     number, start = itertools.count(), None
@@ -63,15 +67,15 @@ def views(steps: Iterable[Step], layout: Layout = POSE) -> Iterator[View]:
         start = first.entry.t or 0.0 if start is None else start
         before = first.prior if _gathered(first) else None
         if before is not None or isinstance(step.entry.command, Move):
-            settled.append(_position(first.prior, layout))
+            settled.append(_position(first.prior, first.layout))
         if isinstance(step.entry.given, Reading):
-            yield View(next(number), step, True, settled, len(settled), layout=layout, start=start)
-        yield View(next(number), step, False, settled, len(settled), inputs, before, layout, first.entry.t, start)
+            yield View(next(number), step, True, settled, len(settled), start=start)
+        yield View(next(number), step, False, settled, len(settled), inputs, before, first.entry.t, start)
 
 
-def together(steps: Iterable[Step], others: Iterable[Iterable[Step]], layout: Layout = POSE) -> Iterator[View]:
+def together(steps: Iterable[Step], others: Iterable[Iterable[Step]]) -> Iterator[View]:
     """Every view of a run, with what other filters make of the same entries."""
-    first, *beside = (views(each, layout) for each in (steps, *others))
+    first, *beside = (views(each) for each in (steps, *others))
     for view, *same in zip(first, *beside, strict=True):
         yield replace(view, others=tuple(same)) if same else view
 
@@ -124,8 +128,8 @@ class Tally:
 class Playback:
     """The views of a run by number, computed when first asked for and kept for the way back."""
 
-    def __init__(self, steps: Iterable[Step], layout: Layout = POSE, others: Iterable[Iterable[Step]] = ()) -> None:
-        self._coming = together(steps, others, layout)
+    def __init__(self, steps: Iterable[Step], others: Iterable[Iterable[Step]] = ()) -> None:
+        self._coming = together(steps, others)
         self._seen: list[View] = []
 
     def __iter__(self) -> Iterator[View]:

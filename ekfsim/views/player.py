@@ -41,7 +41,7 @@ class Player:
         self._summaries = [Summary.of(one) for one in alone]
         runs = (steps, *map(play, alone[1:]))
         first, *others = (kept(run, [s.add]) for run, s in zip(runs, self._summaries, strict=True))
-        self.playback = Playback(first, self.scene.world.layout, others)
+        self.playback = Playback(first, others)
 
     def play(self, next_key: Callable[[], Key]) -> None:
         """From the first view until a key quits."""

@@ -15,7 +15,6 @@ from ekfsim.models.frozen import Frozen
 from ekfsim.models.infrared import InfraredBeam
 from ekfsim.models.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.laser import Laser
-from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.offset import LandmarkOffset
 from ekfsim.models.position import Position
 from ekfsim.models.protocols import Quantity, Sensor
@@ -48,12 +47,12 @@ class Sight:
         return self.word == "fix"
 
 
-def sight(step: Step, layout: Layout = POSE) -> Sight | None:
+def sight(step: Step) -> Sight | None:
     """What is drawn of a reading; None where there is none."""
     given, correction = step.entry.given, step.correction
     if not isinstance(given, Reading) or correction is None:
         return None
-    pose, z, predicted = posed(step.prior, layout).mean, given.z, correction.predicted
+    pose, z, predicted = posed(step.prior, step.layout).mean, given.z, correction.predicted
     refused = Refused(int(correction.refused))
     match sensor := bare(given.sensor):
         case MarkerAngles() | BearingOnly():

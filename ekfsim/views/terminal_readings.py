@@ -31,7 +31,7 @@ class Item(NamedTuple):
 
 def draw_reading(canvas: Canvas, view: View) -> list[Item]:
     """A reading as measured, from the estimate, and a mark where the filter had expected its end."""
-    seen = sight(view.step, view.layout)
+    seen = sight(view.step)
     if seen is None:
         return []
     refused, directed = bool(seen.refused), seen.word == "direction"  # which ends nowhere

@@ -22,7 +22,7 @@ GOLDEN = Path(__file__).with_name("recorded_narrative.txt")
 
 
 def told(scene):
-    return [narrate(view, scene) for view in views(play(scene), scene.world.layout)]
+    return [narrate(view, scene) for view in views(play(scene))]
 
 
 def test_a_recorded_run_is_told_whole():

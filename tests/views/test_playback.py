@@ -16,7 +16,7 @@ COURSE = (Sense(0.0), Move(1.0, 0.5), Sense(0.2), Sense(0.4), Say("word"), Move(
 
 
 def all_views(scene):
-    return list(views(play(scene), scene.world.layout))
+    return list(views(play(scene)))
 
 
 def test_a_sense_is_two_presses_and_everything_else_one():
@@ -166,7 +166,7 @@ def test_steps_between_are_not_kept():
             alive.append(weakref.ref(prior))
             yield Step(step.entry, step.prior._replace(mean=prior), step.posterior)
 
-    seen = list(views(watched(), speeds(1, 2).world.layout))
+    seen = list(views(watched()))
     gc.collect()
     assert len(seen) == 4
     assert sum(ref() is not None for ref in alive) == 1 + 2 * 3  # the start, and of each view the first and the last

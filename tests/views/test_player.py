@@ -129,7 +129,7 @@ def test_a_scene_without_commands_is_over_when_it_begins():
 
 @pytest.mark.parametrize("place", [recording(), speeds(450, 60), speeds(7, 100)])
 def test_a_recorded_run_is_stepped_through_and_summed_up_whole(place):
-    seen, summary = list(views(play(place), place.world.layout)), Summary.of(place)
+    seen, summary = list(views(play(place))), Summary.of(place)
     for step in play(place):
         summary.add(step)
     shown, told = played(*[NEXT] * (len(seen) - 1), place=place)

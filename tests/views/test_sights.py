@@ -48,15 +48,15 @@ def step_of(sensor, z, predicted, layout=POSE, refused=Refused.NOT, pose=POSE_AT
         predicted, z - predicted, nothing, nothing, np.zeros((k, n)), np.zeros((n, k)), np.array(1.0),
         np.array(int(refused)),
     )  # fmt: skip
-    return Step(Entry(7, Reading(sensor, z, "thing 1"), t=3.5), belief, belief, correction=correction)
+    return Step(Entry(7, Reading(sensor, z, "thing 1"), t=3.5), belief, belief, correction=correction, layout=layout)
 
 
-def drawn(run, layout=POSE, look=Look()):  # noqa: B008
+def drawn(run, look=Look()):  # noqa: B008
     """A picture of a run's scene, and its views."""
     steps = list(play(run))
     figure = Figure(figsize=(9, 7))
     FigureCanvasAgg(figure)
-    return Picture(figure, run, limits.of(run, steps), look), list(views(steps, run.world.layout))
+    return Picture(figure, run, limits.of(run, steps), look), list(views(steps))
 
 
 def words(picture):
@@ -95,7 +95,7 @@ def test_a_range_puts_the_robot_on_a_circle():
 
 
 def test_a_fix_is_a_point_with_its_standard_deviations():
-    seen = sight(step_of(Position(0.5, 0.25, SPEED_POSE), [1.5, 2.5], [1.0, 2.0], SPEED_POSE), SPEED_POSE)
+    seen = sight(step_of(Position(0.5, 0.25, SPEED_POSE), [1.5, 2.5], [1.0, 2.0], SPEED_POSE))
     assert seen.fix
     assert seen.end[0] == pytest.approx([1.5, 2.5])
     assert np.hypot(*((seen.line - [1.5, 2.5]) / [0.5, 0.25]).T) == pytest.approx(1.0)
@@ -105,7 +105,7 @@ def test_a_fix_is_a_point_with_its_standard_deviations():
 
 
 def test_an_offset_is_drawn_in_the_global_frame():
-    seen = sight(step_of(LandmarkOffset(4.0, 6.0, 0.1, 0.1, INERTIAL), [3.5, 4.5], [3.0, 4.0], INERTIAL), INERTIAL)
+    seen = sight(step_of(LandmarkOffset(4.0, 6.0, 0.1, 0.1, INERTIAL), [3.5, 4.5], [3.0, 4.0], INERTIAL))
     assert seen.line == pytest.approx(np.array([[1.0, 2.0], [4.5, 6.5]]))
     assert seen.expected[0] == pytest.approx([4.0, 6.0])
 
@@ -161,7 +161,7 @@ def test_a_refused_reading_is_dashed_and_its_end_hollow(made):
     for refused in (False, True):
         view = next(v for v in every if v.beam and bool(v.step.correction.refused) is refused)
         picture.show(view)
-        seen = sight(view.step, view.layout)
+        seen = sight(view.step)
         for panel in (picture.main, picture.close):
             shown = lines(panel)
             assert shown["sight"].get_linestyle() == ("--" if refused else "-")
@@ -182,7 +182,7 @@ def test_a_beam_of_a_driven_robot_is_drawn_like_the_lasers(made):
     assert "beam, as measured" in words(picture)
     view = next(v for v in every if v.beam and v.step.correction.refused)
     picture.show(view)
-    seen, ray = sight(view.step, view.layout), beam(view.step, run)
+    seen, ray = sight(view.step), beam(view.step, run)
     assert picture.main.beam.measured.get_xydata() == pytest.approx(seen.line)
     assert picture.main.beam.expected.get_xydata() == pytest.approx(seen.expected)
     assert picture.main.beam.measured.get_linestyle() == "--"
@@ -361,7 +361,7 @@ def test_landmarks_have_their_numbers_where_there_is_room():
     assert len(names) < 20
     boxes = [name.get_window_extent() for name in names]
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
-    text = draw(next(views(play(run), POSE)), run, 0.954, (80, 24), (-5.0, 7.0, -5.0, 5.0), colour=False)
+    text = draw(next(views(play(run))), run, 0.954, (80, 24), (-5.0, 7.0, -5.0, 5.0), colour=False)
     assert "#99" in text
     assert "#49" not in text
 
