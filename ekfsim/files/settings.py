@@ -97,8 +97,12 @@ def fault_of(one: Setting) -> tuple[str, str] | None:
             return f"'{field_of(path)}' is one value and holds no '{part}'", f"write {field_of(path)}"
         if part not in known:
             near = nearest(part, known)
-            meant = ".".join([*parts[:n], near, *parts[n + 1 :]])
-            return f"unknown key {quoted(part)}", f"did you mean '{meant}'?" if near else f"known: {', '.join(known)}"
+            if not near:
+                return f"unknown key {quoted(part)}", f"known: {', '.join(known)}"
+            whole = ".".join([*parts[:n], near, *parts[n + 1 :]])
+            sound = fault_of(dataclasses.replace(one, key=whole)) is None
+            meant = whole if sound else ".".join([*parts[:n], near])
+            return f"unknown key {quoted(part)}", f"did you mean '{meant}'?"
         path = (*path, part)
     if known := _known(kind, path):
         return f"'{one.key}' is no single value", f"write e.g. {one.key}.{known[0]}"
