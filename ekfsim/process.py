@@ -35,6 +35,8 @@ def run(program: click.Group) -> NoReturn:
         if not _ending:
             raise
         status = 1  # what a library made of the signal's exception
+    if _ending and _ending[0] == signal.SIGINT and status != INTERRUPTED:
+        say("interrupted")
     sys.exit(128 + _ending[0] if _ending else status)
 
 

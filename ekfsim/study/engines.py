@@ -99,7 +99,8 @@ def pool(workers: int) -> Engine:
             for child in set(active_children()) - before:
                 child.terminate()
             for thread in set(threading.enumerate()) - threads:
-                thread.join(SECONDS)  # else one of them may still be at work when all else is torn down
+                with contextlib.suppress(RuntimeError):  # one that was just made and has not begun cannot be joined
+                    thread.join(SECONDS)  # else one of them may still be at work when all else is torn down
 
     return engine
 
