@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from ekfsim.errors import EkfsimError, UsageError
+from ekfsim.files.telling import quoted
 from ekfsim.files.writing import whole_file
 from ekfsim.localization import play
 from ekfsim.provenance import metadata
@@ -37,7 +38,7 @@ def play_interactively(scene: Scene, show: str, out: Path, look: Look, force: bo
     """
     window_wanted = show == "window" or (show == "auto" and _window_available())
     if show == "window" and not _window_available():
-        raise UsageError("there is no display to open a window on; --show text draws in the terminal")
+        raise UsageError(_why_no_window())
     extent = limits.of_all(scene, (islice(play(one), LOOK_AHEAD) for one in scene.alone()), look.probability)
     pictures = Pictures(scene, extent, look, out, force)
     window: Window | None = None
@@ -55,14 +56,27 @@ def play_interactively(scene: Scene, show: str, out: Path, look: Look, force: bo
         player.play(keyboard if window is None else _either(keyboard, window))
 
 
-def _window_available() -> bool:
+def _display() -> bool:
     displays = ("DISPLAY", "WAYLAND_DISPLAY")
-    if sys.platform not in ("darwin", "win32") and not any(os.environ.get(name) for name in displays):
+    return sys.platform in ("darwin", "win32") or any(os.environ.get(name) for name in displays)
+
+
+def _window_available() -> bool:
+    if not _display():
         return False  # without the second that it takes to import matplotlib
     get_ready()
     from ekfsim.views.window import available
 
     return available()
+
+
+def _why_no_window() -> str:
+    """Why no window can be opened, and the way out."""
+    wanted = os.environ.get("MPLBACKEND")
+    if wanted and _display():
+        told = f"MPLBACKEND names {quoted(wanted)}, which opens no window here"
+        return f"{told}; unset it, or --show text draws in the terminal"
+    return "there is no display to open a window on; --show text draws in the terminal"
 
 
 def _either(keyboard: Keyboard, window: "Window") -> Callable[[], Key]:

@@ -1,5 +1,6 @@
 """render: files that are whole or absent, in bounded memory."""
 
+import os
 import signal
 
 import pytest
@@ -131,7 +132,46 @@ def test_memory_does_not_grow_with_the_scenario(place):
 
 
 def test_settings_that_matplotlib_refuses_are_told(place):
-    refused = process("render", "short.yaml", "-o", "frames", MPLBACKEND="bogus")
+    (place / "settings").mkdir()
+    (place / "settings/matplotlibrc").write_bytes(b"\xff")
+    refused = process("render", "short.yaml", "-o", "frames", MPLCONFIGDIR="settings")
     assert refused.status == 2
-    assert refused.err.startswith("ekfsim: matplotlib does not accept its settings: ")
-    assert left_in(place) == PUT_IN
+    assert "ekfsim: matplotlib does not accept its settings: " in refused.err
+    assert not (place / "frames").exists()
+
+
+EACH = """\
+import os, sys
+from ekfsim import cli
+for line in sys.stdin.read().splitlines():
+    if os.fork() == 0:  # matplotlib reads its settings once a process
+        sys.argv = ["ekfsim", *line.split()]
+        cli.main()
+    print(os.waitstatus_to_exitcode(os.wait()[1]), flush=True)
+"""
+RENDERING = "render short.yaml -o frames --every 9\n"
+DRAWING = f"""\
+{RENDERING}render short.yaml -o frames.gif --every 9
+study short.yaml --runs 2 -o study
+compare short.yaml --b guard=skip --runs 2 -o sides
+play short.yaml --show files
+figures gnss -o world.yaml
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="a process cannot be doubled here")
+@pytest.mark.parametrize(
+    ("name", "settings", "commands", "ended"),
+    [
+        ("nonsense", "", DRAWING, [0, 0, 0, 0, 0, 2]),  # the last is drawn, if there were a folder to put it in
+        ("module://matplotlib_inline.backend_inline", "", RENDERING, [0]),
+        ("", "backend: nonsense", RENDERING, [0]),
+    ],
+)
+def test_files_are_drawn_whatever_backend_of_windows_the_settings_name(place, name, settings, commands, ended):
+    (place / "settings").mkdir()
+    (place / "settings/matplotlibrc").write_text(settings)
+    drawn = process(keys=commands.encode(), program=EACH, MPLBACKEND=name, MPLCONFIGDIR="settings")
+    assert [int(line) for line in drawn.out.splitlines() if line.isdigit()] == ended
+    assert drawn.err == ("ekfsim: world.yaml: this is a file; name a folder\n" if 2 in ended else "")
+    assert (place / "frames/frame-0000.png").exists()

@@ -1,10 +1,16 @@
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
+from ekfsim.errors import UsageError
+from ekfsim.files.load import load_scene
 from ekfsim.views import window
+from ekfsim.views.interactive import play_interactively
 from ekfsim.views.keyboard import Action
+from ekfsim.views.look import STANDARD
 
 
 @pytest.fixture(autouse=True)
@@ -26,6 +32,16 @@ def test_a_backend_without_windows_opens_none(monkeypatch, name):
     monkeypatch.setenv("DISPLAY", ":1")
     monkeypatch.setenv("MPLBACKEND", name)
     assert not window.available()
+    told = f"MPLBACKEND names '{name}', which opens no window here; unset it, or --show text draws in the terminal"
+    with pytest.raises(UsageError, match=f"^{told}$"):
+        play_interactively(load_scene("square"), "window", Path("out"), STANDARD, force=False)
+
+
+def test_a_notebook_keeps_its_backend(tmp_path):
+    told = "import ekfsim, os; ekfsim.draw; import matplotlib; print(matplotlib.get_backend())"
+    environment = {**os.environ, "MPLBACKEND": "svg"}
+    shown = subprocess.run([sys.executable, "-c", told], capture_output=True, check=True, env=environment)
+    assert shown.stdout == b"svg\n"
 
 
 @pytest.mark.parametrize("outcome", ["aborts", "hangs"])
