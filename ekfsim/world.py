@@ -98,6 +98,11 @@ class World:
         """What the entries of the filter's state are."""
         return POSE if self.robot is None else self.robot.layout
 
+    def follows(self, reading: DocumentReading) -> bool:
+        """Whether anything of its robot and its instruments is printed, or coded, otherwise than it is right."""
+        own = () if self.robot is None else self.robot.readings
+        return reading in own or any(reading in instrument.readings for instrument in self.instruments)
+
     def targets(self, reading: DocumentReading, floor: Map) -> list[tuple[Instrument, Target]]:
         """Everything that the instruments may read, with the sensors that know this map."""
         yaw_sigma = self.robot.yaw_sigma if isinstance(self.robot, PylonCart) else 0.0

@@ -3,10 +3,14 @@
 import math
 
 import numpy as np
+from documents import equation, text_of
 
 from ekfsim.filters.unscented import sigma_points, square_root, unscented_transform, weights
 from ekfsim.geometry.ellipse import radius_factor
 from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.polar import cartesian, cartesian_moments
+from ekfsim.simulation.bench import sigma_of
+from ekfsim.systems.echo import Pair, flight_bound
 
 
 def test_erratum_classroom_sample_prints_the_command_and_moves_by_another():
@@ -45,31 +49,101 @@ def test_erratum_classroom_two_sigma_are_no_954_percent_of_an_ellipse():
     np.testing.assert_allclose(inside, [0.8647, 0.954], atol=4e-3)
 
 
-def test_erratum_pioneer_eq_14_needs_the_minus_in_its_third_line():
-    """Document 001, eq. 14: with a plus there, too, the points lie on one side and their mean is not x̄."""
-    mean, P = np.array([1.0, 2.0]), np.array([[0.04, 0.01], [0.01, 0.09]])
+def polar_reading():
+    """Document 001, section II D: a sonar's range of 1 m ± 2 cm and a bearing of 90° ± 15°."""
+    return np.array([1.0, math.pi / 2]), np.diag([0.02, math.radians(15)]) ** 2
+
+
+def test_no_erratum_the_pioneer_s_eqs_14_20_21_and_33_are_right():
+    """Document 001: the minus of the third line, a weight for the mean and one for the covariance, the arctangent."""
+    lines = equation("001", 14).split(r"\\")
+    assert [r"\bar{x}+\left(" in line for line in lines] == [False, True, False]
+    assert r"\mathcal{X}_{i+n}&=\bar{x}-\left(" in lines[2]
+    assert "W_i^{(m)}" in equation("001", 20)
+    assert "W_i^{(c)}" in equation("001", 21)
+    assert r"\tan^{-1}" in equation("001", 33)
+    mean, P = polar_reading()
     w = weights(2)
-    right = sigma_points(mean, square_root(P), w.spread)
-    np.testing.assert_allclose(w.mean @ right, mean, atol=1e-15)
-    np.testing.assert_allclose((w.mean * (right - mean).T) @ (right - mean), P, atol=1e-15)
-    wrong = np.concatenate([right[:3], right[1:3]])
-    assert np.abs(w.mean @ wrong - mean).max() > 0.1
+    points = sigma_points(mean, square_root(P), w.spread)
+    np.testing.assert_allclose(points[3:] - mean, mean - points[1:3], atol=1e-15)
+    np.testing.assert_allclose(w.mean @ points, mean, atol=1e-15)
+    np.testing.assert_allclose((w.covariance * (points - mean).T) @ (points - mean), P, atol=1e-15)
 
 
-def test_erratum_pioneer_eqs_20_and_21_have_weights_of_their_own():
-    """Document 001, eqs 20, 21: the scaled transform counts the first point otherwise in mean and in covariance."""
+def test_erratum_pioneer_eqs_20_and_21_have_weights_that_are_told_nowhere():
+    """Document 001: W⁽ᵐ⁾ and W⁽ᶜ⁾ stand in eqs 20 to 25 alone; eq. 14 has one W, which is both for Julier's points."""
+    text = text_of("001")
+    before, after = text.split(r"\quad (14)$$")[0], text.split(r"\quad (25)$$")[1]
+    assert "^{(m)}" not in before + after
+    assert "^{(c)}" not in before + after
     scaled, julier = weights(2, alpha=1e-3, beta=2.0, kappa=0.0), weights(2)
     np.testing.assert_allclose(julier.mean, julier.covariance, atol=1e-15)
     assert abs(scaled.covariance[0] - scaled.mean[0] - (1 - 1e-6 + 2)) < 1e-6
-
-    def position(polar):
-        r, bearing = polar[..., 0], polar[..., 1]
-        return np.stack([r * np.cos(bearing), r * np.sin(bearing)], axis=-1)
-
-    mean, P = np.array([1.0, math.pi / 2]), np.diag([0.02, math.radians(15)]) ** 2
-    both = unscented_transform(mean, P, position, scaled)
-    alike = unscented_transform(mean, P, position, scaled._replace(covariance=scaled.mean))
+    both = unscented_transform(*polar_reading(), cartesian, scaled)
+    alike = unscented_transform(*polar_reading(), cartesian, scaled._replace(covariance=scaled.mean))
     assert both.covariance[1, 1] - alike.covariance[1, 1] > 2e-3
+
+
+def test_erratum_pioneer_eqs_1_and_2_are_called_linear():
+    """Document 001: a general F of state, input and noise is linear where it is eq. 3, and else not."""
+    text = text_of("001")
+    assert "governed by the linear equation given by (1) and (2)" in text
+    assert "Figure 1 Discrete-time nonlinear dynamic system" in text
+    assert equation("001", 1) == "x_{k+1}=F(x_k,u_k,w_k)"
+    a, b = np.array([0.0, 0.0, 0.0]), np.array([1.0, 0.5, 1.0])
+    motion, u = MoveTurn(0.0, 0.0), np.array([1.0, 0.3])
+    middle = motion.f((a + b) / 2, u) - (motion.f(a, u) + motion.f(b, u)) / 2
+    assert np.abs(middle).max() > 0.1  # the document's own robot drives by sines, too: eqs 31, 32
+
+
+def test_erratum_pioneer_exchanges_R_and_Q_in_two_paragraphs():
+    """Document 001, after eqs 4 and 8: eq. 3 adds w to the state and eq. 8 adds Q; eq. 4 adds v, eq. 9 R."""
+    text = text_of("001")
+    assert "w and v represent the process and measurement noise" in text
+    assert "they have the covariance R and Q" in text
+    assert "Q represents the covariance of the process noise v" in text
+    assert "R is denoted the covariance of the measurement noise w" in text
+    assert equation("001", 3).endswith("w_{k-1}")
+    assert equation("001", 4).endswith("v_k")
+    assert equation("001", 8).endswith("+Q")
+    assert "+R)^{-1}" in equation("001", 9)
+
+
+def test_erratum_pioneer_sigma_points_do_not_capture_every_covariance():
+    """Document 001, section II C, against its own section II D."""
+    assert "capture the true mean and covariance of any nonlinear system" in text_of("001")
+    told = unscented_transform(*polar_reading(), cartesian, weights(2))
+    mean, covariance = cartesian_moments(polar_reading()[0], 0.02, math.radians(15))
+    assert abs(told.mean - mean).max() < 1e-5
+    assert round(told.covariance[1, 1], 6) == 0.002670
+    assert round(covariance[1, 1], 6) == 0.002568
+
+
+def test_erratum_pioneer_figure_2_has_neither_its_mean_nor_its_circle():
+    """Document 001, section II D, against 200 000 readings."""
+    text = text_of("001")
+    assert "not coinciding with the real one at (0,1)" in text
+    assert "the covariance of the points is a circular one" in text
+    random, (mean, P) = np.random.default_rng(1), polar_reading()
+    many = cartesian(mean + random.normal(size=(200_000, 2)) * np.sqrt(np.diagonal(P)))
+    np.testing.assert_allclose(many.mean(axis=0), [0, 0.966], atol=2e-3)
+    across, along = np.var(many, axis=0)
+    assert 24 < across / along < 26
+
+
+def test_erratum_pioneer_figure_5_means_a_low_ratio():
+    """Document 001, section IV B: much noise is hard: by the bound, ten times the noise, four times the σ of τ."""
+    assert "even in the case of the high signal to noise ratio" in text_of("001")
+    pair = Pair()
+    loud, quiet = (flight_bound(pair.typical, sigma_of(snr), pair) for snr in (30.0, 10.0))
+    assert quiet > 4 * loud
+
+
+def test_erratum_pylon_tells_variances_in_metres():
+    """Document 004, figure 5: "variances … on the order of 10^{-5}m"."""
+    text = text_of("004")
+    assert text.count("on the order of $10^{-5}m$") == 2
+    assert "Because the position variances are very small" in text
 
 
 def test_erratum_mower_table_1_has_a_variance_that_is_not_its_deviation_squared():

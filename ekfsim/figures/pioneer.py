@@ -72,7 +72,7 @@ def draw_pioneer(scene: Scene, album: Album) -> None:
         return
     starts = [set_down(scene, *start) for start in STARTS]
     crowds = [{name: crowd_of(replace(start, filter=name), RUNS) for name in NAMES} for start in starts]
-    draw_square(scene, album, told_of_arctan(starts[0], crowds[0]["ekf"]))
+    draw_square(scene, album, told_of_arctan(scene))
     _draw_filters(scene, album, crowds[0])
     _tabulate(scene, album, crowds)
 

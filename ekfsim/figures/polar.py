@@ -30,8 +30,8 @@ transform (κ = 1) lie on the banana, and their mean and ellipse hide the true o
 Compared with the print: the same banana and the same two means. The document takes (0, 1) for the real mean and says
 that the unscented mean coincides with it and its covariance is circular. The beacon stands at (0, 1); the mean of its
 readings does not, and that is what the unscented mean coincides with. Its ellipse is {round:.0f} times wider than
-high; circular it looks only with axes of different scales. The sigma points are those of eq. 14, the second half with
-the minus.
+high; circular it looks only with axes of different scales. And sigma points do not "capture the true mean and
+covariance of any nonlinear system": here the variance of y is {slack:.0f} % off. They are those of eq. 14.
 """
 TABLE = """
 Moments of (x, y) in m and m². κ = 1 (n + κ = 3, Julier's choice for a Gaussian) is nearest to the exact ones in every

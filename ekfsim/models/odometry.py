@@ -18,7 +18,6 @@ class ArctanOdometry(Motion):
     wheel_ratio: float  # σ of a wheel's way per m of it
     wheel_floor: float = 0.0  # m, σ of a wheel at rest
     process: Array | float = 0.0  # (3, 3)
-    arctan: bool = True  # False: the turn is the ratio itself, without the arctangent of eq. 33
 
     @property
     def inputs(self) -> tuple[Quantity, ...]:
@@ -43,7 +42,7 @@ class ArctanOdometry(Motion):
         """∂f/∂u : (…, 3, 2)          eqs 31 to 33; ∂ω/∂Δd_R = −∂ω/∂Δd_L = W/(W² + (Δd_R − Δd_L)²)"""
         d, ω = self._way(u), x[..., 2] + self._turn(u)
         c, s = np.cos(ω), np.sin(ω)
-        per_metre = 1 / (self.width * (1 + self._ratio(u) ** 2 * self.arctan))
+        per_metre = 1 / (self.width * (1 + self._ratio(u) ** 2))
         J = np.empty((*ω.shape, 3, 2))
         for wheel, sign in enumerate((-1, 1)):
             J[..., 0, wheel] = c / 2 - d * s * (sign * per_metre)
@@ -72,7 +71,7 @@ class ArctanOdometry(Motion):
 
     def _turn(self, u: Array) -> Array:
         """What the heading gains.          eq. 33"""
-        return np.arctan(self._ratio(u)) if self.arctan else self._ratio(u)
+        return np.arctan(self._ratio(u))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

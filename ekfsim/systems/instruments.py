@@ -55,6 +55,7 @@ class Instrument(Protocol):
     """What a simulation and a recorded log need to know of an instrument."""
 
     name: ClassVar[str]  # the kind, as world files call it
+    readings: ClassVar[tuple[DocumentReading, ...]]  # in which other equations than the corrected ones are followed
 
     @property
     def rate(self) -> float:
@@ -70,6 +71,7 @@ class Instrument(Protocol):
 class _Looking:
     """An instrument that sees what is near enough and in one of its fields of view."""
 
+    readings: ClassVar[tuple[DocumentReading, ...]] = ()
     farthest: float  # m
     views: tuple[tuple[float, float], ...]  # rad from straight ahead, counter-clockwise: from, to
 
@@ -92,6 +94,7 @@ class Markers(_Looking):
     """Document 000: cameras in front and behind that tell azimuth and elevation of surveyed markers."""
 
     name: ClassVar[str] = "markers"
+    readings: ClassVar[tuple[DocumentReading, ...]] = ("printed",)
     rate: float = 0.5
     height: float = 0.226  # m, μ: of the camera above the markers
     azimuth_sigma: float = 0.048  # rad, eq. 30
@@ -175,6 +178,7 @@ class Gnss(_Looking):
     """Document 003: satellite fixes of the position."""
 
     name: ClassVar[str] = "gnss"
+    readings: ClassVar[tuple[DocumentReading, ...]] = ("coded",)
     rate: float = 10.0
     sigma: float = 0.15  # m, on each axis
 
@@ -189,6 +193,7 @@ class Pylon(_Looking):
     """Document 004: a lidar that tells the offset of one pylon, turned into the global frame by the yaw."""
 
     name: ClassVar[str] = "pylon"
+    readings: ClassVar[tuple[DocumentReading, ...]] = ("printed", "coded")
     rate: float = 10.0
     sigma: float = 0.0075  # m, Q_t of eq. 10
     farthest: float = 100.0

@@ -6,7 +6,7 @@ would say of a true motion were they free of noise.
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple, Protocol
+from typing import ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -36,6 +36,8 @@ class Tick(NamedTuple):
 
 class Robot(Protocol):
     """What a filter and a simulation need to know of a robot."""
+
+    readings: ClassVar[tuple[DocumentReading, ...]]  # in which other equations than the corrected ones are followed
 
     @property
     def rate(self) -> float:
@@ -70,6 +72,7 @@ def _stacked(tick: Tick, numbers: list[Array]) -> Array:
 class Mower:
     """Document 000: two wheels and a fibre-optic gyro at 100 Hz; u = (ΔD_L, ΔD_R, ω, dt)."""
 
+    readings: ClassVar[tuple[DocumentReading, ...]] = ("coded",)
     rate: float = 100.0
     width: float = 1.41  # m, b of eq. 20, as the listing has it
     wheel_sigma: float = 0.01  # m, of each wheel's way; the listing's varIn = 1e-4
@@ -99,6 +102,7 @@ class Mower:
 class Pioneer:
     """Document 001: a P3 robot; u = (ΔD_L, ΔD_R) as its wheels count them, or skid-steered (u_L, u_R, dt)."""
 
+    readings: ClassVar[tuple[DocumentReading, ...]] = ()
     rate: float = 10.0
     width: float = 0.38  # m, W of eq. 33; the document measures it and does not print it
     wheel_ratio: float = 0.05  # σ of a wheel's way, per m
@@ -109,13 +113,13 @@ class Pioneer:
     layout: Layout = field(default=POSE, init=False)
 
     def motion(self, reading: DocumentReading) -> Motion:
-        """Eqs 31 to 33; `printed` takes the wheels' difference over W for the turn itself, without the arctangent."""
+        """Eqs 31 to 33, or another model of the same wheels; alike in every reading, for they are right as printed."""
         match self.odometry:
             case "skidSteer":
                 return SkidSteer(self.skid, self.skid_sigma)
             case "midpoint":
                 return TwoWheels(self.width, self.wheel_floor)
-        return ArctanOdometry(self.width, self.wheel_ratio, self.wheel_floor, arctan=reading != "printed")
+        return ArctanOdometry(self.width, self.wheel_ratio, self.wheel_floor)
 
     def first_covariance(self, reading: DocumentReading) -> Array:
         """The robot is set down on its mark to 2 cm and 2°."""
@@ -135,6 +139,7 @@ class Pioneer:
 class GnssMower:
     """Document 003: a lawn mower that measures the speed of its wheels at 200 Hz; u = (v_L, v_R, dt)."""
 
+    readings: ClassVar[tuple[DocumentReading, ...]] = ("coded",)
     rate: float = 200.0
     half_track: float = 0.27  # m, R of the document
     speed_density: float = 0.10  # m/s per √Hz
@@ -161,6 +166,7 @@ class GnssMower:
 class PylonCart:
     """Document 004: a cart with an inertial unit; u = (a_x, a_y, yaw, dt)."""
 
+    readings: ClassVar[tuple[DocumentReading, ...]] = ("printed", "coded")
     rate: float = 10.0
     forward_sigma: float = math.sqrt(1.8373)  # m/s², R_t of eq. 10
     lateral_sigma: float = math.sqrt(1.1991)  # m/s²
@@ -193,6 +199,7 @@ class PylonCart:
 class IRobotCreate:
     """The robots of the MRCLAM data: commanded speed and turn rate; u = (v, ω, dt)."""
 
+    readings: ClassVar[tuple[DocumentReading, ...]] = ()
     rate: float = 100.0
     distance_density: float = 0.02  # m per √s
     heading_density: float = 0.10  # rad per √s
@@ -215,6 +222,7 @@ class IRobotCreate:
 class RangingMower:
     """The mower of the Plaza data: way and turn since the last row; u = (distance, turn, dt)."""
 
+    readings: ClassVar[tuple[DocumentReading, ...]] = ()
     rate: float = 10.0
     distance_density: float = 0.05  # m per √s
     heading_density: float = 0.01  # rad per √s

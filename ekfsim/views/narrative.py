@@ -74,8 +74,15 @@ def _opening(scene: Scene) -> str:
     if FILTERS[scene.filter] is PF:
         told += f"The filter {scene.filter}: {PF.count} particles\n"
     if scene.reading != "corrected":
-        told += f"The equations are those of the document as {scene.reading}, not the corrected ones\n"
+        told += f"{_followed(scene)}\n"
     return told
+
+
+def _followed(scene: Scene) -> str:
+    """What a reading of the document changes in a run of this robot and its instruments."""
+    if scene.world.follows(scene.reading):
+        return f"The equations are those of the document as {scene.reading}, not the corrected ones"
+    return f"Of the equations that this run uses none is {scene.reading} otherwise: they are the corrected ones"
 
 
 def _start(view: View, scene: Scene, probability: float) -> str:

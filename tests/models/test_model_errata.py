@@ -4,15 +4,17 @@ import math
 
 import numpy as np
 import pytest
+from documents import equation
 from numerics import jacobian
 
 from ekfsim.models.echo import envelope, printed_envelope
 from ekfsim.models.landmarks import MarkerAngles
 from ekfsim.models.layout import INERTIAL
-from ekfsim.models.odometry import ArctanOdometry
 from ekfsim.models.offset import LandmarkOffset, to_global, to_global_as_printed
 from ekfsim.models.planar_imu import PlanarImu
 from ekfsim.models.wheel_speeds import WheelSpeeds, WheelSpeedsAsWritten
+from ekfsim.systems.document import READINGS
+from ekfsim.systems.robots import Pioneer
 
 SEEDS = pytest.mark.parametrize("seed", range(5))
 
@@ -95,6 +97,13 @@ def test_erratum_pylon_eq_8_turns_by_the_yaw_itself(seed):
     assert math.dist(to_global_as_printed(lidar, x[5]), offset) > 0.1
 
 
+def test_erratum_pylon_eq_7_has_eight_rows():
+    """Document 004, eq. 7: a row for each of the eight entries of eq. 5's left side; the state has seven."""
+    matrix = equation("004", 7).partition(r"\begin{bmatrix}")[2].partition(r"\end{bmatrix}")[0]
+    assert len(matrix.split(r"\\")) == 8
+    assert PlanarImu().G(np.zeros(7), np.full(4, 0.1)).shape == (7, 4)
+
+
 def test_erratum_pylon_eq_10_leaves_out_the_yaw():
     """Document 004, eq. 10: Q_t holds the lidar's noise alone; the yaw's, times the lever arm, is the larger part."""
     x = np.zeros(7)
@@ -126,21 +135,19 @@ def test_erratum_gnss_recipe_turns_straight_on_and_moves_by_the_step():
 
 
 @SEEDS
-def test_erratum_pioneer_eq_33_is_the_arctangent_not_the_ratio(seed):
-    """Document 001, eq. 33: the heading gains tan⁻¹((Δd_R − Δd_L)/W); the ratio itself is another model."""
+def test_no_erratum_the_pioneer_turns_by_the_arctangent_of_eq_33_in_every_reading(seed):
+    """Document 001, eq. 33: tan⁻¹((Δd_R − Δd_L)/W), as printed."""
+    assert equation("001", 33).endswith(r"\tan^{-1}\left(\frac{\Deltad_{R,k}-\Deltad_{L,k}}{W}\right)")
     random = np.random.default_rng(seed)
     x, u = random.uniform(-1, 1, 3), random.uniform(0.1, 0.4, 2)
-    arctan, ratio = ArctanOdometry(0.38, 0.05), ArctanOdometry(0.38, 0.05, arctan=False)
-    quotient = (u[1] - u[0]) / 0.38
-    assert arctan.f(x, u)[2] - x[2] == pytest.approx(math.atan(quotient))
-    assert ratio.f(x, u)[2] - x[2] == pytest.approx(quotient)
-    by_difference = jacobian(lambda u: arctan.f(x, u), u)[2]
-    close(arctan.G(x, u)[2], by_difference)
-    close(ratio.G(x, u)[2], by_difference * (1 + quotient**2))
+    for reading in READINGS:
+        after = Pioneer(width=0.38).motion(reading).f(x, u)
+        assert after[2] - x[2] == pytest.approx(math.atan((u[1] - u[0]) / 0.38))
 
 
 def test_erratum_pioneer_eq_38_grows():
     """Document 001, eq. 38: printed with e^{+(t−τ)/T}, which never falls; an echo fades."""
+    assert equation("001", 38).endswith(r"e^{\left(\frac{kt_s-\tau}{T}\right)}")
     t = np.linspace(0, 20, 401)
     right, printed = envelope(t, 1.0, 2.0, 0.5, 2.0), printed_envelope(t, 1.0, 2.0, 0.5, 2.0)
     after = t > 2

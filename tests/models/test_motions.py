@@ -21,7 +21,6 @@ MOTIONS = {
     "two wheels": (TwoWheels(1.41, 0.01, Q), POSE),
     "wheels and gyro": (GyroWheels(1.41, 0.01, Q, 0.002), POSE),
     "arctan": (ArctanOdometry(0.38, 0.05, 0.002, Q), POSE),
-    "ratio": (ArctanOdometry(0.38, 0.05, arctan=False), POSE),
     "skid steer": (SkidSteer(((0.5, 0.45), (0.02, -0.03), (2.5, -2.4)), 0.02, Q), POSE),
     "wheel speeds": (WheelSpeeds(0.27, 0.1, 0.3), SPEED_POSE),
     "the recipe": (WheelSpeedsAsWritten(), SPEED_POSE),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from ekfsim.files.load import load_scene
 from ekfsim.geometry.angles import wrap
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.document import READINGS
@@ -54,6 +55,22 @@ def test_ideal_inputs_lead_along_the_true_way(robot):
         assert np.all(np.hypot(*(pose - poses)[1:, :2].T) <= aside + 1e-9)
     else:
         assert_allclose(pose[:, :2], poses[:, :2], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("reading", READINGS)
+@pytest.mark.parametrize("name", ["mower", "pioneer", "gnss", "pylon", "landmarks", "ranges"])
+def test_a_world_knows_in_which_readings_it_follows_other_equations(name, reading):
+    """What motion and sensors say of a pose; the mower's code differs in its filter (see localization)."""
+    world, random = load_scene(name).world, np.random.default_rng(1)
+    x = random.uniform(-2, 2, len(world.layout.names))
+    said = []
+    for followed in (reading, "corrected"):
+        motion = world.robot.motion(followed)
+        u = 0.3 * np.ones(len(motion.inputs))
+        sensors = [target.sensor for _, target in world.targets(followed, world.map)]
+        said.append([*motion.linearize(x, u), *(part for sensor in sensors for part in sensor.linearize(x))])
+    differ = not all(np.array_equal(a, b, equal_nan=True) for a, b in zip(*said, strict=True))
+    assert world.follows(reading) == (differ or (name, reading) == ("mower", "coded"))
 
 
 @EVERY

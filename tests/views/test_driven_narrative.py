@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from recordings import BEAM, FIRST, MARKER, entry, recording, speeds, wheels
 
+from ekfsim.files.load import load_scene
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Correction, Refused
 from ekfsim.filters.pf import PF
@@ -48,6 +49,9 @@ def test_the_start_says_what_should_be_known_of_the_filter():
 
 def test_the_start_says_which_reading_of_the_document_is_followed():
     assert "those of the document as printed, not the corrected ones\n" in told(recording(reading="printed"))[0]
+    pioneer = replace(load_scene("pioneer"), reading="printed")
+    first = narrate(next(views(play(pioneer))), pioneer)
+    assert "Of the equations that this run uses none is printed otherwise: they are the corrected ones\n" in first
     assert "document" not in told(recording())[0]
 
 
