@@ -36,9 +36,12 @@ class Loaded(Generic[T]):
     value: T | None = None
     mistakes: list[Mistake] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    refusal: UsageError | None = None  # of the log that was named, which is no file's mistake
 
     def get(self) -> T:
-        """The value. Raises InputError with all mistakes where there are any."""
+        """The value. Raises InputError with all mistakes where there are any, or what a log was refused with."""
+        if self.refusal is not None:
+            raise self.refusal
         if self.value is None or self.mistakes:
             raise InputError(self.mistakes)
         return self.value
@@ -99,7 +102,7 @@ def read_scene(
     """
     if settings:
         loaded = read_scene(path, world, log, reading)
-        if loaded.mistakes:
+        if loaded.mistakes or loaded.refusal:
             return loaded
     file = read(Path(path), str(path), "commands", settings)
     loaded = scene_in(file, Path(path), world, settings)
@@ -132,20 +135,20 @@ def recorded(loaded: Loaded[Scene], file: "File", recording: RecordingKeys, path
 
     source = os.path.normpath(log if log is not None else path.parent / (recording.path or ""))
     try:
-        found = read_log(recording.format, Path(source), scene.world, scene.reading)
+        found = read_log(recording.format, Path(source), scene.world, scene.reading, loaded.warnings)
     except InputError as error:
         loaded.mistakes += error.mistakes
         return
     except UsageError as error:
         if log is not None:
-            raise
+            loaded.refusal = error
+            return
         wrong, _, right = str(error).partition("; ")
         right = right or "write its path relative to this file, or give one with --log"
         loaded.mistakes.append(sound.mistake(("recording", "path"), wrong, right))
         return
     world = scene.world if found.landmarks is None else replace(scene.world, landmarks=found.landmarks)
     loaded.value = replace(scene, world=world, log=found.log, log_source=source_name(source))
-    loaded.warnings += found.warnings
 
 
 def scene_in(

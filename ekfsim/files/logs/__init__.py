@@ -17,7 +17,7 @@ from ekfsim.world import World
 
 __all__ = ["FORMATS", "SYSTEM_OF", "WRITERS", "Recorded", "read_log", "write_log"]
 
-Reader = Callable[[Path, World, DocumentReading], Recorded]
+Reader = Callable[[Path, World, DocumentReading, list[str]], Recorded]
 FORMATS: dict[str, Reader] = {
     "pylon": read_pylon,
     "gnss": read_gnss,
@@ -29,13 +29,16 @@ FORMATS: dict[str, Reader] = {
 SYSTEM_OF = {**{name: name for name in FORMATS}, "mrclam": "landmarks"}  # whose logs they are
 
 
-def read_log(format: str, path: Path, world: World, reading: DocumentReading) -> Recorded:
+def read_log(
+    format: str, path: Path, world: World, reading: DocumentReading, warnings: list[str] | None = None
+) -> Recorded:
     """The log that a file or a folder holds, for the robot and the instruments of a world.
 
+    `warnings` gets what is odd in the log as it is found, and so holds it where the reading ends in a mistake, too.
     Raises UsageError where a file is missing or the world is another system's, InputError with what is wrong in a file.
     """
     system = SYSTEM_OF[format]
     if world.system != system:
         wrong = f"a log of the format {format} belongs to a world with system: {system}"
         raise UsageError(f"{path}: {wrong}; {world.name!r} has system: {world.system}")
-    return FORMATS[format](path, world, reading)
+    return FORMATS[format](path, world, reading, [] if warnings is None else warnings)

@@ -21,12 +21,12 @@ HEADING = ("heading", "phi", "theta")
 HOLDS = "wheelspeeds*.csv, gnss*.csv and, where it is known, groundtruth*.csv"
 
 
-def read_gnss(path: Path, world: World, reading: DocumentReading) -> Recorded:
+def read_gnss(path: Path, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
     """Each row of wheel speeds tells the speeds since the row before it; the first is the start.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    warnings, folder = list[str](), folder_of(path, HOLDS)
+    folder = folder_of(path, HOLDS)
     wheels_file = find(folder, "the wheel speeds", "wheelspeeds*.csv")
     fixes_file = find(folder, "the satellite fixes", "gnss*.csv")
     truth = read_truth(folder, warnings)

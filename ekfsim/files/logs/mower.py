@@ -26,12 +26,12 @@ ANGLES = Wanted(("t", "marker", "azimuth", "elevation"), (0, 1, 2, 3), range(4, 
 MAP = Wanted(("marker", "x", "y"), (0, 1, 2), range(3, 1000))
 
 
-def read_mower(path: Path, world: World, reading: DocumentReading) -> Recorded:
+def read_mower(path: Path, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
     """Every row of the poselog, the first too, is one time update of dT; then the markers of its window are taken.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    warnings, folder = list[str](), folder_of(path, HOLDS)
+    folder = folder_of(path, HOLDS)
     files = (
         find(folder, "the positions", "marker-001-poselog.txt", "*poselog.txt"),
         find(folder, "the angles of the markers", "marker-001-003-angles.txt", "*angles.txt"),

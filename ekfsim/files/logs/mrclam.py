@@ -6,7 +6,7 @@ import numpy as np
 
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.logs.folder import find, find_any, folder_of
-from ekfsim.files.logs.ordering import in_order, tell_gaps
+from ekfsim.files.logs.ordering import in_order, tell_gaps, tell_repeated
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.table import Rows, Wanted, bare_table, some
 from ekfsim.files.logs.targets import landmarks_of, of_landmarks
@@ -27,12 +27,12 @@ BARCODES = Wanted(("subject", "barcode"), (0, 1), range(2, 3))
 LANDMARKS = Wanted(("subject", "x", "y"), (0, 1, 2), range(3, 6))
 
 
-def read_mrclam(path: Path, world: World, reading: DocumentReading) -> Recorded:
+def read_mrclam(path: Path, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
     """A row of the odometry holds until the next. Errors are counted at its instants.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    warnings, folder = list[str](), folder_of(path, HOLDS)
+    folder = folder_of(path, HOLDS)
     odometry_file = find(folder, "the odometry", "Robot*_Odometry.dat")
     robot = odometry_file.name.removesuffix("_Odometry.dat")
     seen_file = find(folder, "the measurements", f"{robot}_Measurement.dat")
@@ -40,13 +40,14 @@ def read_mrclam(path: Path, world: World, reading: DocumentReading) -> Recorded:
     places = bare_table(find(folder, "the landmarks", "Landmark_Groundtruth.dat"), LANDMARKS, warnings)
     landmarks = landmarks_of(places)
     odometry = some(in_order(bare_table(odometry_file, ODOMETRY, warnings), warnings), "odometry")
+    tell_repeated(odometry, warnings, ": the last row of one time holds")
     tell_gaps(odometry, warnings)
     seen = in_order(bare_table(seen_file, MEASUREMENT, warnings), warnings)
     truth = _truth(folder, robot, warnings)
     samples = _samples(seen, _subjects(barcodes), landmarks, world, reading, warnings)
     assert world.robot is not None
     u = np.column_stack([odometry.values[:-1, 1:], np.diff(odometry.t)])
-    held = u[:, 2] > 0  # of two rows of one time the second holds
+    held = u[:, 2] > 0  # of several rows of one time the last
     motions = Motions(
         world.robot.motion(reading),
         odometry.t[:-1][held],

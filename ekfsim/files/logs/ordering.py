@@ -37,13 +37,13 @@ def _once(rows: Rows, warnings: list[str]) -> Rows:
     return rows[first]
 
 
-def tell_repeated(rows: Rows, warnings: list[str]) -> None:
-    """Warn of rows that share a time where each should have its own."""
+def tell_repeated(rows: Rows, warnings: list[str], made: str = "") -> None:
+    """Warn of rows that share a time where each should have its own, and of what is made of them."""
     repeated = np.flatnonzero(np.diff(rows.t) == 0) + 1
     if len(repeated):
         more = f", and so do {len(repeated) - 1} more" if len(repeated) > 1 else ""
         row = int(repeated[0])
-        warnings.append(f"{rows.at(row)}: the time {rows.t[row]:.12g} is that of the row above, too{more}")
+        warnings.append(f"{rows.at(row)}: the time {rows.t[row]:.12g} is that of the row above, too{more}{made}")
 
 
 def tell_gaps(rows: Rows, warnings: list[str]) -> None:

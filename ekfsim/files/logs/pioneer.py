@@ -23,12 +23,12 @@ HOLDS = "odometry.csv, ultrasonic.csv or infrared.csv or both and, where it is k
 FILES = {Ultrasonic.name: ("beam", "range"), Infrared.name: ("pair", "intensity")}  # each file's columns, beside t
 
 
-def read_pioneer(path: Path, world: World, reading: DocumentReading) -> Recorded:
+def read_pioneer(path: Path, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
     """Each row of the odometry tells the ways since the row before it; the first is the start.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    warnings, folder = list[str](), folder_of(path, HOLDS)
+    folder = folder_of(path, HOLDS)
     odometry_file = find(folder, "the odometry", "odometry*.csv")
     columns = TIME, ("left",), ("right",)
     odometry = some(in_order(named_table(odometry_file, columns, warnings), warnings), "odometry")

@@ -30,12 +30,11 @@ CLOCK = 1 << 32  # µs after which the stamps' clock starts again
 EARTH_RADIUS = 6.3781e6  # m
 
 
-def read_pylon(path: Path, world: World, reading: DocumentReading) -> Recorded:
+def read_pylon(path: Path, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
     """Each row is one motion and, where the lidar saw the pylon, one reading. No truth is known.
 
     Raises UsageError where there is no such file, InputError with what is wrong in it.
     """
-    warnings = list[str]()
     lines = lines_of(table_file(path, "the CSV file of the lidar and the inertial unit", ".csv"))
     wanted = Wanted(COLUMNS, PLACES, range(12, 13), frozenset({"X", "Y", "Latitude", "Longitude"}))
     rows = some(numbers_of(lines, wanted, ",", warnings), "lidar and accelerations")

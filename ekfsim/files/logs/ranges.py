@@ -24,22 +24,22 @@ HOLDS = "odometry.csv, ranges.csv, nodes.csv and, where it is known, groundtruth
 FIRST_METRES = 2.0  # of travel, by which a stored heading is found to point ahead or back
 
 
-def read_ranges(path: Path, world: World, reading: DocumentReading) -> Recorded:
+def read_ranges(path: Path, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
     """Each row of the odometry is a stride that ends at its time. Errors are counted there.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    warnings, folder = list[str](), folder_of(path, HOLDS)
+    folder = folder_of(path, HOLDS)
     odometry_file = find(folder, "the odometry", "odometry*.csv")
     ranges_file = find(folder, "the ranges", "ranges*.csv")
     nodes = named_table(find(folder, "the nodes", "nodes*.csv"), (("node",), ("x",), ("y",)), warnings)
     truth = read_truth(folder, warnings)
-    if truth is not None:
-        truth = _ahead(truth, folder, warnings)
     columns = TIME, ("distance",), ("dheading",)
     odometry = some(in_order(named_table(odometry_file, columns, warnings), warnings), "odometry")
     tell_repeated(odometry, warnings)
     tell_gaps(odometry, warnings)
+    if truth is not None:
+        truth = _ahead(truth, odometry, folder, warnings)
     measured = named_table(ranges_file, (TIME, ("node",), ("range",)), warnings, frozenset({"range"}))
     ranges = in_order(measured, warnings)
     landmarks = landmarks_of(nodes)
@@ -64,19 +64,21 @@ def _start(odometry: Rows, truth: Truth | None) -> float:
     return start
 
 
-def _ahead(truth: Truth, folder: Path, warnings: list[str]) -> Truth:
-    """The truth with headings that point where the robot goes: logs of this kind differ.
+def _ahead(truth: Truth, odometry: Rows, folder: Path, warnings: list[str]) -> Truth:
+    """The truth with headings that point where the robot goes when its odometry counts up: logs of this kind differ.
 
-    The first metres decide, each piece of the way by its length: Σ d cos(direction of travel − heading) < 0 is back.
+    The first metres decide: Σ d_odometry (d_truth · heading) < 0 is back. Driven in reverse, both factors are negative.
     """
-    steps = np.diff(truth.poses[:, :2], axis=0)
-    lengths = np.hypot(steps[:, 0], steps[:, 1])
-    first = slice(0, int(np.searchsorted(np.cumsum(lengths), FIRST_METRES)) + 1)
-    middle = (truth.poses[1:, 2] + truth.poses[:-1, 2])[first] / 2
-    along = float(np.sum(steps[first, 0] * np.cos(middle) + steps[first, 1] * np.sin(middle)))
-    if along >= 0:
+    poses = truth.at(odometry.t)
+    d, steps = odometry.values[1:, 1], np.diff(poses[:, :2], axis=0)
+    θ = poses[:-1, 2] + wrap(np.diff(poses[:, 2])) / 2
+    along = d * (steps[:, 0] * np.cos(θ) + steps[:, 1] * np.sin(θ))
+    known = np.isfinite(along)
+    first = int(np.searchsorted(np.cumsum(np.abs(d[known])), FIRST_METRES)) + 1
+    if np.sum(along[known][:first]) >= 0:
         return truth
-    warnings.append(f"{folder}: the true headings point against the first metres of travel: half a turn is added")
+    told = "the true headings point against the first metres of travel as the odometry counts them"
+    warnings.append(f"{folder}: {told}: half a turn is added")
     poses = truth.poses.copy()
     poses[:, 2] = np.unwrap(wrap(poses[:, 2] + math.pi))
     return replace(truth, poses=poses)

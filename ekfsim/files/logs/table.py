@@ -23,6 +23,8 @@ from ekfsim.geometry import Array, Booleans, Integers
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?(nan|inf|infinity)", re.IGNORECASE | re.ASCII)
 MOST_TOLD = 20  # mistakes
 MOST_WARNED = 3  # rows of one kind
+EPOCH = 1e10  # s since 1970, until the year 2286; stamps count from then on in
+FINER = (("milliseconds", 1e3), ("microseconds", 1e6), ("nanoseconds", 1e9))
 ENORMOUS = {"t": 1e12, "time": 1e12, "x": 1e7, "y": 1e7}  # s and m: until the year 33658, and for any UTM northing
 
 
@@ -48,6 +50,7 @@ class Rows:
     file: str
     lines: Integers  # (n,)
     values: Array  # (n, k), a column for each that was wanted
+    left_out: int = 0  # rows whose numbers cannot be meant
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -203,19 +206,22 @@ def _sane(rows: Rows, wanted: Wanted, warnings: list[str]) -> Rows:
         column = int(np.argmax(odd[row]))
         value = float(rows.values[row, column])
         name = wanted.names[column]
-        why = _why(value, name in wanted.ranges)
+        why = _why(value, name, name in wanted.ranges)
         warnings.append(f"{rows.at(row)}: {name}: {value:g} is {why}: this row is left out")
     if len(bad) > MOST_WARNED:
         warnings.append(f"{rows.at(bad[MOST_WARNED])}: so {_are_rows(len(bad) - MOST_WARNED)} from here on")
-    return rows[~odd.any(axis=1)] if len(bad) else rows
+    return replace(rows[~odd.any(axis=1)], left_out=len(bad)) if len(bad) else rows
 
 
-def _why(value: float, is_range: bool) -> str:
+def _why(value: float, name: str, is_range: bool) -> str:
     """Why a number cannot be meant."""
     if not math.isfinite(value):
         return "no number"
     if 0 < abs(value) < sys.float_info.min:
         return "a denormal"
+    if name in ("t", "time"):
+        unit = next((f" (are these {unit}?)" for unit, second in FINER if abs(value) < EPOCH * second), "")
+        return f"no time in s{unit}"
     return "no range" if is_range and value <= 0 else "absurdly large"
 
 
@@ -226,5 +232,6 @@ def _are_rows(count: int) -> str:
 def some(rows: Rows, what: str) -> Rows:
     """The rows, of which there must be one. Raises InputError where there is none."""
     if not len(rows):
-        raise mistake(rows.file, 1, 1, "the file holds no rows", f"without {what} there is nothing to localize")
+        wrong = f"all {rows.left_out} rows are left out" if rows.left_out else "the file holds no rows"
+        raise mistake(rows.file, 1, 1, wrong, f"without {what} there is nothing to localize")
     return rows

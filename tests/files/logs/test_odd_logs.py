@@ -9,6 +9,10 @@ import pytest
 from log_worlds import MARKS, lay, read, table, world
 
 from ekfsim.errors import InputError, UsageError
+from ekfsim.files.load import read_scene
+from ekfsim.files.logs import read_log
+from ekfsim.files.packaged import resolve
+from ekfsim.files.settings import setting
 from ekfsim.records import Control, Reading
 
 WHEELS = [[k / 10, 1.0, 0.5] for k in range(11)]  # t, vr, vl
@@ -211,6 +215,39 @@ def test_many_such_rows_are_counted(log):
         *(f"log/gnss-1.csv:{line}: x: nan is no number: this row is left out" for line in (2, 3, 4)),
         "log/gnss-1.csv:5: so are 9 more rows from here on",
     ]
+
+
+@pytest.mark.parametrize(
+    ("second", "told"),
+    [
+        (1e3, "1.248e+12 is no time in s (are these milliseconds?)"),
+        (1e6, "1.248e+15 is no time in s (are these microseconds?)"),
+        (1e9, "1.248e+18 is no time in s (are these nanoseconds?)"),
+        (-1e15, "-1.248e+24 is no time in s"),
+    ],
+)
+def test_stamps_of_another_unit_are_told_though_nothing_is_left_to_localize(log, second, told):
+    log(wheels=table("time,vr,vl", [[(1.248e9 + t) * second, *more] for t, *more in WHEELS]), truth="absent")
+    warnings = []
+    with pytest.raises(InputError) as refused:
+        read_log("gnss", LOG, world("gnss"), "corrected", warnings)
+    assert warnings == [
+        "log: no groundtruth*.csv in it: the truth is unknown, and so are the errors",
+        *(f"log/wheelspeeds-1.csv:{line}: t: {told}: this row is left out" for line in (2, 3, 4)),
+        "log/wheelspeeds-1.csv:5: so are 8 more rows from here on",
+    ]
+    nothing = "without wheel speeds there is nothing to localize"
+    assert str(refused.value) == f"log/wheelspeeds-1.csv:1:1: all 11 rows are left out; {nothing}"
+
+
+def test_what_is_odd_in_a_log_is_told_before_why_it_is_refused(log):
+    fixes = [*FIXES, [math.nan, 0.0, 0.0]]
+    log(fixes=table("t,x,y", fixes), truth=table("t,x,y,phi", [[t + 100, *pose] for t, *pose in TRUTH]))
+    for settings in ((), (setting("start.x=1"),)):
+        found = read_scene(resolve("gnss_log", "commands"), None, LOG, settings=settings)
+        assert found.warnings == ["log/gnss-1.csv:6: t: nan is no number: this row is left out"]
+        with pytest.raises(UsageError, match="the truth and the motion have no instant in common"):
+            found.get()
 
 
 @pytest.mark.parametrize(

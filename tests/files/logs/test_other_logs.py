@@ -142,6 +142,14 @@ def test_what_the_worlds_instrument_sees_of_mrclam(tmp_path):
         read("mrclam", folder, world("mrclam", instruments=(Ultrasonic(),)))
 
 
+def test_rows_of_mrclam_that_share_a_time_are_told(tmp_path):
+    odometry = "100.1 9 9\n100.1 8 8\n100.1 1 0\n100.2 0.5 0.2\n100.3 7 7\n100.3 0 0\n"
+    found = read("mrclam", lay(tmp_path / "log", **{**MRCLAM, "Robot3_Odometry.dat": odometry}))
+    same = "the time 100.1 is that of the row above, too, and so do 2 more: the last row of one time holds"
+    assert told(found)[0] == f"/Robot3_Odometry.dat:2: {same}"
+    np.testing.assert_allclose([e.given.u[:2] for e in controls(found)][-1], [0.5, 0.2])
+
+
 @pytest.mark.parametrize(
     ("file", "text", "wrong"),
     [
@@ -210,9 +218,24 @@ def test_the_true_heading_points_where_the_robot_goes(tmp_path, backwards):
     found = read("ranges", plaza(tmp_path / "log", backwards))
     for entry in found.log.entries:
         assert entry.truth[2] == pytest.approx(entry.t, abs=1e-9)
-    assert told(found) == [": the true headings point against the first metres of travel: half a turn is added"] * bool(
-        backwards
-    )
+    against = "the true headings point against the first metres of travel as the odometry counts them"
+    assert told(found) == [f": {against}: half a turn is added"] * bool(backwards)
+
+
+@pytest.mark.parametrize("backwards", [0.0, math.pi])
+def test_a_robot_that_starts_in_reverse_heads_away_from_where_it_goes(tmp_path, backwards):
+    way, truth, x = [-0.5] * 8 + [0.5] * 12, [], 0.0
+    for k, d in enumerate([0.0, *way]):
+        x += d
+        truth.append([0.1 * k, x, 0.0, 0.0 + backwards])
+    folder = plaza(tmp_path / "log")
+    lay(folder, **{
+        "odometry.csv": table("t,distance,dheading", [[0.1 * k, d, 0.0] for k, d in enumerate(way, 1)]),
+        "groundtruth.csv": table("t,x,y,heading", truth),
+    })  # fmt: skip
+    found = read("ranges", folder)
+    assert {round(float(e.truth[2]), 9) for e in found.log.entries} == {0.0}
+    assert ("half a turn is added" in " ".join(found.warnings)) == bool(backwards)
 
 
 def test_ranges_are_sorted_and_unknown_nodes_told(tmp_path):
