@@ -10,7 +10,7 @@ import click
 from ekfsim import process
 from ekfsim.asked import engine_of, scene_of
 from ekfsim.errors import RunError, UsageError
-from ekfsim.options import FORCE, READING, Result, Source, Whole, compare_options, scene_options, study_options
+from ekfsim.options import FORCE, READING, Result, Seed, Source, Whole, compare_options, scene_options, study_options
 from ekfsim.process import Program, heed, say, shown, width
 from ekfsim.progress import blocks_bar, study_into
 from ekfsim.version import VERSION
@@ -205,7 +205,7 @@ def new(file: Path, kind: str | None, force: bool) -> None:
               show_default=True, help="May be given several times.")  # fmt: skip
 @click.option("--log", type=Source(), metavar="PATH", help="A recorded log in place of the simulated twin.")
 @READING
-@click.option("--seed", type=Whole(min=0), help="In place of the scene's seed.")
+@click.option("--seed", type=Seed(), help="In place of the scene's seed.")
 @FORCE
 def figures(
     name: str, out: Path, formats: tuple[str, ...], log: str | None, reading: str, seed: int | None, force: bool

@@ -7,7 +7,9 @@ from typing import Any
 
 import click
 
-MOST = 2**63 - 1  # of seeds and of runs' numbers
+from ekfsim.seeds import MOST_SEED, REPEATS
+
+MOST = 2**63 - 1  # of runs' numbers
 MOST_RUNS = 10**9  # of a study
 READINGS = ("printed", "coded", "corrected")  # of a document; told here again, so that --help need not load them
 READING = click.option("--reading", type=click.Choice(READINGS), default="corrected", show_default=True,
@@ -22,6 +24,20 @@ class Whole(click.IntRange):
     """A whole number of a range, called by a word that a person knows where what was written is none."""
 
     name = "integer"
+
+
+class Seed(Whole):
+    """A seed. One that is too large is told why it is."""
+
+    def __init__(self) -> None:
+        super().__init__(0, MOST_SEED)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """A whole number. Fails beyond the largest, with the reason, and for what is no seed at all."""
+        seed = click.INT.convert(value, param, ctx)
+        if seed > MOST_SEED:
+            self.fail(f"{seed} is too large: {REPEATS}; choose one from 0 to {MOST_SEED}.", param, ctx)
+        return super().convert(value, param, ctx)
 
 
 class Source(click.Path):
@@ -77,7 +93,7 @@ GUARD = click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help
 
 
 WORLD = click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names.")
-SEED = click.option("--seed", type=Whole(0, MOST), help="In place of the file's seed.")
+SEED = click.option("--seed", type=Seed(), help="In place of the file's seed.")
 SETTINGS = (  # what overrules the files in every run of a study
     SET,
     GATE,
@@ -98,7 +114,7 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return _with(command, [
         click.argument("commands"),
         WORLD,
-        click.option("--seed", type=Whole(min=0), help="In place of the file's seed."),
+        click.option("--seed", type=Seed(), help="In place of the file's seed."),
         click.option("--run", "run_number", type=Whole(0, MOST), default=0, help="Which run of the seed."),
         click.option("--log", type=Source(), metavar="PATH",
                      help="A recorded log in place of the one that COMMANDS names."),

@@ -57,13 +57,30 @@ class Errors:
         return {"rmse": rmse, "mean": mean, "sd": math.sqrt(max(rmse**2 - mean**2, 0.0)), "max": self.largest}
 
 
+class Instants:
+    """The instants of a run at which errors are counted: asked of one entry after another.
+
+    Without a clock, in the classroom, every entry that gives the filter something is an instant of its own.
+    """
+
+    def __init__(self) -> None:
+        self._judged: float | None = None  # s, the last of them
+
+    def hold(self, entry: Entry) -> bool:
+        """Whether an entry is one of them, or more of one."""
+        if entry.t is None:
+            return entry.given is not None and entry.judged
+        if entry.judged:
+            self._judged = entry.t
+        return entry.t == self._judged
+
+
 @dataclass
 class Summary:
     """What is left of a run when it is over, gathered one step at a time.
 
-    Errors are taken at every instant, after its last reading: position as a distance in m, heading in rad with its
-    sign. Without a clock, in the classroom, every step that gave the filter something is an instant of its own. Dead
-    reckoning starts at the first estimate and follows the motion inputs alone.
+    Errors are taken at every instant (`Instants`), after its last reading: position as a distance in m, heading in rad
+    with its sign. Dead reckoning starts at the first estimate and follows the motion inputs alone.
     """
 
     layout: Layout = POSE
@@ -81,7 +98,7 @@ class Summary:
     first_t: float | None = None  # s, of the start
     last_t: float | None = None
     _reckoned: Array | None = None  # (n,), the whole state
-    _judged: float | None = None  # s, the last instant at which errors are counted
+    _instants: Instants = field(default_factory=Instants)
 
     @classmethod
     def of(cls, scene: Scene) -> Self:
@@ -112,16 +129,8 @@ class Summary:
             self._reckoned = entry.given.motion.f(self._reckoned, entry.given.u)
         if step.correction is not None:
             self._count(Refused(int(step.correction.refused)))
-        if self._counts(entry):
+        if self._instants.hold(entry):
             self._measure(entry, self.layout.pose(step.posterior.mean), self.layout.pose(self._reckoned))
-
-    def _counts(self, entry: Entry) -> bool:
-        """Whether this is an instant of the filter, or more of one, at which errors are counted."""
-        if entry.t is None:
-            return entry.given is not None and entry.judged
-        if entry.judged:
-            self._judged = entry.t
-        return entry.t == self._judged
 
     def _measure(self, entry: Entry, estimated: Array, reckoned: Array) -> None:
         if entry.truth is not None:

@@ -7,12 +7,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from recomputation import disagreements, true_course
 from scenes import DESK, NOISE, SILENT, rich, scene, told, unbounded
+from systems_scenes import mower
 
+from ekfsim.errors import UsageError
 from ekfsim.geometry.walls import Walls
+from ekfsim.localization import play
 from ekfsim.models.laser import Laser
 from ekfsim.models.move_turn import MoveTurn
 from ekfsim.records import Control, Kidnap, Move, Reading, Repeat, Say, Sense
 from ekfsim.simulation import simulate
+from ekfsim.simulation.draws import Draws, particle_generators
 from ekfsim.world import Faults, Noise
 
 TURN = math.radians(90)
@@ -56,7 +60,7 @@ commands = st.one_of(
 )
 
 
-@given(st.lists(commands, max_size=12), st.integers(0, 2**40), st.integers(0, 3000))
+@given(st.lists(commands, max_size=12), st.integers(0, 2**32 - 1), st.integers(0, 3000))
 def test_any_course(course, seed, run):
     faults = Faults(-0.4, 0.9, 0.3, 1.1, 0.8)
     check(scene(*course, seed=seed, run=run, obstacles=(DESK,), sigma=(0.2, 0.1, 2.0), faults=faults))
@@ -348,3 +352,42 @@ def test_headings_of_the_truth_stay_in_range(n):
     for entry in simulate(turns, np.arange(n)):
         assert (entry.truth[:, 2] > -math.pi).all()
         assert (entry.truth[:, 2] <= math.pi).all()
+
+
+@pytest.mark.parametrize(
+    ("seed", "told"),
+    [
+        (-1, "seed -1 is negative; choose one from 0 to 4294967295"),
+        (
+            2**32,
+            "seed 4294967296 is too large: beyond it NumPy's seed words would repeat the draws of other seeds; choose "
+            "one from 0 to 4294967295",
+        ),
+    ],
+)
+def test_a_seed_that_would_repeat_another_is_refused(seed, told):
+    for refused in (
+        lambda: Draws(seed, np.arange(3)),
+        lambda: particle_generators(seed, np.arange(3)),
+        lambda: play(dataclasses.replace(rich(), seed=seed)),
+        lambda: play(dataclasses.replace(mower(), seed=seed, filter="pf")),
+    ):
+        with pytest.raises(UsageError) as error:
+            list(refused())
+        assert str(error.value) == told
+
+
+def test_runs_are_numbered_from_0():
+    with pytest.raises(UsageError) as error:
+        play(dataclasses.replace(rich(), run=-2))
+    assert str(error.value) == "run -2 is negative; runs are numbered from 0"
+
+
+def test_no_seed_and_no_run_of_many_bits_has_the_draws_of_another():
+    """The draws of runs that differ in one word of their seed or number, up to the largest there are."""
+    words = (0, 1, 3, 2**32 - 1)
+    runs = np.array([*words, *(2**32 + n for n in words[:3]), 2**62 + 5])
+    streams = [Draws(seed, runs).stream(0).normals(1, 1)[0, :, 0] for seed in words]
+    blocks = [Draws(seed, np.array([1024 * n])).normals(i)[0] for seed in words for i in words[:3] for n in runs[:6]]
+    for found in (np.concatenate(streams), np.concatenate(blocks)):
+        assert len(set(found.tolist())) == len(found) > 30

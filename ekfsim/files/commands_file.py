@@ -7,7 +7,7 @@ from pydantic.config import JsonDict
 from pydantic_core import PydanticCustomError
 
 from ekfsim.files.drive_file import SPIRAL, WayKeys
-from ekfsim.files.fields import Degrees, Metres, Name, Pose, Probability, Share, Strict, Text
+from ekfsim.files.fields import Degrees, Metres, Name, Pose, Probability, Seed, Share, Strict, Text
 from ekfsim.files.system_file import SystemName
 
 MAX_COMMANDS = 1_000_000
@@ -133,9 +133,7 @@ class CommandsKeys(Strict):
         description="The world file, relative to this file; a world named on the command line wins.",
         examples=["../worlds/classroom.yaml"],
     )
-    seed: int = Field(
-        0, description="Whole number that fixes all noise; --seed wins.", ge=0, le=2**63 - 1, examples=[7]
-    )
+    seed: Seed = Field(0, description="Whole number below 2³² that fixes all noise; --seed wins.")
     filter: str = Field(
         "ekf", description="Name of the filter; --filter wins.", examples=["ekf"], json_schema_extra=known_filters
     )

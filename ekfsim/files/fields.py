@@ -6,6 +6,8 @@ from typing import Annotated, Any, ClassVar
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
+from ekfsim.seeds import MOST_SEED, REPEATS
+
 FAR = 1e6  # m, degrees, or times: beyond it a millimetre is lost in rounding, and squares in covariances after it
 
 
@@ -48,6 +50,15 @@ Positive = Annotated[float, Field(gt=0, le=FAR, examples=[1.5])]
 Rate = Annotated[float, Field(gt=0, le=FAR, examples=[10])]
 Scale = Annotated[float, Field(ge=-FAR, le=FAR, examples=[1.05])]
 Probability = Annotated[float, Field(ge=0, le=1, examples=[0.1])]
+Seed = Annotated[
+    int,
+    Field(
+        ge=0,
+        le=MOST_SEED,
+        examples=[7],
+        json_schema_extra={"$comment": REPEATS},
+    ),
+]
 Name = Annotated[str, Field(pattern=r"^[^\r\n]*\S[^\r\n]*$", examples=["desk"])]
 Text = Annotated[str, Field(examples=["One room, two desks."])]
 

@@ -6,7 +6,7 @@ from pydantic import AfterValidator, ConfigDict, Field, WithJsonSchema, field_va
 from pydantic_core import PydanticCustomError
 
 from ekfsim.files.commands_file import filter_names
-from ekfsim.files.fields import Name, Strict, Text
+from ekfsim.files.fields import Name, Seed, Strict, Text
 
 MAX_RUNS = 1_000_000_000
 SWEEP: dict[str, Any] = {"noise.rangeSigmaRatio": [0.005, 0.01, 0.02], "guard": ["warn", "skip"]}
@@ -51,9 +51,7 @@ class StudyKeys(Strict):
     )
     description: Text = Field("", description="What this study is to show.")
     runs: int = Field(10_000, description="How many runs of each cell and filter.", ge=1, le=MAX_RUNS, examples=[10000])
-    seed: int | None = Field(
-        None, description="In place of the commands file's seed.", ge=0, le=2**63 - 1, examples=[1]
-    )
+    seed: Seed | None = Field(None, description="In place of the commands file's seed.")
     filters: Annotated[list[FilterName], Field(title="a list of filters", min_length=1)] | None = Field(
         None, description="The filters that watch, in place of the commands file's.", examples=[["ekf", "ukf"]]
     )

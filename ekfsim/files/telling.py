@@ -138,7 +138,7 @@ def wrong_kind(node: Node, schema: Schema) -> tuple[str, str]:
     wanted, value = schema.get("type"), node.value
     right = f"write e.g. {example(schema)}"
     if wanted == "integer" and isinstance(value, float):
-        if not math.isfinite(value) or abs(value) >= 2**63:
+        if not abs(value) <= schema.get("maximum", 2**63):
             return out_of_range(node, schema)
         if value == int(value):
             right = f"write {int(value)}"
@@ -193,7 +193,8 @@ def out_of_range(node: Node, schema: Schema) -> tuple[str, str]:
         right = f"write {noun(schema)} from 0 to 1"
     else:
         right = f"write {noun(schema)} of {f'{spaced(low)} or more' if small else f'at most {spaced(high)}'}"
-    return f"{shown(node)} is {'negative' if small and low == 0 else 'too small' if small else 'too large'}", right
+    why = f": {schema['$comment']}" if "$comment" in schema and not small else ""
+    return f"{shown(node)} is {'negative' if small and low == 0 else 'too small' if small else 'too large'}{why}", right
 
 
 def spaced(number: float) -> str:

@@ -13,16 +13,19 @@ from ekfsim.geometry.ellipse import ellipse
 from ekfsim.provenance import provenance, told_in_a_line
 from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
+from ekfsim.summary import Instants
 
 
 class Tum:
-    """Writes `t x y 0 0 0 qz qw` lines of the truth and of the estimate, one for each instant, after its last reading.
+    """Writes `t x y 0 0 0 qz qw` lines of the truth and of the estimate: one for each instant that the summary counts.
 
-    t is the instant in s; where there is no clock, in the classroom, the index of the step.
+    The poses are those after its last reading. t is the instant in s; where there is no clock, in the classroom, the
+    index of the step. So the RMSE that evo finds between the two files is the summary's.
     """
 
     def __init__(self, truth: TextIO, estimate: TextIO, scene: Scene) -> None:
         self._truth, self._estimate, self._layout = truth, estimate, scene.world.layout
+        self._instants = Instants()
         self._waiting: Step | None = None  # the last step of an instant, until the next begins
         clock = "step" if scene.commanded else "t (s)"
         for file, name in ((truth, "truth"), (estimate, "estimate")):
@@ -32,6 +35,8 @@ class Tum:
 
     def write(self, step: Step) -> None:
         """Append the two poses after this step; with a clock, once the next instant begins."""
+        if not self._instants.hold(step.entry):
+            return
         if step.entry.t is None:
             self._append(step.entry.index, step)
             return

@@ -4,8 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ekfsim.errors import UsageError
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
+from ekfsim.seeds import MOST_SEED, REPEATS
 from ekfsim.world import World
 
 BLOCK = 1024  # runs that share a generator
@@ -21,6 +23,7 @@ class Draws:
     """
 
     def __init__(self, seed: int, runs: Integers) -> None:
+        _verify(seed, runs)
         self._seed = seed
         self._runs = runs
         self._neighbours = _neighbours(runs)
@@ -89,6 +92,15 @@ class Stream:
         return drawn.reshape(rows, *self._axes, columns)
 
 
+def _verify(seed: int, runs: Integers) -> None:
+    """Raises UsageError for a seed that would repeat another's draws, and for a seed or runs that have none."""
+    if not 0 <= seed <= MOST_SEED:
+        wrong = "negative" if seed < 0 else f"too large: {REPEATS}"
+        raise UsageError(f"seed {seed} is {wrong}; choose one from 0 to {MOST_SEED}")
+    if np.any(runs < 0):
+        raise UsageError(f"run {np.min(runs)} is negative; runs are numbered from 0")
+
+
 def _neighbours(runs: Integers) -> tuple[int, slice] | None:
     """The block that holds all of these runs, and their rows in it, where they follow one another; otherwise None."""
     if runs.ndim != 1 or not runs.size:
@@ -107,5 +119,6 @@ def true_start(world: World, draws: Draws) -> Array:
 
 def particle_generators(seed: int, runs: Integers) -> Sequence[np.random.Generator]:
     """A generator for the particles of each run, alike whether it is run alone or beside others."""
+    _verify(seed, runs)
     keys = (np.random.SeedSequence([seed, int(run)], spawn_key=(PARTICLES,)) for run in np.atleast_1d(runs))
     return [np.random.Generator(np.random.PCG64(key)) for key in keys]

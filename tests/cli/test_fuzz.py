@@ -76,7 +76,7 @@ def worlds(draw):
 def scenes(draw):
     scene = {
         "world": "w.yaml",
-        "seed": draw(st.integers(0, 2**63 - 1)),
+        "seed": draw(st.integers(0, 2**32 - 1)),
         "commands": draw(st.lists(commands, max_size=6)),
     }
     if draw(st.booleans()):

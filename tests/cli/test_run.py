@@ -51,7 +51,7 @@ def test_the_same_run_twice_is_the_same_run():
     ("option", "value", "said"),
     [
         ("--seed", "8", "seed 8,"),
-        ("--seed", "123456789012345678901234567890", "seed 123456789012345678901234567890,"),
+        ("--seed", "4294967295", "seed 4294967295,"),
         ("--run", "3", "run 3\n"),
         ("--run", str(2**63 - 1), f"run {2**63 - 1}\n"),
         ("--filter", "ekf", "filter ekf,"),
@@ -116,7 +116,7 @@ def test_a_world_named_on_the_command_line_wins(place):
     [
         *(("--gate", value) for value in ("0", "1", "2", "-1", "nan", "inf", "", "x")),
         *(("--confidence", value) for value in ("0", "1", "nan", "-inf", "95 %")),
-        *(("--seed", value) for value in ("-1", "1.5", "x", "")),
+        *(("--seed", value) for value in ("-1", "1.5", "x", "", "4294967296", "9" * 40)),
         *(("--run", value) for value in ("-1", "1e3", str(2**63), "9" * 40)),
         ("--guard", "perhaps"),
         *((option, value) for option in ("--trace", "--csv", "--summary", "--tum") for value in ("", "-")),

@@ -353,6 +353,24 @@ SCENES = {
         f"seed: {'9' * 400}\ncommands: []\n",
         [f"2:7: seed: {'9' * 37}... is too large; write e.g. 7"],
     ),
+    "a seed of two words": (
+        "seed: 4294967296\ncommands: []\n",
+        [
+            "2:7: seed: 4294967296 is too large: beyond it NumPy's seed words would repeat the draws of other seeds; "
+            "write a whole number of at most 4 294 967 295"
+        ],
+    ),
+    "a seed of two words, written otherwise": (
+        "seed: 1e10\ncommands: []\n",
+        [
+            "2:7: seed: 1e10 is too large: beyond it NumPy's seed words would repeat the draws of other seeds; "
+            "write a whole number of at most 4 294 967 295"
+        ],
+    ),
+    "the largest seed and a mistake": (
+        "seed: 4294967295\ncommands: 5\n",
+        ["3:11: commands: 5 is a number where a list belongs; write e.g. [{move: {distance: 1.75, angle: 90}}]"],
+    ),
     "expect": (
         "expect: {lost: [0.5, 0.1], nis: hihg, nees: 5, coverage: [0.5], runs: 0}\ncommands: []\n",
         [
