@@ -1,10 +1,10 @@
 """Puts an interactive run together: keys from the terminal and the window, pictures on the screen that there is."""
 
+import itertools
 import os
 import shutil
 import sys
 from collections.abc import Callable
-from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -39,7 +39,7 @@ def play_interactively(scene: Scene, show: str, out: Path, look: Look, force: bo
     window_wanted = show == "window" or (show == "auto" and _window_available())
     if show == "window" and not _window_available():
         raise UsageError(_why_no_window())
-    extent = limits.of_all(scene, (islice(play(one), LOOK_AHEAD) for one in scene.alone()), look.probability)
+    extent = limits.of_all(scene, (itertools.islice(play(one), LOOK_AHEAD) for one in scene.alone()), look.probability)
     pictures = Pictures(scene, extent, look, out, force)
     window: Window | None = None
     screen: Screen
@@ -125,8 +125,12 @@ class Pictures:
         self._write(view, self._out / "current.png", force=True)
 
     def save(self, view: View) -> str:
-        """Save the picture of a view under its number; says where, or why not."""
+        """Save the picture of a view under its number, beside those saved of it before; says where, or why not."""
         path = self._out / f"view-{view.number:04}.png"
+        for again in itertools.count(2):
+            if self._force or not os.path.lexists(path):
+                break
+            path = self._out / f"view-{view.number:04}-{again}.png"
         try:
             self._write(view, path, self._force)
         except EkfsimError as refusal:

@@ -40,7 +40,7 @@ n  space  Enter  right  down  PageDown    next view
 p  Backspace  left  up  PageUp            previous view
 12n  12p                                  twelve of them
 r  restart      s  save the picture       ?  h  this help
-q  Esc  Ctrl-D  quit"""
+q  Ctrl-D  quit"""
 
 CHARACTERS: dict[str, Key] = {
     **{str(digit): digit for digit in range(10)},
@@ -56,7 +56,9 @@ SEQUENCES: dict[str, Action] = {  # what follows "Esc [" or "Esc O", modifiers l
     **dict.fromkeys(["D", "A", "5~"], Action.BACK),  # ← ↑ PageUp
     **dict.fromkeys(["P", "[A", "11~"], Action.HELP),  # F1 of xterm, of the Linux console, of rxvt
 }
-ESCAPE_DELAY = 0.05  # s after which an Esc stands for itself; the bytes of one key arrive together
+ALONE = 0.8  # s after which an Esc was no beginning of another key: over a slow line its bytes arrive one by one
+PATIENCE = 1.0  # s for the rest of a key whose beginning has come
+ANSWER_DELAY = 0.05  # s for the next byte of what a terminal answers: it comes together
 CONTINUATIONS = {0b1100: 1, 0b1101: 1, 0b1110: 2, 0b1111: 3}  # of UTF-8, by the upper half of the first byte
 SIGNAL_DELAY = 0.2  # s; a signal that comes just before a wait begins is noticed when that wait ends
 MOST = 9999  # repetitions: more digits than that are a hand resting on the keyboard
@@ -92,6 +94,8 @@ class Keyboard:
         self._source = source
         self._skipped = skipped  # characters that are no keys here
         self._ahead = b""  # read, but not part of the last key
+        self._escaped = False  # an Esc was the last byte: what follows may belong to it, however late
+        self._alone_at = math.inf  # when that Esc is said to be a key of its own
 
     @overload
     def __call__(self) -> Key: ...
@@ -99,16 +103,25 @@ class Keyboard:
     def __call__(self, timeout: float | None) -> Key | None: ...
     def __call__(self, timeout: float | None = None) -> Key | None:
         """The next key, QUIT at the end of the input, or None where none was pressed for `timeout` s."""
-        deadline = None if timeout is None else time.monotonic() + timeout
+        deadline = math.inf if timeout is None else time.monotonic() + timeout
         while True:
-            character = self._character(None if deadline is None else max(0.0, deadline - time.monotonic()))
+            until = min(deadline, self._alone_at)
+            character = self._character(None if until == math.inf else max(0.0, until - time.monotonic()))
+            if character is None and self._alone_at <= deadline:
+                self._alone_at = math.inf
+                return Action.UNKNOWN
             if character is None:
                 return None
             if character == "":
                 return Action.QUIT
-            if character == "\x1b":
-                return self._sequence()
-            if character not in self._skipped:
+            escaped, soon = self._escaped, self._alone_at < math.inf
+            self._escaped = character == "\x1b"
+            self._alone_at = time.monotonic() + ALONE if self._escaped else math.inf
+            if escaped and character in "[O":
+                return SEQUENCES.get(self._parameters(), Action.UNKNOWN)
+            if escaped and soon and character in "]P_^X":
+                return self._answer()
+            if not self._escaped and character not in self._skipped:  # Alt and a key is that key
                 return CHARACTERS.get(character.lower(), Action.UNKNOWN)
 
     def _byte(self, timeout: float | None) -> bytes | None:
@@ -127,32 +140,23 @@ class Keyboard:
         if not read:
             return None if read is None else ""
         for _ in range(CONTINUATIONS.get(read[0] >> 4, 0)):
-            following = self._byte(ESCAPE_DELAY)
+            following = self._byte(PATIENCE)
             if not following or following[0] >> 6 != 0b10:  # not its continuation: a key of its own
                 self._ahead = (following or b"") + self._ahead
                 break
             read += following
         return read.decode(errors="replace")
 
-    def _sequence(self) -> Action:
-        """What an Esc just read stands for: itself, or the beginning of the sequence that a special key sends.
-
-        Before any other character it is itself: an Esc typed ahead must quit, even if Alt and a letter then do so too.
-        """
-        following = self._byte(ESCAPE_DELAY) or b""
-        if following in (b"[", b"O"):
-            return SEQUENCES.get(self._parameters(), Action.UNKNOWN)
-        if following and following in b"]P_^X":  # a terminal's late answer to a question of some other program
-            while (byte := self._byte(ESCAPE_DELAY)) and byte not in b"\a\\":
-                pass
-            return Action.UNKNOWN
-        self._ahead = following + self._ahead
-        return Action.QUIT
+    def _answer(self) -> Action:
+        """Pass over what a terminal answers late to a question of some other program."""
+        while (byte := self._byte(ANSWER_DELAY)) and byte not in b"\a\\":
+            pass
+        return Action.UNKNOWN
 
     def _parameters(self) -> str:
         """The rest of a sequence to its final byte, without modifiers: "C" for "1;5C", "5~" for "5;2~"."""
         read = ""
-        while byte := self._byte(ESCAPE_DELAY):
+        while byte := self._byte(PATIENCE):
             if not b" " <= byte <= b"~":  # no part of any sequence: a key of its own
                 self._ahead = byte + self._ahead
                 return ""
@@ -272,9 +276,20 @@ else:
         source = _descriptor(fd)
 
         def heeding(timeout: float | None) -> bytes | None:
-            if came:
-                raise SystemExit(128 + came[0])
-            return source(timeout)
+            deadline = math.inf if timeout is None else time.monotonic() + timeout
+            while True:
+                if came:
+                    raise SystemExit(128 + came[0])
+                wait = min(max(0.0, deadline - time.monotonic()), SIGNAL_DELAY)
+                if not _in_foreground(fd):
+                    time.sleep(wait)
+                    byte = None
+                else:
+                    if _by_lines(fd):  # after `bg` and `fg`, of which no signal tells
+                        enter()
+                    byte = source(wait)
+                if byte is not None or time.monotonic() >= deadline:
+                    return byte
 
         endings = dict.fromkeys((signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT), end)
         with _handling({signal.SIGCONT: enter, signal.SIGTSTP: suspend, **endings}):
@@ -290,6 +305,13 @@ else:
             return os.tcgetpgrp(fd) == os.getpgrp()
         except OSError:
             return True
+
+    def _by_lines(fd: int) -> bool:
+        """Whether the terminal keeps keys back until a line is whole."""
+        try:
+            return bool(termios.tcgetattr(fd)[3] & termios.ICANON)
+        except termios.error:  # it is gone
+            return False
 
     Handler = Callable[[int, FrameType | None], object]
 

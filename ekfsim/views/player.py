@@ -33,6 +33,7 @@ class Player:
     out: TextIO
     probability: float
     number: int = 0  # of the view on the screen
+    told_to_stay: bool = False  # that there is no view further on, while the key that asks for one is held
     playback: Playback = field(init=False)
     _summaries: list[Summary] = field(init=False)  # of the steps so far, by filter; ahead of what is shown by a view
 
@@ -63,6 +64,8 @@ class Player:
         match action:
             case Action.NEXT:
                 self._forward(count)
+            case Action.BACK if self.number == 0:
+                self._stay("This is the start: n goes on, q quits")
             case Action.BACK:
                 self._jump(max(self.number - count, 0))
             case Action.RESTART:
@@ -83,13 +86,20 @@ class Player:
             self.number = view.number
             self._tell(view)
         if self.number == start:
-            self.out.write("The run is over: q quits, p goes back, r starts again\n")
+            self._stay("The run is over: q quits, p goes back, r starts again")
         else:
+            self.told_to_stay = False
             self.screen.show(self._view(self.number))
+
+    def _stay(self, why: str) -> None:
+        """Say once why the view stays."""
+        if not self.told_to_stay:
+            self.out.write(f"{why}\n")
+        self.told_to_stay = True
 
     def _jump(self, number: int) -> None:
         """Go back: what was told stays told, the picture is the old one."""
-        self.number = number
+        self.number, self.told_to_stay = number, False
         self.out.write(f"<==Back at view {number}\n\n")
         self.screen.show(self._view(number))
 

@@ -23,6 +23,7 @@ import termios
 
 PUT_IN = ["long.yaml", "short.yaml", "world.yaml"]
 OVER = "The run is over: q quits, p goes back, r starts again"
+START = "This is the start: n goes on, q quits"
 PICTURE = re.compile("[\u2800-\u28ff]")
 
 
@@ -75,8 +76,11 @@ def test_the_whole_of_it_is_the_narrative_of_run():
 
 
 def test_beyond_the_end_it_says_so_and_before_the_start_it_stays():
-    assert told(b"9nn").count(OVER) == 1
-    assert told(b"p99p").count("<==Back at view 0\n") == 2
+    assert told(b"9n").count(OVER) == 0
+    assert told(b"9nnnnn").count(OVER) == 1
+    assert told(b"9nnnpnnn").count(OVER) == 2
+    assert told(b"p99pn3p99pp").count(START) == 2
+    assert told(b"p99pn3p99pp").count("<==Back at view 0\n") == 1
 
 
 def test_back_and_forth_and_from_the_start():
@@ -93,10 +97,10 @@ def test_help_and_unknown_keys():
 
 
 def test_s_saves_a_picture_and_never_over_another(place):
-    said = told(b"nss", "--out", "a/b")
-    assert "Saved a/b/view-0001.png\n" in said
-    assert "a/b/view-0001.png: exists already; choose another name, or replace it with --force\n" in said
-    assert left_in(place) == ["a", "a/b", "a/b/view-0001.png", *PUT_IN]
+    said = told(b"nsss", "--out", "a/b")
+    saved = ["view-0001.png", "view-0001-2.png", "view-0001-3.png"]
+    assert [line for line in said.splitlines() if line.startswith("Saved")] == [f"Saved a/b/{name}" for name in saved]
+    assert sorted(left_in(place / "a/b")) == sorted(saved)
     picture = (place / "a/b/view-0001.png").read_bytes()
     assert picture.startswith(SIGNATURE)
     assert told(b"nss", "--out", "a/b", "--force").count("Saved a/b/view-0001.png\n") == 2

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from ekfsim.views import keyboard
 from ekfsim.views.keyboard import HELP, MOST, Action, Counted, Keyboard, keys
 
 NEXT, BACK, QUIT, UNKNOWN = Action.NEXT, Action.BACK, Action.QUIT, Action.UNKNOWN
@@ -119,8 +120,9 @@ def pressed(text: bytes) -> list:
         (b"\x1b[200000;1;2;3;4;5;6;7;8m\x1b[?1;2cn", [UNKNOWN, UNKNOWN, NEXT]),
         (b"\x1b]11;rgb:0000/nnnn/qqqq\x1b\\n\x1bP1$r0q\x07n", [UNKNOWN, NEXT, UNKNOWN, NEXT]),
         (b"\x1b[\x1b[Cn", [UNKNOWN, NEXT, NEXT]),  # cut short by the next sequence
-        (b"\x1bqn", [QUIT, QUIT, NEXT]),
-        (b"\x1b", [QUIT]),
+        (b"\x1bn\x1b\r\x1bp\x1b7\x1b\x1b[C", [NEXT, NEXT, BACK, 7, NEXT]),  # with Alt
+        (b"\x1bqn", [QUIT, NEXT]),
+        (b"\x1b", [QUIT]),  # the end of the input
         ("éñ机🤖n".encode(), [UNKNOWN] * 4 + [NEXT]),
         (b"\xe9n\xffn\x80n\xe6\x9cn", [UNKNOWN, NEXT] * 4),  # no UTF-8: the n is not swallowed
     ],
@@ -176,14 +178,44 @@ def test_keys_held_while_a_step_is_computed_all_arrive_unseen(terminal: Terminal
         assert os.read(terminal.screen, 100) == b"end"
 
 
-def test_escape_alone_quits_and_is_not_confused_with_what_follows(terminal: Terminal) -> None:
+def test_escape_alone_does_nothing_and_takes_no_key_away(terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(keyboard, "ALONE", 0.02)
     with open(terminal.line, closefd=False) as stream, keys(stream) as next_key:
         terminal.press("\x1b")
-        assert next_key() is QUIT
-        terminal.press("q")
-        assert next_key() is QUIT
+        assert [next_key(), next_key(0.03)] == [UNKNOWN, None]
+        terminal.press("Pq\x1b")  # not the P that a terminal's answer begins with
+        assert [next_key(), next_key(), next_key(0.01), next_key(1.0)] == [BACK, QUIT, None, UNKNOWN]
         terminal.press("\x1b[C\x1b[5~é1")
         assert [next_key() for _ in range(4)] == [NEXT, BACK, UNKNOWN, 1]
+
+
+@pytest.mark.parametrize("key", ["\x1b[C", "\x1bOC", "\x1b[6~", "\x1b[1;5C"])
+def test_the_bytes_of_a_key_may_come_one_by_one(terminal: Terminal, key: str) -> None:
+    def press_slowly() -> None:
+        for byte in key:
+            terminal.press(byte)
+            time.sleep(0.06)
+
+    with open(terminal.line, closefd=False) as stream, keys(stream) as next_key:
+        thread = threading.Thread(target=press_slowly)
+        thread.start()
+        while (pressed := next_key(0.01)) is None:  # as often as one likes to ask
+            pass
+        assert pressed is NEXT
+        thread.join()
+
+
+def test_an_arrow_is_one_however_late_the_rest_of_it_comes(terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(keyboard, "ALONE", 0.01)
+    with open(terminal.line, closefd=False) as stream, keys(stream) as next_key:
+        terminal.press("\x1b")
+        assert next_key() is UNKNOWN
+        terminal.press("[Dn")
+        assert [next_key(), next_key()] == [BACK, NEXT]
+
+
+def test_delays_of_a_slow_line_are_waited_for() -> None:
+    assert min(keyboard.ALONE, keyboard.PATIENCE) > 0.6
 
 
 def test_polling_returns_none_in_time(terminal: Terminal) -> None:
@@ -232,7 +264,7 @@ def test_another_thread_can_read_keys(terminal: Terminal) -> None:
     assert terminal.settings() == before
 
 
-@pytest.mark.parametrize(("end", "status"), [("q", 0), ("\x1b", 0), ("\x04", 0), ("\x03", -signal.SIGINT)])
+@pytest.mark.parametrize(("end", "status"), [("q", 0), ("\x1b\x1bq", 0), ("\x04", 0), ("\x03", -signal.SIGINT)])
 def test_every_way_out_restores_the_terminal(terminal: Terminal, end: str, status: int) -> None:
     before = terminal.settings()
     process = terminal.run(*player())
@@ -271,6 +303,28 @@ def test_stopped_the_shell_has_its_terminal_back_and_fg_resumes(terminal: Termin
         time.sleep(0.001)
     terminal.press("pq")
     terminal.wait_for("<BACK>")
+    terminal.wait_for("<QUIT>")
+    terminal.wait_for("done")
+    assert process.wait() == 0
+    assert terminal.settings() == before
+
+
+@pytest.mark.parametrize("wake", ["bg; sleep 0.1; fg", "bg; fg"])
+def test_sent_to_the_background_and_back_it_has_its_keys_again(terminal: Terminal, wake: str) -> None:
+    script = f'set -m; "$@"; echo stopped; read line; {wake}; echo done'
+    before = terminal.settings()
+    process = terminal.run("bash", "-c", script, "bash", *player())
+    terminal.wait_for("ready")
+    terminal.press("n")
+    terminal.wait_for("<NEXT>")
+    terminal.press("\x1a")
+    terminal.wait_for("stopped")
+    terminal.press("\n")
+    while not terminal.single_keys():
+        time.sleep(0.001)
+    terminal.press("p")
+    terminal.wait_for("<BACK>")
+    terminal.press("q")
     terminal.wait_for("<QUIT>")
     terminal.wait_for("done")
     assert process.wait() == 0

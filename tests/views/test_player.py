@@ -67,7 +67,9 @@ def test_the_verdict_is_that_of_the_whole_run():
 def test_nothing_comes_after_the_last_view():
     shown, told = played(*[NEXT] * 6)
     assert shown == [0, 1, 2, 3, 4]
-    assert told.endswith(2 * OVER)
+    assert told.endswith(OVER)
+    assert told.count(OVER) == 1  # however long the key is held
+    assert played(*[NEXT] * 6, BACK, *[NEXT] * 3)[1].count(OVER) == 2
 
 
 def test_back_shows_the_view_before_and_tells_only_that():
@@ -83,9 +85,9 @@ def test_forward_again_is_told_again():
 
 
 def test_before_the_first_view_there_is_none():
-    shown, told = played(BACK)
-    assert shown == [0, 0]
-    assert told == story(0) + "<==Back at view 0\n\n"
+    shown, told = played(BACK, BACK)
+    assert shown == [0]
+    assert told == story(0) + "This is the start: n goes on, q quits\n"
 
 
 def test_a_number_repeats_and_shows_only_where_it_ends():
@@ -94,7 +96,7 @@ def test_a_number_repeats_and_shows_only_where_it_ends():
     assert told == story(0, 1, 2, 3)
     assert played(3, NEXT, 2, BACK)[0] == [0, 3, 1]
     assert played(1, 2, NEXT)[0] == [0, 4]
-    assert played(9, BACK)[0] == [0, 0]
+    assert played(NEXT, 9, BACK)[0] == [0, 1, 0]
 
 
 def test_restart_goes_back_to_the_start():
