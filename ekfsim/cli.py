@@ -231,6 +231,7 @@ def study(
 ) -> None:
     """Run COMMANDS, or what a study file tells, many times: how often is it lost, and is the filter honest?"""
     from ekfsim.files import load_study
+    from ekfsim.files.filter_checks import refuse_unread
     from ekfsim.study.doing import total
     from ekfsim.study.expectation import promised, verified
     from ekfsim.study.plan import Plan
@@ -241,6 +242,7 @@ def study(
     if out is None and (resume or not expect):
         raise click.MissingParameter(param_hint="'--out' / '-o'", param_type="option")
     plan = Plan.of(load_study.asked(**asked))
+    refuse_unread(plan.settings, plan.filters)
     for warning in plan.warnings:
         say(warning)
     plan, engine = promised(plan, asked["runs"]) if expect else plan, engine_of(workers, cluster)

@@ -1,6 +1,7 @@
 """Entries × filter → Steps."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,7 +10,9 @@ from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Belief, Gaussian
 from ekfsim.filters.listing import ListingEKF
 from ekfsim.filters.protocol import Beginning, Filter
+from ekfsim.filters.shadows import ShadowsAlone
 from ekfsim.geometry import Integers
+from ekfsim.models.laser_by_reading import by_reading
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Control, Entry, Reading, Step
 from ekfsim.scene import Guard, Scene
@@ -69,12 +72,22 @@ def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
     """The filter that watches a scene, at the beginning of its run, or of N runs side by side."""
     numbers = np.asarray(scene.run if runs is None else runs)
     beginning = Beginning(
-        first_belief(scene), scene.world.layout.headings, scene.gate, lambda: particle_generators(scene.seed, numbers)
-    )
+        first_belief(scene), scene.world.layout.headings, scene.gate,
+        lambda: particle_generators(scene.seed, numbers), scene.tuning,
+    )  # fmt: skip
     # the code of these two documents holds readings against the state of before the motion
     if scene.filter == "ekf" and scene.world.system in ("mower", "gnss") and scene.reading == "coded":
         return ListingEKF.begin(beginning)
-    return FILTERS[scene.filter].begin(beginning)
+    filter = FILTERS[scene.filter].begin(beginning)
+    return ShadowsAlone(filter) if scene.tuning.cross_covariances == "dropped" else filter
+
+
+def noise_by_reading(entry: Entry) -> Entry:
+    """The same entry, its laser told to take C_v from the reading in place of the prediction: a counter-example."""
+    if not isinstance(entry.given, Reading):
+        return entry
+    sensor, z = entry.given.sensor, entry.given.z
+    return replace(entry, given=replace(entry.given, sensor=by_reading(sensor, z)))
 
 
 def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
@@ -82,5 +95,7 @@ def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
     entries = simulate(scene, runs) if scene.log is None else iter(scene.log.entries)
     if scene.world.system == "gnss" and scene.reading == "coded":  # its authors have a fix at every motion input
         entries = interpolated(entries)
+    if scene.tuning.range_variance == "reading":
+        entries = map(noise_by_reading, entries)
     belief = first_belief(scene, np.shape(scene.run if runs is None else runs))
     return localize(entries, filter_of(scene, runs), belief, scene.guard, scene.world.layout)

@@ -11,11 +11,13 @@ from ekfsim.seeds import MOST_SEED, REPEATS
 
 MOST = 2**63 - 1  # of runs' numbers
 MOST_RUNS = 10**9  # of a study
+MOST_PARTICLES = 10**6  # of a run
 READINGS = ("printed", "coded", "corrected")  # of a document; told here again, so that --help need not load them
 READING = click.option("--reading", type=click.Choice(READINGS), default="corrected", show_default=True,
                        help="Which to follow where a document's print, its code and the truth differ.")  # fmt: skip
 SET = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
-                   help="Overrule a number of the world, e.g. noise.rangeSigmaRatio=0.02; repeatable.")  # fmt: skip
+                   help="Overrule a number of the world, e.g. noise.rangeSigmaRatio=0.02, or of the filter, e.g. "
+                   "filter.alpha=0.5; repeatable.")  # fmt: skip
 FAST = click.option("--fast", is_flag=True, help="Calculate with code that Numba compiles (the extra `fast`).")
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
 
@@ -87,6 +89,8 @@ class Result(click.Path):
         return super().convert(value, param, ctx)
 
 
+PARTICLES = click.option("--particles", type=Whole(1, MOST_PARTICLES), metavar="N",
+                         help="Of each run's particle filter; short for --set filter.particles=N.")  # fmt: skip
 GATE = click.option("--gate", type=Gate(), metavar="P|off",
                     help="Refuse readings whose NIS lies beyond this χ² quantile; off refuses none.")  # fmt: skip
 GUARD = click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams.")
@@ -96,6 +100,7 @@ WORLD = click.option("--world", help="A world file or packaged world in place of
 SEED = click.option("--seed", type=Seed(), help="In place of the file's seed.")
 SETTINGS = (  # what overrules the files in every run of a study
     SET,
+    PARTICLES,
     GATE,
     GUARD,
     click.option("--reading", type=click.Choice(READINGS),
@@ -125,6 +130,7 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
         GATE,
         GUARD,
         SET,
+        PARTICLES,
         click.option("--confidence", type=Probability(), default=0.954,
                      show_default=True, help="Probability of the ellipse and the cone."),
     ])  # fmt: skip
@@ -140,7 +146,7 @@ def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
         SEED,
         click.option("--filter", "filters", metavar="NAME,…", help="Filters that watch the same runs, e.g. ekf,ukf."),
         click.option("--sweep", "sweeps", multiple=True, metavar="KEY=V1,V2,…",
-                     help="Values of a number of the world, of gate or of guard; several make a grid."),
+                     help="Values of a number of the world or the filter, of gate or of guard; several make a grid."),
         *SETTINGS,
         *MADE_WHERE,
         click.option("--resume", is_flag=True, help="Go on with a study that did not end."),

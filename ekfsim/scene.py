@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from ekfsim.filters.tuning import UNTUNED, Tuning
 from ekfsim.records import Command, Log
 from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.drives import Drive
@@ -36,6 +37,7 @@ class Scene:
     seed: int = 0
     run: int = 0  # which of the seed's runs is played
     filter: str = "ekf"
+    tuning: Tuning = UNTUNED  # the numbers that a filter alone may have
     gate: float | None = None  # probability in (0, 1)
     guard: Guard = "warn"
     description: str = ""

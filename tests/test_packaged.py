@@ -297,7 +297,9 @@ def test_position_and_heading_err_together():
     assert d == pytest.approx(6, abs=0.2)
     assert_allclose(driven[1:, 1:], [[0.1**2 + (d * σ) ** 2, d * σ**2], [d * σ**2, σ**2]], rtol=1e-9)
     assert driven[1, 1] - driven[1, 2] ** 2 / driven[2, 2] == pytest.approx(0.1**2)
-    assert 2 * σ * 6 == pytest.approx(1.26, abs=5e-3)
+    aside = driven[1, 2] / driven[2, 2] * 2 * σ  # where the robot would stand, were the heading at the edge of its cone
+    readme = " ".join((folder("commands").parent / "README.md").read_text(encoding="utf-8").split())
+    assert f"stand {aside:.2f} m further left (dashed)" in readme
     (beam,) = senses("theta")
     assert_allclose(beam.correction.H, [[0, -1, 0]], atol=1e-9)
     C = (0.02 * 3) ** 2

@@ -10,6 +10,7 @@ from ekfsim.files.drive_file import PathKeys, StretchKeys
 from ekfsim.files.fields import Pose
 from ekfsim.files.sensor_file import SENSORS, SensorKeys
 from ekfsim.files.world_file import BeliefKeys, ObstacleKeys, SigmaKeys, WorldKeys
+from ekfsim.filters.tuning import Tuning
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.records import Command, Kidnap, Move, Repeat, Say, Sense
@@ -132,6 +133,7 @@ def scene_of(keys: CommandsKeys, world: World, world_source: str, commands_sourc
         drive=None if keys.drive is None else drive_of(keys.drive),
         seed=keys.seed,
         filter=keys.filter,
+        tuning=Tuning(**keys.filter_settings.model_dump()) if keys.filter_settings else Tuning(),
         gate=keys.gate,
         guard=keys.guard,
         description=keys.description,

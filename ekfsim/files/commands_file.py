@@ -9,6 +9,7 @@ from pydantic_core import PydanticCustomError
 from ekfsim.files.drive_file import SPIRAL, WayKeys
 from ekfsim.files.fields import Degrees, Metres, Name, Pose, Probability, Seed, Share, Strict, Text
 from ekfsim.files.system_file import SystemName
+from ekfsim.filters.tuning import MOST_PARTICLES, CrossCovariances, RangeVariance, Tuning
 
 MAX_COMMANDS = 1_000_000
 MOVE: JsonDict = {"distance": 1.75, "angle": 90}
@@ -112,6 +113,56 @@ class ExpectKeys(Strict):
     runs: int = Field(300, description="Number of runs of the study.", ge=1, le=10_000_000, examples=[300])
 
 
+class TuningKeys(Strict):
+    """Numbers that a filter alone has."""
+
+    particles: int = Field(
+        Tuning.particles, description="Particles of each run, of the pf.", ge=1, le=MOST_PARTICLES, examples=[10000]
+    )
+    alpha: float = Field(
+        Tuning.alpha,
+        description="How far the ukf's sigma points lie from the mean: √(alpha² (n + kappa)) standard deviations.",
+        gt=0,
+        le=1000,
+        examples=[0.5],
+    )
+    beta: float = Field(
+        Tuning.beta,
+        description="What the ukf knows of the shape: 2 for a Gaussian, where alpha is small.",
+        ge=0,
+        le=1000,
+        examples=[2],
+    )
+    kappa: float | None = Field(
+        Tuning.kappa,
+        description="Of the ukf's sigma points, more than −n for a state of n numbers; max(3 − n, 0) where absent.",
+        ge=-1000,
+        le=1000,
+        examples=[1],
+    )
+    iterations: int = Field(
+        Tuning.iterations,
+        description="How often the iekf linearises a reading again at most; 0 makes it the ekf.",
+        ge=0,
+        le=1000,
+        examples=[20],
+    )
+    range_variance: RangeVariance = Field(
+        Tuning.range_variance,
+        alias="rangeVariance",
+        description="Whence the classroom's C_v = (ratio · r)² takes its r: the prediction, or (a counter-example) the "
+        "reading.",
+        examples=["reading"],
+    )
+    cross_covariances: CrossCovariances = Field(
+        Tuning.cross_covariances,
+        alias="crossCovariances",
+        description="Whether σ_xθ and σ_yθ are kept in the classroom's P, or (a counter-example) dropped after every "
+        "step. Not of the pf, which has no P.",
+        examples=["dropped"],
+    )
+
+
 class RecordingKeys(Strict):
     """A recorded log."""
 
@@ -136,6 +187,13 @@ class CommandsKeys(Strict):
     seed: Seed = Field(0, description="Whole number below 2³² that fixes all noise; --seed wins.")
     filter: str = Field(
         "ekf", description="Name of the filter; --filter wins.", examples=["ekf"], json_schema_extra=known_filters
+    )
+    filter_settings: TuningKeys | None = Field(
+        None,
+        alias="filterSettings",
+        title="settings of a filter",
+        description="Numbers that the filter alone has; --set filter.particles=10000 wins.",
+        examples=[{"particles": 10000}],
     )
     gate: float | None = Field(
         None,

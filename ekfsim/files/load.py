@@ -12,6 +12,7 @@ from ekfsim.errors import InputError, Mistake, UsageError
 from ekfsim.files.building import scene_of, world_of
 from ekfsim.files.checks import Sound, angle_warnings, check_commands, check_world, kidnap_warnings
 from ekfsim.files.commands_file import WAYS, WITH_LANDMARKS, CommandsKeys, RecordingKeys
+from ekfsim.files.filter_checks import check_filter_settings, filter_warnings
 from ekfsim.files.marked import Mark, Node, parse
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import resolve, source_name
@@ -165,6 +166,7 @@ def scene_in(
         found = own_world(file, source, logged, settings)
     if isinstance(file.keys, CommandsKeys) and found.value is not None:
         file.mistakes += check_fit(file.sound, file.keys, found.value)
+        file.mistakes += check_filter_settings(file.sound, file.keys, found.value)
         file.mistakes.sort(key=in_order_of_place)
     kidnaps = kidnap_warnings(file.sound, found.value.map) if found.value is not None else ()
     warnings = [*file.warnings, *kidnaps, *found.warnings]
@@ -209,6 +211,8 @@ def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
     if file.kind == "world":
         return world_in(file)
     loaded = scene_in(file, Path(path))
+    if isinstance(file.keys, CommandsKeys) and file.sound is not None:
+        loaded.warnings += filter_warnings(file.sound, file.keys)
     if isinstance(file.keys, CommandsKeys) and file.keys.recording is not None and file.keys.recording.path is not None:
         recorded(loaded, file, file.keys.recording, Path(path), None)
     return loaded

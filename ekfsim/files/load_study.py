@@ -11,7 +11,7 @@ from ekfsim.errors import InputError, Mistake, Place, UsageError
 from ekfsim.files.marked import Node, field_of, parse
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import packaged, resolve
-from ekfsim.files.settings import OF_COMMANDS, Setting, fault_of, filters_in, repeated, setting, swept
+from ekfsim.files.settings import OF_COMMANDS, Setting, fault_of, filters_in, particles_of, repeated, setting, swept
 from ekfsim.files.source import text_of
 from ekfsim.files.study_file import StudyKeys
 from ekfsim.files.telling import at, tell
@@ -63,7 +63,7 @@ class Request:
 def asked(
     commands: str, world: str | None, runs: int | None, seed: int | None, filters: str | None, sweeps: Sequence[str],
     settings: Sequence[str], gate: float | str | None, guard: str | None,
-    reading: DocumentReading | None, fast: bool,
+    reading: DocumentReading | None, fast: bool, particles: int | None = None,
 ) -> Request:  # fmt: skip
     """What the command line asks for: a file, overruled by its options. Raises UsageError or InputError."""
     request = read_request(commands)
@@ -71,6 +71,7 @@ def asked(
         request = replace(request, world=resolve(world, "worlds"), world_name=world)
     set_apart = [(key, value) for key, value in (("gate", gate), ("guard", guard)) if value is not None]
     own = [*(setting(text) for text in settings), *(Setting(k, str(v), f"--{k} {v}") for k, v in set_apart)]
+    own += particles_of(particles)
     request = request.overruled(tuple(own), tuple(map(swept, sweeps)))
     watching = request.filters if filters is None else filters_in(filters)
     return replace(

@@ -10,6 +10,7 @@ from ekfsim.files.schema import Kind, keys_at, schema_at
 from ekfsim.files.telling import nearest, quoted
 
 OF_COMMANDS = ("gate", "guard")  # the rest belongs to the world
+OF_FILTERS, FILTER_SETTINGS = "filter", "filterSettings"  # filter.particles=… is a commands file's filterSettings
 OF_WORLDS = ("noise", "belief", "faults", "start", "robot", "sensors")
 OFF = "off"
 POSE = ("x", "y", "theta")
@@ -37,6 +38,11 @@ def setting(text: str, option: str = "--set") -> Setting:
     made = Setting(key, value, f"{option} {key}={value}")
     path_of(made)
     return made
+
+
+def particles_of(number: int | None) -> tuple[Setting, ...]:
+    """The setting that --particles is short for; none where it was not given."""
+    return () if number is None else (Setting("filter.particles", str(number), f"--particles {number}"),)
 
 
 def swept(text: str, option: str = "--sweep") -> tuple[Setting, ...]:
@@ -77,14 +83,15 @@ def filters_in(text: str, option: str = "--filter") -> tuple[str, ...]:
 
 def kind_of(one: Setting) -> Kind:
     """Which of the two files a setting overrules."""
-    return "commands" if one.key in OF_COMMANDS else "world"
+    return "commands" if one.key in OF_COMMANDS or one.key.split(".")[0] == OF_FILTERS else "world"
 
 
 def path_of(one: Setting) -> Path:
     """The path of a setting's key, its sensor by its kind. Raises UsageError where no file has such a key."""
     if fault := fault_of(one):
         raise UsageError(f"{one.told}: {'; '.join(fault)}")
-    return tuple(one.key.split("."))
+    first, *rest = one.key.split(".")
+    return FILTER_SETTINGS if first == OF_FILTERS else first, *rest
 
 
 def fault_of(one: Setting) -> tuple[str, str] | None:
@@ -96,6 +103,8 @@ def fault_of(one: Setting) -> tuple[str, str] | None:
         if not known:
             return f"'{field_of(path)}' is one value and holds no '{part}'", f"write {field_of(path)}"
         if part not in known:
+            if n == 0 and part in keys_at("commands", (FILTER_SETTINGS,)):
+                return f"unknown key {quoted(part)}", f"did you mean '{OF_FILTERS}.{part}'?"
             near = nearest(part, known)
             if not near:
                 return f"unknown key {quoted(part)}", f"known: {', '.join(known)}"
@@ -105,7 +114,8 @@ def fault_of(one: Setting) -> tuple[str, str] | None:
             return f"unknown key {quoted(part)}", f"did you mean '{meant}'?"
         path = (*path, part)
     if known := _known(kind, path):
-        return f"'{one.key}' is no single value", f"write e.g. {one.key}.{known[0]}"
+        name = ", and name the filter itself by --filter" if path == (OF_FILTERS,) else ""
+        return f"'{one.key}' is no single value", f"write e.g. {one.key}.{known[0]}{name}"
     if schema_at(kind, _indexed(path, 0)).get("type") == "array":
         return f"'{one.key}' is a list", "only single values can be set, e.g. noise.rangeSigmaRatio"
     return None
@@ -217,10 +227,12 @@ def _about(field: str, one: Setting) -> bool:
 def _known(kind: Kind, path: Path) -> list[str]:
     """The keys that stand under a path, as settings name them; of a sensor by its kind."""
     if not path:
-        return [*OF_WORLDS, *OF_COMMANDS]
+        return [*OF_WORLDS, *OF_COMMANDS, OF_FILTERS]
     return list(keys_at(kind, ("sensors", 0) if path == ("sensors",) else _indexed(path, 0)))
 
 
 def _indexed(path: Path, index: int) -> Path:
-    """The path in a file: of a sensor by its number in the list."""
+    """The path in a file: of a sensor by its number in the list, of a filter's settings by their own key."""
+    if path[0] == OF_FILTERS:
+        return FILTER_SETTINGS, *path[1:]
     return (path[0], index, *path[1:]) if path[0] == "sensors" and len(path) > 1 else path

@@ -5,7 +5,8 @@
     algebra.py     gain, inverse, wrapping               iekf.py    iterated
     correcting.py  the end that the updates share        ukf.py     unscented, by the transform of unscented.py
     chi_square.py  quantiles of χ²                       pf.py      particles
-                                                         listing.py the EKF that two of the documents' listings are
+    tuning.py      numbers that a person may set         listing.py the EKF that two of the documents' listings are
+    shadows.py     a counter-example: P without σ_xθ, σ_yθ
 
 The filters know no robot and no sensor: f, F, G, M, Q and h, H, R come from the models (see models/protocols.py).
 

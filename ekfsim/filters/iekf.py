@@ -10,6 +10,7 @@ from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction, Refu
 from ekfsim.filters.correcting import judged, revised, where_used
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.protocol import Beginning
+from ekfsim.filters.tuning import Tuning
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion, Sensor
 
@@ -27,12 +28,12 @@ class IEKF:
     remark: ClassVar[str] = ""
     gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
-    iterations: int = 10  # how often h is linearised again at most; 0 is the EKF
+    iterations: int = Tuning.iterations  # how often h is linearised again at most; 0 is the EKF
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:
         """The filter for a run that begins so."""
-        return cls(beginning.gate, beginning.headings)
+        return cls(beginning.gate, beginning.headings, beginning.tuning.iterations)
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
         """x⁻ = f(x, u)      P⁻ = F P Fᵀ + G M Gᵀ + Q          as the EKF does: there is nothing to iterate"""

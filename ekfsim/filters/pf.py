@@ -10,6 +10,7 @@ from ekfsim.filters.algebra import gain, inverse, symmetric, wrapped
 from ekfsim.filters.belief import Belief, Correction, Particles, Prediction, Refused
 from ekfsim.filters.correcting import judged
 from ekfsim.filters.protocol import Beginning
+from ekfsim.filters.tuning import Tuning
 from ekfsim.filters.unscented import square_root, weighted_mean
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.protocols import Motion, Sensor, angles
@@ -33,14 +34,15 @@ class PF:
     generators: tuple["Generator", ...]  # one for each run, in the order of the leading axes
     gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
-    count: int = 1000  # particles of each run
+    count: int = Tuning.particles  # particles of each run
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:
         """The filter for a run that begins so, with generators of its own."""
         if beginning.generators is None:
             raise ValueError("a particle filter needs generators to draw from")
-        return cls(tuple(beginning.generators()), beginning.gate, beginning.headings)
+        generators = tuple(beginning.generators())
+        return cls(generators, beginning.gate, beginning.headings, beginning.tuning.particles)
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Particles, Prediction]:
         """xᵢ⁻ = f(xᵢ, u) + G(xᵢ, u) wᵢ + qᵢ      wᵢ ~ N(0, M)      qᵢ ~ N(0, Q)          u : (…, m)

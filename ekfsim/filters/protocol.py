@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Protocol, Self
 
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
+from ekfsim.filters.tuning import UNTUNED, Tuning
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion, Sensor
 
@@ -20,6 +21,7 @@ class Beginning:
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
     gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
     generators: Callable[[], Sequence["Generator"]] | None = None  # one for each run, from the run's seed and number
+    tuning: Tuning = UNTUNED  # the numbers that this filter alone may have
 
 
 class Filter(Protocol):

@@ -10,6 +10,7 @@ from ekfsim.filters.algebra import gain, settled, symmetric, wrapped
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.filters.correcting import judged, where_used
 from ekfsim.filters.protocol import Beginning
+from ekfsim.filters.tuning import Tuning
 from ekfsim.filters.unscented import (
     Weights,
     nearest_definite,
@@ -34,14 +35,15 @@ class UKF:
     remark: ClassVar[str] = ""
     gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
-    alpha: float = 1.0  # how far the points lie from the mean: √(α² (n + κ)) standard deviations
-    beta: float = 0.0  # what is known of the shape: 2 for a Gaussian, where α is small
-    kappa: float | None = None  # None: max(3 − n, 0)
+    alpha: float = Tuning.alpha  # how far the points lie from the mean: √(α² (n + κ)) standard deviations
+    beta: float = Tuning.beta  # what is known of the shape: 2 for a Gaussian, where α is small
+    kappa: float | None = Tuning.kappa  # None: max(3 − n, 0)
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:
         """The filter for a run that begins so."""
-        return cls(beginning.gate, beginning.headings)
+        told = beginning.tuning
+        return cls(beginning.gate, beginning.headings, told.alpha, told.beta, told.kappa)
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
         """Xᵢ = sigma points of x, P      x⁻ = Σ Wᵢᵐ f(Xᵢ, u)          eqs 14, 20; u : (…, m)

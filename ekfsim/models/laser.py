@@ -58,7 +58,7 @@ class Laser(Sensor):
 
             r = n·(a − p) / n·d      ∂r/∂p = −n / n·d      ∂r/∂θ = −r n·d⊥ / n·d      C_v = (ratio · r)²
 
-        C_v comes from the prediction: taken from the reading, short echoes would be believed too much.
+        C_v comes from the prediction: taken from the reading, short echoes are believed too much (laser_by_reading.py).
         """
         if x.ndim == 1:
             return self._linearize_one(*x.tolist())

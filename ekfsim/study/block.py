@@ -1,6 +1,8 @@
 """1024 runs side by side → a Tally. They are the unit of work: the runs of a block share their draws."""
 
+import functools
 import math
+import operator
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +27,7 @@ from ekfsim.study.counting import (
 )
 from ekfsim.study.tally import AtSteps, Extreme, OfRuns, Tally, dtype_of
 
+MOST_PARTICLES = 2_000_000  # of all runs that are watched at once: they take some 400 bytes each
 MOST_STEPS = 1000  # of a longer run so many are told of, evenly spaced, and the last
 
 
@@ -41,7 +44,16 @@ class Ends(NamedTuple):
 def run_block(scene: Scene, first: int, runs: int, fast: bool = False) -> Tally:
     """What becomes of the runs first … first + runs − 1 of a scene; fast : by code that Numba compiles"""
     with using("numba" if fast else used()):
-        return watched(scene, first, runs).tally()
+        return functools.reduce(operator.add, (watched(scene, *some).tally() for some in at_once(scene, first, runs)))
+
+
+def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
+    """The runs first … first + runs − 1 in portions that fit the memory, each its first and how many.
+
+    Only of particles there may be too many for a block's runs to be watched side by side.
+    """
+    some = max(MOST_PARTICLES // scene.tuning.particles, 1) if scene.filter == "pf" else runs
+    return [(run, min(some, first + runs - run)) for run in range(first, first + runs, some)]
 
 
 def watched(scene: Scene, first: int, runs: int) -> "Watch":

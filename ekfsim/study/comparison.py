@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
 from ekfsim.errors import UsageError
+from ekfsim.files.filter_checks import refuse_unread
 from ekfsim.files.load_study import FILTER, Request
 from ekfsim.files.settings import Setting, filters_in, setting
 from ekfsim.study.pairs import Pairs, Shared, Sums, run_pairs
@@ -33,6 +34,10 @@ class Comparison:
         a, b = (Plan.of(side(request, settings)) for settings in (request.a, request.b))
         if a.identity() == b.identity():
             raise UsageError(f"{name}: a and b are the same; let them differ")
+        filters = (*a.filters, *b.filters)
+        refuse_unread(request.settings, filters)  # what is set for both, one of them may read
+        for settings, plan in ((request.a, a), (request.b, b)):
+            refuse_unread((one for one in settings if one.key != FILTER), plan.filters)
         return cls(request, a, b)
 
     def block(self, case: int) -> Callable[[int, int], Pairs]:

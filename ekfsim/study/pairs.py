@@ -1,5 +1,7 @@
 """1024 runs, each of them once under either of two settings → Pairs: the unit of work of a comparison."""
 
+import functools
+import operator
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,7 +12,7 @@ import numpy as np
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.backend import used, using
 from ekfsim.scene import Scene
-from ekfsim.study.block import watched
+from ekfsim.study.block import at_once, watched
 from ekfsim.study.tally import Tally
 
 PER_OCTAVE = 4  # bins of the logarithm of the position error
@@ -85,7 +87,12 @@ def run_pairs(a: Scene, b: Scene, first: int, runs: int, fast: bool = False) -> 
     fast : by code that Numba compiles
     """
     with using("numba" if fast else used()):
-        under_a, under_b = watched(a, first, runs), watched(b, first, runs)
+        portions = min(at_once(a, first, runs), at_once(b, first, runs), key=lambda some: some[0][1])
+        return functools.reduce(operator.add, (_pairs(a, b, *some) for some in portions))
+
+
+def _pairs(a: Scene, b: Scene, first: int, runs: int) -> Pairs:
+    under_a, under_b = watched(a, first, runs), watched(b, first, runs)
     one, other = under_a.ends(), under_b.ends()
     drawn = one.drawn & other.drawn
     return Pairs(

@@ -92,6 +92,11 @@ class Plan:
         return self.cases[0].scene.seed
 
     @property
+    def settings(self) -> tuple[Setting, ...]:
+        """What overrules the files, in all cells or in one."""
+        return (*self.request.settings, *(values[0] for values in self.request.sweep))
+
+    @property
     def filters(self) -> tuple[str, ...]:
         """The filters that watch, in their order."""
         return tuple(dict.fromkeys(case.filter for case in self.cases))

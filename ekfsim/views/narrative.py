@@ -72,7 +72,7 @@ def _opening(scene: Scene) -> str:
     if remark := FILTERS[scene.filter].remark:
         told += f"The filter {scene.filter}: {remark}\n"
     if FILTERS[scene.filter] is PF:
-        told += f"The filter {scene.filter}: {PF.count} particles\n"
+        told += f"The filter {scene.filter}: {scene.tuning.particles} particles\n"
     if scene.reading != "corrected":
         told += f"{_followed(scene)}\n"
     return told

@@ -4,6 +4,7 @@ import math
 import shlex
 from collections.abc import Sequence
 
+from ekfsim.files.filter_checks import unread
 from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
 from ekfsim.study.verdict import MOST_LOST, Word, agrees, covers, proven, verdict
@@ -118,6 +119,8 @@ def played(plan: Plan, result: Result, run: int) -> str:
     words += [] if request.world_name is None else ["--world", request.world_name]
     words += ["--seed", str(scene.seed), "--run", str(run), "--filter", scene.filter]
     words += [] if scene.reading == "corrected" else ["--reading", scene.reading]
-    for one in (*request.settings, *result.case.values):
-        words += ["--set", str(one)]
+    settings = (*request.settings, *result.case.values)
+    others = unread(settings, [scene.filter])  # what only another filter of the study reads: `play` would refuse it
+    for one in settings:
+        words += [] if one in others else ["--set", str(one)]
     return shlex.join(words)

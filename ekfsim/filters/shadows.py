@@ -1,0 +1,42 @@
+"""A counter-example: a filter that keeps of P what ellipse and cone show of it. Not to be localized by."""
+
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
+from ekfsim.filters.protocol import Beginning, Filter
+from ekfsim.geometry import Array, Booleans
+from ekfsim.models.protocols import Motion, Sensor
+
+
+@dataclass(frozen=True)
+class ShadowsAlone:
+    """Any filter of a pose, P with σ_xθ = σ_yθ = 0 after every step: position and heading as if they erred apart."""
+
+    remark: ClassVar[str] = ""
+    filter: Filter
+
+    @classmethod
+    def begin(cls, beginning: Beginning) -> Self:
+        """It stands around a filter that has begun, and does not begin by itself."""
+        raise NotImplementedError
+
+    def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
+        """P⁻ of the filter within, its two cross covariances dropped."""
+        after, prediction = self.filter.predict(belief, motion, u)
+        return shadows(after), prediction
+
+    def update(
+        self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
+    ) -> tuple[Gaussian, Correction]:
+        """P of the filter within, its two cross covariances dropped."""
+        after, correction = self.filter.update(prior, sensor, z, skip)
+        return shadows(after), correction
+
+
+def shadows(belief: Belief) -> Gaussian:
+    """The belief without σ_xθ and σ_yθ : (…, 3), (…, 3, 3)"""
+    x, P = belief
+    P = P.copy()
+    P[..., :2, 2] = P[..., 2, :2] = 0.0
+    return Gaussian(x, P)

@@ -1,0 +1,41 @@
+"""The numbers of a filter's own, which a person may set, and which filter reads which."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+RangeVariance = Literal["prediction", "reading"]
+CrossCovariances = Literal["kept", "dropped"]
+MOST_PARTICLES = 1_000_000
+READ_BY = {  # by these filters alone
+    "particles": ("pf",),
+    "alpha": ("ukf",),
+    "beta": ("ukf",),
+    "kappa": ("ukf",),
+    "iterations": ("iekf",),
+    "cross_covariances": ("kf", "ekf", "iekf", "ukf"),
+}
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """What may be set of a filter besides gate and guard; as it comes, every filter is its textbook's."""
+
+    particles: int = 1000  # of each run's particle filter
+    alpha: float = 1.0  # of the sigma points: √(α² (n + κ)) standard deviations from the mean
+    beta: float = 0.0  # what is known of the shape: 2 for a Gaussian, where α is small
+    kappa: float | None = None  # None: max(3 − n, 0)
+    iterations: int = 10  # how often the iterated filter linearises h again at most; 0 is the EKF
+    range_variance: RangeVariance = "prediction"  # whence the classroom's C_v = (ratio · r)² takes its r
+    cross_covariances: CrossCovariances = "kept"  # σ_xθ and σ_yθ, which no picture shows
+
+
+UNTUNED = Tuning()
+
+
+def reads(filter_name: str, number: str) -> bool:
+    """Whether a filter reads one of the numbers.
+
+    >>> reads("pf", "particles"), reads("ekf", "particles"), reads("ekf", "range_variance")
+    (True, False, True)
+    """
+    return filter_name in READ_BY.get(number, (filter_name,))
