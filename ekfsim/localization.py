@@ -59,9 +59,9 @@ def first_belief(scene: Scene, axes: tuple[int, ...] = ()) -> Gaussian:
 def _told_first(scene: Scene) -> Gaussian:
     """The first belief of a simulation: the document's own; the world file may say how uncertain its pose is."""
     world, told = scene.world, scene.world.told
-    if world.robot is None:
+    if world.told_robot is None:
         return Gaussian(told.start, np.diag(told.sigma**2))
-    P = world.robot.first_covariance(scene.reading).copy()
+    P = world.told_robot.first_covariance(scene.reading).copy()
     if np.any(told.sigma):
         places = np.array(world.layout.places)
         P[places[:, None], places] = np.diag(told.sigma**2)

@@ -8,6 +8,7 @@ from ekfsim.geometry import Array
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.systems.document import DocumentReading
+from ekfsim.systems.faults import NOTHING_WRONG, DriveFaults
 from ekfsim.systems.instruments import Instrument, Surroundings, Target
 from ekfsim.systems.instruments import Landmark as Landmark
 from ekfsim.systems.robots import PylonCart, Robot
@@ -73,6 +74,8 @@ class Told:
     sigma: Array  # (3,) standard deviations of the first belief
     noise: Noise
     map: Map
+    robot: Robot | None = None  # None: as it is
+    instruments: tuple[Instrument, ...] | None = None  # None: as they are
 
 
 @dataclass(frozen=True)
@@ -85,7 +88,8 @@ class World:
     start_sigma: Array  # (3,) the true start of each run is drawn from N(start, start_sigma²)
     noise: Noise
     told: Told
-    faults: Faults = Faults()
+    faults: Faults = Faults()  # of the classroom's robot
+    drive_faults: DriveFaults = NOTHING_WRONG  # of one that is driven
     landmarks: tuple[Landmark, ...] = ()
     description: str = ""
     system: str = "classroom"
@@ -103,8 +107,30 @@ class World:
         own = () if self.robot is None else self.robot.readings
         return reading in own or any(reading in instrument.readings for instrument in self.instruments)
 
-    def targets(self, reading: DocumentReading, floor: Map) -> list[tuple[Instrument, Target]]:
-        """Everything that the instruments may read, with the sensors that know this map."""
-        yaw_sigma = self.robot.yaw_sigma if isinstance(self.robot, PylonCart) else 0.0
-        around = Surroundings(self.landmarks, floor.walls, self.layout, reading, yaw_sigma)
+    @property
+    def told_robot(self) -> Robot | None:
+        """The robot as the filter is told."""
+        return self.told.robot or self.robot
+
+    @property
+    def told_instruments(self) -> tuple[Instrument, ...]:
+        """The instruments as the filter is told."""
+        return self.instruments if self.told.instruments is None else self.told.instruments
+
+    def targets(self, reading: DocumentReading) -> list[tuple[Instrument, Target]]:
+        """Everything that the instruments may read, with the sensors as the filter is told."""
+        around = self.around(reading)
+        return [(instrument, target) for instrument in self.told_instruments for target in instrument.targets(around)]
+
+    def true_targets(self) -> list[tuple[Instrument, Target]]:
+        """The same in the same order, with the sensors as they are."""
+        around = self._around("corrected", self.map, self.robot)
         return [(instrument, target) for instrument in self.instruments for target in instrument.targets(around)]
+
+    def around(self, reading: DocumentReading) -> Surroundings:
+        """What the sensors that the filter is told of are made from."""
+        return self._around(reading, self.told.map, self.told_robot)
+
+    def _around(self, reading: DocumentReading, floor: Map, robot: Robot | None) -> Surroundings:
+        yaw_sigma = robot.yaw_sigma if isinstance(robot, PylonCart) else 0.0
+        return Surroundings(self.landmarks, floor.walls, self.layout, reading, yaw_sigma)

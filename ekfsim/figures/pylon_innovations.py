@@ -120,7 +120,7 @@ def what_is_left(coded: Innovations, tries: Tries, album: Album) -> None:
 def table(tries: Tries, album: Album) -> None:
     """The same in numbers."""
     told, found = tries.told, tries.found
-    stated = 1000 * next(i.sigma for i in told.scene.world.instruments if isinstance(i, Pylon))
+    stated = 1000 * next(i.sigma for i in told.scene.world.told_instruments if isinstance(i, Pylon))
     usual = np.sort(found.nis)[: round(len(found.nis) * (1 - WORST))]
     σ, robust = 1000 * np.std(found.scatter), 1000 * ROBUST * np.median(np.abs(found.scatter))
     rows = [

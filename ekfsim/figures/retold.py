@@ -15,10 +15,10 @@ def retold(scene: Scene, reading: DocumentReading) -> Scene:
     """
     if scene.log is None or reading == scene.reading:
         return replace(scene, reading=reading)
-    world, robot = scene.world, scene.world.robot
+    world, robot = scene.world, scene.world.told_robot
     assert robot is not None
     motion = robot.motion(reading)
-    sensors = {target.name: target.sensor for _, target in world.targets(reading, world.told.map)}
+    sensors = {target.name: target.sensor for _, target in world.targets(reading)}
 
     def told(entry: Entry) -> Entry:
         match entry.given:

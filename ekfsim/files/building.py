@@ -1,14 +1,16 @@
 """Models → the objects a run is made of: degrees become radians, lists arrays, and belief what the filter is told."""
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
 from ekfsim.files.commands_file import CommandKeys, CommandsKeys, ExpectKeys
 from ekfsim.files.drive_file import PathKeys, StretchKeys
-from ekfsim.files.fields import Pose
+from ekfsim.files.fields import PartKeys, Pose, aliases
 from ekfsim.files.sensor_file import SENSORS, SensorKeys
+from ekfsim.files.told_file import FaultKeys
 from ekfsim.files.world_file import BeliefKeys, ObstacleKeys, SigmaKeys, WorldKeys
 from ekfsim.filters.tuning import Tuning
 from ekfsim.geometry import Array
@@ -17,10 +19,12 @@ from ekfsim.records import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.scene import Expect, Scene
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.drives import DRIVES, Drive, Stretch, Stretches
+from ekfsim.systems.faults import DriveFaults, SensorFaults
 from ekfsim.systems.instruments import Instrument
 from ekfsim.systems.robots import Robot
 from ekfsim.world import Faults, Landmark, Map, Noise, Obstacle, Told, World
 
+P = TypeVar("P", Robot, Instrument)
 NO_NOISE = Noise(0.0, 0.0, 0.0, 0.0, 0.0)  # of the classroom's robot, where another one drives
 
 
@@ -35,7 +39,8 @@ def world_of(keys: WorldKeys) -> World:
         start_sigma=sigma(keys.start.sigma),
         noise=noise,
         told=told(keys, floor_plan, start, noise),
-        faults=Faults(**keys.faults.model_dump()) if keys.faults else Faults(),
+        faults=faults_of(keys.faults),
+        drive_faults=drive_faults_of(keys.faults),
         landmarks=tuple(Landmark(mark.id, mark.x, mark.y) for mark in keys.landmarks),
         description=keys.description,
         system=keys.system,
@@ -50,10 +55,19 @@ def robot_of(keys: WorldKeys) -> Robot | None:
     if keys.system == "classroom":
         return None
     robot = SYSTEMS[keys.system].robot
-    if keys.robot is None:
-        return robot
-    made: Callable[..., Robot] = type(robot)
-    return made(**keys.robot.given())
+    return robot if keys.robot is None else changed(robot, keys.robot)
+
+
+def told_robot_of(keys: WorldKeys, belief: BeliefKeys) -> Robot | None:
+    """The robot as the filter is told, None where that is as it is."""
+    robot = robot_of(keys)
+    return None if robot is None or belief.robot is None else changed(robot, belief.robot)
+
+
+def changed(part: P, keys: PartKeys) -> P:
+    """The same robot or instrument with other numbers."""
+    anew: Callable[..., P] = replace
+    return anew(part, **keys.given())
 
 
 def instruments_of(keys: WorldKeys) -> tuple[Instrument, ...]:
@@ -61,6 +75,39 @@ def instruments_of(keys: WorldKeys) -> tuple[Instrument, ...]:
     if keys.system == "classroom":
         return ()
     return SYSTEMS[keys.system].instruments if keys.sensors is None else tuple(map(instrument_of, keys.sensors))
+
+
+def told_instruments_of(keys: WorldKeys, belief: BeliefKeys) -> tuple[Instrument, ...] | None:
+    """The sensors as the filter is told, None where that is as they are."""
+    if belief.sensors is None:
+        return None
+    told = {alias: getattr(belief.sensors, name) for name, alias in aliases(type(belief.sensors)).items()}
+    return tuple(one if told[one.name] is None else changed(one, told[one.name]) for one in instruments_of(keys))
+
+
+def faults_of(keys: FaultKeys | None) -> Faults:
+    """What is wrong with the classroom's robot."""
+    return Faults(**_of_record(Faults, keys))
+
+
+def drive_faults_of(keys: FaultKeys | None) -> DriveFaults:
+    """What is wrong with a driven robot and its instruments."""
+    given = _of_record(DriveFaults, keys)
+    faulty = given.pop("sensors", None)
+    if keys is None or keys.sensors is None or faulty is None:
+        return DriveFaults(**given)
+    sensors = {
+        alias: SensorFaults(part.biases(), part.outliers, part.outlier_size, part.delay)
+        for name, alias in aliases(type(keys.sensors)).items()
+        if (part := getattr(keys.sensors, name)) is not None
+    }
+    return DriveFaults(**given, sensors=sensors)
+
+
+def _of_record(record: type[Faults] | type[DriveFaults], keys: FaultKeys | None) -> dict[str, Any]:
+    """What a file tells of the fields of a record."""
+    names = {one.name for one in fields(record)}
+    return {} if keys is None else {name: value for name, value in keys.given().items() if name in names}
 
 
 def instrument_of(item: SensorKeys) -> Instrument:
@@ -78,6 +125,8 @@ def told(keys: WorldKeys, floor_plan: Map, start: Array, noise: Noise) -> Told:
         sigma=sigma(belief.sigma, keys.start.sigma),
         noise=replace(noise, **belief.noise.model_dump(exclude_none=True)) if belief.noise else noise,
         map=told_map(belief, floor_plan),
+        robot=told_robot_of(keys, belief),
+        instruments=told_instruments_of(keys, belief),
     )
 
 

@@ -41,6 +41,11 @@ def _inside(value: Any, is_angle: bool) -> Any:
     return math.radians(value) if is_angle else value
 
 
+def aliases(model: type[BaseModel]) -> dict[str, str]:
+    """The keys of a file by the names that the program has for them."""
+    return {name: field.alias or name for name, field in model.model_fields.items()}
+
+
 Metres = Annotated[float, Field(ge=-FAR, le=FAR, examples=[1.5])]
 Degrees = Annotated[float, Field(ge=-FAR, le=FAR, examples=[90])]
 Spread = Annotated[float, Field(ge=0, le=FAR, examples=[0.1])]

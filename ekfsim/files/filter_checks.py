@@ -5,8 +5,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from ekfsim.errors import Mistake, UsageError
 from ekfsim.files.checks import Sound
 from ekfsim.files.commands_file import CommandsKeys, TuningKeys
+from ekfsim.files.fields import aliases
 from ekfsim.files.settings import FILTER_SETTINGS, Setting, path_of
-from ekfsim.files.system_checks import aliases
 from ekfsim.filters import FILTERS
 from ekfsim.filters.tuning import READ_BY, reads
 from ekfsim.world import World

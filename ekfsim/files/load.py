@@ -12,14 +12,15 @@ from ekfsim.errors import InputError, Mistake, UsageError
 from ekfsim.files.building import scene_of, world_of
 from ekfsim.files.checks import Sound, angle_warnings, check_commands, check_world, kidnap_warnings
 from ekfsim.files.commands_file import WAYS, WITH_LANDMARKS, CommandsKeys, RecordingKeys
+from ekfsim.files.fields import aliases
 from ekfsim.files.filter_checks import check_filter_settings, filter_warnings
 from ekfsim.files.marked import Mark, Node, parse
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import resolve, source_name
 from ekfsim.files.schema import MODELS, Kind
-from ekfsim.files.settings import Setting, overruled, pinned, refusal, remark
+from ekfsim.files.settings import Setting, of_log, overruled, pinned, refusal, remark
 from ekfsim.files.source import bytes_of, text_of
-from ekfsim.files.system_checks import aliases, check_fit, check_system, check_ways, system_warnings
+from ekfsim.files.system_checks import check_fit, check_system, check_ways, system_warnings
 from ekfsim.files.telling import at, details_of, tell
 from ekfsim.files.world_file import WorldKeys
 from ekfsim.scene import Scene
@@ -101,10 +102,13 @@ def read_scene(
 
     Raises UsageError where there is no such file, or where the settings make a mistake of what was none.
     """
+    given = settings
     if settings:
         loaded = read_scene(path, world, log, reading)
         if loaded.mistakes or loaded.refusal:
             return loaded
+        if loaded.value is not None and loaded.value.log is not None:
+            settings = of_log(settings)
     file = read(Path(path), str(path), "commands", settings)
     loaded = scene_in(file, Path(path), world, settings)
     keys = file.keys if isinstance(file.keys, CommandsKeys) else None
@@ -119,7 +123,7 @@ def read_scene(
     if settings and loaded.mistakes:
         raise refusal(loaded.mistakes, settings)
     if settings and loaded.value is not None:
-        loaded.value = replace(loaded.value, settings=tuple(map(str, settings)))
+        loaded.value = replace(loaded.value, settings=tuple(map(str, given)))
     return loaded
 
 

@@ -164,6 +164,13 @@ def known_colours(schema: dict[str, Any]) -> None:
     schema["enum"] = list(COLOURS)
 
 
+def known_colour(name: str) -> str:
+    """A colour there is. Raises PydanticCustomError for another."""
+    if name not in COLOURS:
+        raise PydanticCustomError("literal_error", "unknown colour", {"expected": ""})
+    return name
+
+
 class InfraredKeys(PartKeys):
     """Pairs of an infrared emitter and receiver, whose intensity falls with the distance."""
 
@@ -180,13 +187,7 @@ class InfraredKeys(PartKeys):
     nearest: Positive = Field(Infrared.nearest, description=NEAREST)
     farthest: Positive = Field(Infrared.farthest, alias="range", description=FARTHEST, examples=[1.5])
 
-    @field_validator("colour")
-    @classmethod
-    def known(cls, name: str) -> str:
-        """A colour there is. Raises PydanticCustomError for another."""
-        if name not in COLOURS:
-            raise PydanticCustomError("literal_error", "unknown colour", {"expected": ""})
-        return name
+    _known = field_validator("colour")(known_colour)
 
 
 class SensorKeys(Strict):

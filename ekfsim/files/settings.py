@@ -14,7 +14,13 @@ OF_FILTERS, FILTER_SETTINGS = "filter", "filterSettings"  # filter.particles=…
 OF_WORLDS = ("noise", "belief", "faults", "start", "robot", "sensors")
 OFF = "off"
 POSE = ("x", "y", "theta")
-BELIEVED = {"noise.": "belief.noise.", "start.sigma.": "belief.sigma.", "start.": "belief.start."}  # unless told apart
+BELIEVED = {  # unless told apart
+    "noise.": "belief.noise.",
+    "start.sigma.": "belief.sigma.",
+    "start.": "belief.start.",
+    "robot.": "belief.robot.",
+    "sensors.": "belief.sensors.",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +144,18 @@ def pinned(root: Node, settings: Sequence[Setting]) -> Iterator[str]:
         if belief and belief not in keys and (held := root.at(tuple(belief.split(".")))) is not None:
             wrong = f"only the truth changes, the filter goes on believing {held.written}"
             yield f"{one.key}: {wrong}: the world file has '{belief}'; set that as well"
+
+
+def of_log(settings: Sequence[Setting]) -> tuple[Setting, ...]:
+    """The same settings where a run was recorded: there, what is said of the robot can mean the filter alone."""
+    keys = {one.key for one in settings}
+
+    def believed(one: Setting) -> Setting:
+        as_told = dataclasses.replace(one, key=f"belief.{one.key}")
+        apart = one.key.startswith(("robot.", "sensors.")) and as_told.key not in keys and fault_of(as_told) is None
+        return as_told if apart else one
+
+    return tuple(map(believed, settings))
 
 
 def _overruled(root: Node, one: Setting) -> Node:

@@ -2,20 +2,24 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import fields
+from typing import get_args, get_type_hints
 
 import numpy as np
-from pydantic import BaseModel
 
 from ekfsim.errors import Mistake
 from ekfsim.files.building import drive_of
 from ekfsim.files.checks import Sound, check_items
 from ekfsim.files.commands_file import SYSTEM_OF, WAYS, CommandsKeys
 from ekfsim.files.drive_file import MAX_ROUNDS, MAX_STEPS, PathKeys
+from ekfsim.files.fields import aliases
 from ekfsim.files.marked import Path
 from ekfsim.files.schema import schema_at
 from ekfsim.files.sensor_file import SensorKeys
-from ekfsim.files.system_file import RobotKeys, fields_of, robot_fields
-from ekfsim.files.telling import at, example, meant
+from ekfsim.files.system_file import RobotKeys, ToldRobotKeys, fields_of, robot_fields
+from ekfsim.files.telling import at, example, meant, one_of
+from ekfsim.files.told_file import FaultKeys
+from ekfsim.systems import SYSTEMS
 from ekfsim.systems.drives import DRIVES, Circle, Drive, Spiral, Square, Stretches
 from ekfsim.systems.instruments import (
     Bearings,
@@ -27,8 +31,13 @@ from ekfsim.systems.instruments import (
     Ranges,
     Ultrasonic,
 )
-from ekfsim.world import World
+from ekfsim.world import Faults, World
 
+ODOMETRY = {  # what may tell the turn
+    system: get_args(get_type_hints(type(told.robot))["odometry"])
+    for system, told in SYSTEMS.items()
+    if "odometry" in robot_fields(system)
+}
 BEAMS: dict[str, type[Ultrasonic] | type[Infrared]] = {"ultrasonic": Ultrasonic, "infrared": Infrared}
 NARROW = 2 * math.pi  # degrees: no bound of a field of view is larger, where radians are written
 LOOKING = (Markers, RangeBearings, Bearings, Ranges, Pylon)
@@ -37,11 +46,6 @@ ALL_IN_ONE = {  # how one sensor does the work of two
     **dict.fromkeys(BEAMS, ", with the 'bearings' of both"),
     **dict.fromkeys(OF_LANDMARKS, ", with the 'views' of both"),
 }
-
-
-def aliases(model: type[BaseModel]) -> dict[str, str]:
-    """The keys of a file by the names that the program has for them."""
-    return {name: field.alias or name for name, field in model.model_fields.items()}
 
 
 def check_system(file: Sound) -> Iterator[Mistake]:
@@ -54,9 +58,12 @@ def check_system(file: Sound) -> Iterator[Mistake]:
             if file.root.at(path):
                 right = f"'robot' and 'sensors' hold that of the system '{system}'"
                 yield file.mistake(path, "the noise ratios belong to the classroom's robot", right)
-        if file.root.at(("faults",)):
-            yield file.mistake(("faults",), "faults belong to the classroom's robot", "delete 'faults'")
-        yield from check_robot(file, system)
+        for path in (("robot",), ("belief", "robot")):
+            yield from check_robot(file, system, path)
+        yield from check_steering(file)
+        yield from check_faults(file, f"the robot of the system '{system}'", faults_of(system))
+        for path in (("belief", "sensors"), ("faults", "sensors")):
+            yield from check_carried(file, system, path)
     yield from check_sensors(file)
 
 
@@ -75,23 +82,72 @@ def check_classroom(file: Sound) -> Iterator[Mistake]:
         if file.root.at((key,)):
             right = f"delete '{key}', or write e.g. system: mower"
             yield file.mistake((key,), f"the classroom's robot {what}", right)
+    for key in ("robot", "sensors"):
+        if file.root.at(("belief", key)):
+            wrong = f"what is believed of the classroom's {'robot' if key == 'robot' else 'laser'} is told by 'noise'"
+            yield file.mistake(
+                ("belief", key), wrong, f"delete '{key}', or write e.g. noise: {{rangeSigmaRatio: 0.02}}"
+            )
+    yield from check_faults(file, "the classroom's robot", [name.name for name in fields(Faults)])
 
 
-def check_robot(file: Sound, system: str) -> Iterator[Mistake]:
-    """Keys that the robot of a system does not have, and a skid-steer matrix that tells nothing."""
-    names = aliases(RobotKeys)
-    known = [names[name] for name in robot_fields(system)]
-    robot = file.root.at(("robot",))
+def check_robot(file: Sound, system: str, path: Path) -> Iterator[Mistake]:
+    """Keys that the robot of a system does not have, true or told, and a skid-steer matrix that tells nothing."""
+    names = aliases(RobotKeys if path == ("robot",) else ToldRobotKeys)
+    known = [names[name] for name in robot_fields(system) if name in names]
+    robot = file.root.at(path)
     for key in robot.keys if robot else ():
         if key in names.values() and key not in known:
             wrong = f"the robot of the system '{system}' has no key '{key}'"
-            yield file.mistake(("robot", key), wrong, f"it has: {', '.join(known)}")
-    skid = file.value("robot", "skid")
+            yield file.mistake((*path, key), wrong, f"it has: {', '.join(known)}")
+    odometry = file.value(*path, "odometry")
+    if odometry is not None and "odometry" in known and odometry not in ODOMETRY[system]:
+        wrong = f"the robot of the system '{system}' has no odometry '{odometry}'"
+        yield file.mistake((*path, "odometry"), wrong, f"write {one_of(list(ODOMETRY[system]))}")
+    skid = file.value(*path, "skid")
     if skid is not None and "skid" in known:
         (forward, _, turning) = skid
         if abs(forward[0] * turning[1] - forward[1] * turning[0]) < 1e-9:
             wrong = "by its rows 1 and 3, other speeds of the two sides make the same motion"
-            yield file.mistake(("robot", "skid"), wrong, "write e.g. [[0.5, 0.5], [0, 0], [2.5, -2.5]]")
+            yield file.mistake((*path, "skid"), wrong, "write e.g. [[0.5, 0.5], [0, 0], [2.5, -2.5]]")
+
+
+def check_steering(file: Sound) -> Iterator[Mistake]:
+    """A filter that is told speeds where the robot counts ways, or the other way round."""
+    believed = file.value("belief", "robot", "odometry")
+    true = file.value("robot", "odometry") or "arctan"
+    if believed is not None and (believed == "skidSteer") != (true == "skidSteer"):
+        wrong = f"a robot of the odometry '{true}' cannot be read as one of '{believed}'"
+        right = "write robot: {odometry: skidSteer} as well, or skidSteer in neither"
+        yield file.mistake(("belief", "robot", "odometry"), wrong, right)
+
+
+def faults_of(system: str) -> list[str]:
+    """The names of what may be wrong with the robot of a system."""
+    return [*SYSTEMS[system].robot.faults, "sensors"]
+
+
+def check_faults(file: Sound, whose: str, names: list[str]) -> Iterator[Mistake]:
+    """Faults that a robot cannot have."""
+    known = [aliases(FaultKeys)[name] for name in names]
+    faults = file.root.at(("faults",))
+    for key in faults.keys if faults else ():
+        if key in aliases(FaultKeys).values() and key not in known:
+            wrong = f"{whose} has no fault '{key}'"
+            yield file.mistake(("faults", key), wrong, f"it may have: {', '.join(known)}")
+
+
+def check_carried(file: Sound, system: str, path: Path) -> Iterator[Mistake]:
+    """Sensors that are told of and that the robot does not carry."""
+    carried = [instrument.name for instrument in SYSTEMS[system].instruments]
+    if file.root.at(("sensors",)):
+        items = (file.root.at(("sensors", index)) for index in range(file.count("sensors")))
+        carried = [kind for item in items if item is not None for kind in item.keys]
+    told = file.root.at(path)
+    for kind in told.keys if told else ():
+        if kind in aliases(SensorKeys).values() and kind not in carried:
+            wrong = f"the world has no sensor '{kind}'"
+            yield file.mistake((*path, kind), wrong, f"it has: {', '.join(carried) or 'none'}")
 
 
 def check_sensors(file: Sound) -> Iterator[Mistake]:

@@ -40,12 +40,13 @@ def fields_of(part: Any) -> list[str]:
     return [field.name for field in dataclasses.fields(part) if field.init]
 
 
-class RobotKeys(PartKeys):
+class ToldRobotKeys(PartKeys):
     """What the robot measures of its motion, and how well. Each system's robot has some of these keys."""
 
-    angles: ClassVar[frozenset[str]] = frozenset({"heading_sigma", "turn_density", "yaw_sigma", "heading_density"})
+    angles: ClassVar[frozenset[str]] = frozenset(
+        {"heading_sigma", "gyro_sigma", "turn_density", "yaw_sigma", "heading_density"}
+    )
 
-    rate: Rate | None = Field(None, description=of_robots("rate", "Motion inputs per second, Hz."), examples=[100])
     width: Positive | None = Field(
         None, description=of_robots("width", "Between the left and the right wheel, m."), examples=[1.41]
     )
@@ -64,6 +65,11 @@ class RobotKeys(PartKeys):
         alias="headingSigma",
         description=of_robots("heading_sigma", "Process noise of the heading in one input, degrees.", True),
     )
+    gyro_sigma: Turn | None = Field(
+        None,
+        alias="gyroSigma",
+        description=of_robots("gyro_sigma", "Standard deviation of the gyro's turn rate, degrees per second.", True),
+    )
     wheel_ratio: Ratio | None = Field(
         None, alias="wheelRatio", description=of_robots("wheel_ratio", "Noise of the way of a wheel, per metre.")
     )
@@ -73,11 +79,12 @@ class RobotKeys(PartKeys):
         description=of_robots("wheel_floor", "Noise of the way of a wheel that stands still, standard deviation in m."),
         examples=[0.002],
     )
-    odometry: Literal["arctan", "midpoint", "skidSteer"] | None = Field(
+    odometry: Literal["arctan", "midpoint", "skidSteer", "gyro"] | None = Field(
         None,
-        description="How the wheels tell the turn: by equation 33 with its arctangent (pioneer's default), by the "
-        "mid-point rule, or by the skid-steer matrix of equation 30.",
-        examples=["arctan"],
+        description="What tells the turn. mower: its gyro (the default), or the wheels by equation 20 (midpoint). "
+        "pioneer: the wheels by equation 33 with its arctangent (the default), by the mid-point rule, or by the "
+        "skid-steer matrix of equation 30.",
+        examples=["midpoint"],
     )
     skid: list[Row] | None = Field(
         None,
@@ -127,3 +134,9 @@ class RobotKeys(PartKeys):
         alias="headingDensity",
         description=of_robots("heading_density", "Noise of the heading, degrees per √s.", True),
     )
+
+
+class RobotKeys(ToldRobotKeys):
+    """What the robot measures of its motion, and how well. Each system's robot has some of these keys."""
+
+    rate: Rate | None = Field(None, description=of_robots("rate", "Motion inputs per second, Hz."), examples=[100])

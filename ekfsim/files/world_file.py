@@ -1,6 +1,9 @@
 """The keys of a world file."""
 
-from pydantic import ConfigDict, Field
+from collections.abc import Iterable
+from dataclasses import fields
+
+from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 
 from ekfsim.files.fields import (
@@ -9,16 +12,18 @@ from ekfsim.files.fields import (
     Name,
     Polygon,
     Pose,
-    Probability,
     Ratio,
-    Scale,
     Spread,
     Strict,
     Text,
     Way,
+    aliases,
 )
 from ekfsim.files.sensor_file import MARKERS, SensorKeys
-from ekfsim.files.system_file import RobotKeys, SystemName
+from ekfsim.files.system_file import RobotKeys, SystemName, ToldRobotKeys, robot_fields
+from ekfsim.files.told_file import FaultKeys, ToldSensorsKeys
+from ekfsim.systems import SYSTEMS
+from ekfsim.world import Faults
 
 POSE = {"x": 1.0, "y": 1.0, "theta": 90}
 SIGMA = {"x": 0.1, "y": 0.1, "theta": 5}
@@ -26,11 +31,45 @@ DESK: JsonDict = {"name": "desk", "points": [[4, 3], [5, 3], [5, 4], [4, 4]]}
 LANDMARK: JsonDict = {"id": 3, "x": 5.0, "y": -5.0}
 ROOM = [[0, 0], [10, 0], [10, 8], [0, 8]]
 SQUARE = [[0, 0], [10, 0], [10, -10], [0, -10]]
-CLASSROOM: JsonDict = {  # what belongs to the classroom's robot, and what to the others
-    "if": {"properties": {"system": {"const": "classroom"}}},
-    "then": {"required": ["noise"], "properties": {"robot": False, "sensors": False}},
-    "else": {"properties": {"noise": False, "faults": False, "belief": {"properties": {"noise": False}}}},
+
+
+def only(names: Iterable[str], keys: type[BaseModel]) -> JsonDict:
+    """A mapping with no other of a model's keys than these."""
+    known = aliases(keys)
+    return {"propertyNames": {"enum": [known[name] for name in names]}}
+
+
+def of_system(system: str) -> JsonDict:
+    """What a world of a driven robot may hold."""
+    robot = robot_fields(system)
+    told: JsonDict = {"noise": False, "robot": only((name for name in robot if name != "rate"), ToldRobotKeys)}
+    return {
+        "noise": False,
+        "robot": only(robot, RobotKeys),
+        "faults": only((*SYSTEMS[system].robot.faults, "sensors"), FaultKeys),
+        "belief": {"properties": told},
+    }
+
+
+IN_THE_CLASSROOM: JsonDict = {
+    "robot": False,
+    "sensors": False,
+    "faults": only((field.name for field in fields(Faults)), FaultKeys),
+    "belief": {"properties": {"robot": False, "sensors": False}},
 }
+CLASSROOM: JsonDict = {
+    "if": {"properties": {"system": {"const": "classroom"}}},
+    "then": {"required": ["noise"], "properties": IN_THE_CLASSROOM},
+}
+
+
+def where_it_is(system: str) -> JsonDict:
+    """The condition of a system."""
+    told: JsonDict = {"properties": {"system": {"const": system}}, "required": ["system"]}
+    return {"if": told, "then": {"properties": of_system(system)}}
+
+
+BY_SYSTEM: JsonDict = {"allOf": [CLASSROOM, *map(where_it_is, SYSTEMS)]}
 
 
 class SigmaKeys(Strict):
@@ -120,6 +159,17 @@ class BeliefKeys(Strict):
         description="Noise ratios that the filter is told. Only in the classroom.",
         examples=[{"odometryDstSigmaRatio": 0.001}],
     )
+    robot: ToldRobotKeys | None = Field(
+        None,
+        description="What the filter is told of the robot; what is left out is as in `robot`. Not in the classroom.",
+        examples=[{"wheelSigma": 0.02}],
+    )
+    sensors: ToldSensorsKeys | None = Field(
+        None,
+        description="What the filter is told of the sensors, by their names; what is left out is as in `sensors`. Not "
+        "in the classroom.",
+        examples=[{"markers": {"azimuthSigma": 5}}],
+    )
     missing: list[Name] | None = Field(
         None, description="Names of the obstacles that the filter's map lacks.", examples=[["desk"]]
     )
@@ -129,28 +179,10 @@ class BeliefKeys(Strict):
     boundary: Polygon | None = Field(None, description="The filter's own idea of the boundary.", examples=[ROOM])
 
 
-class FaultKeys(Strict):
-    """What is wrong with the robot, and no one knows."""
-
-    range_bias: Metres = Field(0.0, alias="rangeBias", description="m added to every range.", examples=[0.1])
-    range_scale: Scale = Field(1.0, alias="rangeScale", description="Every range is multiplied by it.")
-    short_returns: Probability = Field(
-        0.0,
-        alias="shortReturns",
-        description="Probability that something unknown returns the beam before the wall does.",
-    )
-    odometry_distance_scale: Scale = Field(
-        1.0, alias="odometryDstScale", description="Every distance that the odometry measures is multiplied by it."
-    )
-    odometry_angle_scale: Scale = Field(
-        1.0, alias="odometryAngScale", description="Every angle that the odometry measures is multiplied by it."
-    )
-
-
 class WorldKeys(Strict):
     """What stands where, how noisy the robot is, and what the filter is told of both. Metres and degrees."""
 
-    model_config = ConfigDict(title="ekfsim world", json_schema_extra=CLASSROOM)
+    model_config = ConfigDict(title="ekfsim world", json_schema_extra=BY_SYSTEM)
 
     name: Name = Field(description="What pictures and reports call this world.", examples=["classroom"])
     description: Text = Field("", description="What this world is for; its first line is shown by `ekfsim list`.")
@@ -212,6 +244,6 @@ class WorldKeys(Strict):
     )
     faults: FaultKeys | None = Field(
         None,
-        description="What is wrong with the robot, and no one knows. Only in the classroom.",
+        description="What is wrong with the robot, and no one knows.",
         examples=[{"rangeBias": 0.1}],
     )

@@ -153,3 +153,29 @@ class GyroWheels(Motion):
             independent(self.wheel_sigma, self.wheel_sigma, self.gyro_sigma, 0.0),
             self.process,
         )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WheelsBesideGyro(GyroWheels):
+    """The same input where the wheels tell the turn, too, and no one asks the gyro: eqs 16 to 22 as they stand."""
+
+    def f(self, x: Array, u: Array) -> Array:
+        """(x + ΔD cos(Φ + ΔΦ/2),  y + ΔD sin(Φ + ΔΦ/2),  Φ + ΔΦ)          eqs 16 to 18"""
+        return arrival(x, *self._way(u))
+
+    def G(self, x: Array, u: Array) -> Array:
+        """[B | 0 | 0] : (…, 3, 4)          B: eq. 22"""
+        ΔD, ΔΦ = self._way(u)
+        middle = x[..., 2] + ΔΦ / 2
+        G = np.zeros((*middle.shape, 3, 4))
+        G[..., :2] = _B(middle, ΔD, self.width)
+        return G
+
+    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
+        """f, F, G, M and Q at once."""
+        return Motion.linearize(self, x, u)
+
+    def _way(self, u: Array) -> tuple[Array, Array]:
+        """ΔD = (ΔD_R + ΔD_L)/2      ΔΦ = (ΔD_R − ΔD_L)/b          eqs 19, 20"""
+        left, right = u[..., 0], u[..., 1]
+        return (right + left) / 2, (right - left) / self.width

@@ -91,6 +91,11 @@ class Stream:
         drawn = np.stack([generator.standard_normal((rows, columns)) for generator in self._generators], axis=1)
         return drawn.reshape(rows, *self._axes, columns)
 
+    def uniforms(self, rows: int) -> Array:
+        """In place of normals, the next numbers in [0, 1) : (rows, …)"""
+        drawn = np.stack([generator.random(rows) for generator in self._generators], axis=1)
+        return drawn.reshape(rows, *self._axes)
+
 
 def _verify(seed: int, runs: Integers) -> None:
     """Raises UsageError for a seed that would repeat another's draws, and for a seed or runs that have none."""

@@ -14,38 +14,44 @@ from ekfsim.records import Control, Entry, Reading
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import Draws, Stream, true_start
 from ekfsim.simulation.driver import Driver
+from ekfsim.simulation.past import Past
 from ekfsim.systems.drives import Drive
-from ekfsim.systems.instruments import Instrument, Pylon, Target
+from ekfsim.systems.faults import SOUND, SensorFaults
+from ekfsim.systems.instruments import Instrument, Pylon, Ranges, Target
 from ekfsim.systems.robots import PylonCart
 
 GPS_SIGMA, GPS_PERIOD = 0.4, 2.0  # m, s: of the pylon cart's GPS, which is recorded and not used
 SOON = 1e-9  # of a period: what rounding makes of an instant
 TICKS_AT_ONCE = 8_000  # of one run: the first picture does not wait for the last tick
 AT_ONCE = 100_000  # ticks times runs that are worked out together: one by one is slow, all at once takes much memory
-DISTURBANCE, INPUT, FIX, READING = range(4)  # the streams of random numbers, the last one for each target
+DISTURBANCE, INPUT, FIX, READING, OUTLIER = range(5)  # the streams of random numbers, the last two for each target
 
 
 def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
     """The log of a driven robot: at every tick its motion input, then the readings of that instant, one after another.
 
-    The truth follows the right equations whatever reading of the document the filter follows. What disturbs the
-    motion, the noise of its input and the noise of each target's readings are streams of their own (see `Stream`).
-    They go on whether a target is seen or not, so no noise, range or field of view changes the numbers of another.
+    The truth follows the right equations and the robot's own numbers, whatever reading of the document and whatever
+    numbers the filter is told. What disturbs the motion, the noise of its input and the noise of each target's readings
+    are streams of their own (see `Stream`). They go on whether a target is seen or not, so no noise, range, field of
+    view or fault changes the numbers of another.
     """
-    world, robot = scene.world, scene.world.robot
+    world, robot, believed = scene.world, scene.world.robot, scene.world.told_robot
     assert robot is not None
-    told, motion, course = robot.motion(scene.reading), robot.motion("corrected"), way.course(1 / robot.rate)
+    assert believed is not None
+    told, motion, course = believed.motion(scene.reading), robot.motion("corrected"), way.course(1 / robot.rate)
     start, wanted = true_start(world, draws), course.poses(world.start, 1 / robot.rate)
     driver = Driver(course, wanted, start, robot.rate, _process(motion, world.layout), draws.stream(DISTURBANCE))
     inputs, gps, watches = draws.stream(INPUT), _Gps(draws.stream(FIX)), list(_watches(scene, draws))
+    past = Past(start, max((watch.faults.delay for watch in watches), default=0.0) * robot.rate)
     yield Entry(0, None, start, t=0.0)
     index = 0
     for ticks in _blocks(len(course.speed), start.size // 3):
         moved, truth = driver.advance(ticks)
         ideal = robot.ideal(moved)
-        u = ideal + _noise(motion.M(ideal), inputs)
+        u = world.drive_faults.misread(ideal, robot.faults) + _noise(motion.M(ideal), inputs)
+        past.goes_on(truth)
         fixes = gps.fixes(ticks, truth, robot.rate) if isinstance(robot, PylonCart) else None
-        readings = _readings(watches, ticks, truth, u, robot.rate, world.layout)
+        readings = _readings(watches, ticks, past, u, robot.rate, world.layout)
         for i, tick in enumerate(ticks.tolist()):
             index, t = index + 1, (tick + 1) / robot.rate
             yield Entry(index, Control(told, u[i]), truth[i], t=t, fix=None if fixes is None else fixes[i])
@@ -55,37 +61,53 @@ def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
 
 
 class _Watch(NamedTuple):
-    """One target of one instrument, and the noise of its readings."""
+    """One target of one instrument, what is wrong with the instrument, and the noise of its readings."""
 
     instrument: Instrument
-    told: Target  # as the filter knows it
+    believed: Instrument  # as the filter is told
+    told: Target
     true: Target
-    stream: Stream
+    faults: SensorFaults
+    noise: Stream
+    outliers: Stream
 
-    def read(self, truth: Array, x: Array, u: Array) -> Array:
+    def read(self, pose: Array, x: Array, u: Array) -> Array:
         """Its readings from true poses (D, …, 3) and their states x : (D, …, k), nan where it is not in view."""
         h, _, R = self.true.sensor.linearize(x)
+        bias: Array = np.broadcast_to(self.faults.bias or (0.0,), h.shape)
         if isinstance(self.instrument, Pylon):  # the lidar's own noise, then turned by the yaw as it was measured
-            turn = wrap(u[..., 2] - truth[..., 2])
-            c, s = np.cos(turn), np.sin(turn)
-            h = np.stack([c * h[..., 0] - s * h[..., 1], s * h[..., 0] + c * h[..., 1]], axis=-1)
+            h, bias = _turned(h, u[..., 2] - pose[..., 2]), _turned(bias, u[..., 2])
             R = np.broadcast_to(np.eye(2) * self.instrument.sigma**2, (*h.shape, 2))
-        z = h + _noise(np.nan_to_num(R), self.stream)
+        noise = _noise(np.nan_to_num(R), self.noise)
+        if self.faults.outliers > 0:
+            struck = self.outliers.uniforms(len(noise)) < self.faults.outliers
+            noise = np.where(struck[..., None], self.faults.outlier_size * noise, noise)
+        z = h + bias + noise
         for i in angles(self.true.sensor.outputs):
             z[..., i] = wrap(z[..., i])
-        return np.where(self.instrument.sees(self.true, truth)[..., None], z, np.nan)
+        if isinstance(self.instrument, Ranges) and isinstance(self.believed, Ranges):
+            z = self.instrument.as_corrected_by(self.believed, z)
+        return np.where(self.instrument.sees(self.true, pose)[..., None], z, np.nan)
+
+
+def _turned(z: Array, angle: Array) -> Array:
+    """Vectors (…, 2) turned counter-clockwise : (…, 2)"""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([c * z[..., 0] - s * z[..., 1], s * z[..., 0] + c * z[..., 1]], axis=-1)
 
 
 def _watches(scene: Scene, draws: Draws) -> Iterator[_Watch]:
     """All that the instruments may read, and draw for, seen or not."""
     world = scene.world
-    told, true = world.targets(scene.reading, world.told.map), world.targets("corrected", world.map)
-    for number, ((instrument, known), (_, real)) in enumerate(zip(told, true, strict=True)):
-        yield _Watch(instrument, known, real, draws.stream(READING, number))
+    both = zip(world.targets(scene.reading), world.true_targets(), strict=True)
+    for number, ((believed, known), (instrument, real)) in enumerate(both):
+        faults = world.drive_faults.sensors.get(instrument.name, SOUND)
+        noise, outliers = draws.stream(READING, number), draws.stream(OUTLIER, number)
+        yield _Watch(instrument, believed, known, real, faults, noise, outliers)
 
 
 def _readings(
-    watches: list[_Watch], ticks: Integers, truth: Array, u: Array, rate: float, layout: Layout
+    watches: list[_Watch], ticks: Integers, past: Past, u: Array, rate: float, layout: Layout
 ) -> list[list[Reading]]:
     """What is read at the end of each tick, of what at least one run has in view."""
     read: list[list[Reading]] = [[] for _ in ticks]
@@ -93,7 +115,8 @@ def _readings(
         due = np.flatnonzero(_due(watch.instrument.rate, ticks, rate))
         if len(due) == 0:
             continue
-        z = watch.read(truth[due], layout.state(truth[due]), u[due])
+        pose = past.before(ticks[due] + 1, watch.faults.delay * rate)
+        z = watch.read(pose, layout.state(pose), u[due])
         met = np.any(~np.isnan(z.reshape(len(due), -1)), axis=-1)
         for i in np.flatnonzero(met).tolist():
             read[due[i]].append(Reading(watch.told.sensor, z[i], watch.told.name))

@@ -172,6 +172,12 @@ class Ranges(_Looking):
         """The range that a raw reading stands for, in m."""
         return (raw - self.bias) / self.scale
 
+    def as_corrected_by(self, believed: "Ranges", z: Array) -> Array:
+        """Readings of this radio where they are corrected with the scale and bias of another one."""
+        if (self.scale, self.bias) == (believed.scale, believed.bias):
+            return z
+        return (self.scale * z + self.bias - believed.bias) / believed.scale
+
 
 @dataclass(frozen=True)
 class Gnss(_Looking):

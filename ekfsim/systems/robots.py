@@ -5,7 +5,9 @@ would say of a true motion were they free of noise.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -18,7 +20,7 @@ from ekfsim.models.planar_imu import PlanarImu
 from ekfsim.models.protocols import Motion
 from ekfsim.models.unicycle import Stride, Unicycle
 from ekfsim.models.wheel_speeds import WheelSpeeds, WheelSpeedsAsWritten
-from ekfsim.models.wheels import GyroWheels, TwoWheels
+from ekfsim.models.wheels import GyroWheels, TwoWheels, WheelsBesideGyro
 from ekfsim.systems.document import DocumentReading
 
 
@@ -34,10 +36,16 @@ class Tick(NamedTuple):
     dt: float  # s
 
 
+Entries = Mapping[str, int]
+WHEELS: Entries = MappingProxyType({"left_scale": 0, "right_scale": 1})
+WAY_AND_TURN: Entries = MappingProxyType({"distance_scale": 0, "turn_scale": 1})
+
+
 class Robot(Protocol):
     """What a filter and a simulation need to know of a robot."""
 
     readings: ClassVar[tuple[DocumentReading, ...]]  # in which other equations than the corrected ones are followed
+    faults: ClassVar[Entries]  # which of DriveFaults it may have, each with the entry of u that it is about
 
     @property
     def rate(self) -> float:
@@ -73,11 +81,14 @@ class Mower:
     """Document 000: two wheels and a fibre-optic gyro at 100 Hz; u = (ΔD_L, ΔD_R, ω, dt)."""
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ("coded",)
+    faults: ClassVar[Entries] = MappingProxyType({**WHEELS, "gyro_bias": 2})
     rate: float = 100.0
     width: float = 1.41  # m, b of eq. 20, as the listing has it
     wheel_sigma: float = 0.01  # m, of each wheel's way; the listing's varIn = 1e-4
     position_sigma: float = 0.01  # m, eq. 29
     heading_sigma: float = math.sqrt(7.62e-5)  # rad, eq. 29: 0.5°, as its variance is printed
+    gyro_sigma: float = 0.0  # rad/s; the document leaves the gyro's noise to Q
+    odometry: Literal["gyro", "midpoint"] = "gyro"  # what tells the turn: the gyro, or the wheels by eq. 20
     layout: Layout = field(default=POSE, init=False)
 
     @property
@@ -86,8 +97,9 @@ class Mower:
         return np.diag([self.position_sigma**2, self.position_sigma**2, self.heading_sigma**2])
 
     def motion(self, reading: DocumentReading) -> Motion:
-        """Wheels and gyro, alike in every reading."""
-        return GyroWheels(self.width, self.wheel_sigma, self.process)
+        """Wheels and gyro, or the wheels alone; alike in every reading."""
+        made = GyroWheels if self.odometry == "gyro" else WheelsBesideGyro
+        return made(self.width, self.wheel_sigma, self.process, self.gyro_sigma)
 
     def first_covariance(self, reading: DocumentReading) -> Array:
         """P₀ = Q"""
@@ -103,6 +115,7 @@ class Pioneer:
     """Document 001: a P3 robot; u = (ΔD_L, ΔD_R) as its wheels count them, or skid-steered (u_L, u_R, dt)."""
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
+    faults: ClassVar[Entries] = WHEELS
     rate: float = 10.0
     width: float = 0.38  # m, W of eq. 33; the document measures it and does not print it
     wheel_ratio: float = 0.05  # σ of a wheel's way, per m
@@ -140,6 +153,7 @@ class GnssMower:
     """Document 003: a lawn mower that measures the speed of its wheels at 200 Hz; u = (v_L, v_R, dt)."""
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ("coded",)
+    faults: ClassVar[Entries] = WHEELS
     rate: float = 200.0
     half_track: float = 0.27  # m, R of the document
     speed_density: float = 0.10  # m/s per √Hz
@@ -167,6 +181,7 @@ class PylonCart:
     """Document 004: a cart with an inertial unit; u = (a_x, a_y, yaw, dt)."""
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ("printed", "coded")
+    faults: ClassVar[Entries] = MappingProxyType({"forward_bias": 0, "lateral_bias": 1, "yaw_bias": 2})
     rate: float = 10.0
     forward_sigma: float = math.sqrt(1.8373)  # m/s², R_t of eq. 10
     lateral_sigma: float = math.sqrt(1.1991)  # m/s²
@@ -200,6 +215,7 @@ class IRobotCreate:
     """The robots of the MRCLAM data: commanded speed and turn rate; u = (v, ω, dt)."""
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
+    faults: ClassVar[Entries] = WAY_AND_TURN
     rate: float = 100.0
     distance_density: float = 0.02  # m per √s
     heading_density: float = 0.10  # rad per √s
@@ -223,6 +239,7 @@ class RangingMower:
     """The mower of the Plaza data: way and turn since the last row; u = (distance, turn, dt)."""
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
+    faults: ClassVar[Entries] = WAY_AND_TURN
     rate: float = 10.0
     distance_density: float = 0.05  # m per √s
     heading_density: float = 0.01  # rad per √s

@@ -94,7 +94,7 @@ def kinds(scene: Scene) -> set[type[Sensor]]:
     """The kinds of sensors whose readings a driven or recorded run may hold."""
     if scene.log is not None:
         return {type(bare(e.given.sensor)) for e in scene.log.entries if isinstance(e.given, Reading)}
-    return {type(bare(target.sensor)) for _, target in scene.world.targets(scene.reading, scene.world.told.map)}
+    return {type(bare(target.sensor)) for _, target in scene.world.targets(scene.reading)}
 
 
 def told(values: Iterable[float], outputs: tuple[Quantity, ...], named: bool = True) -> str:

@@ -32,6 +32,36 @@ def test_a_drive_recorded_and_run_again_is_the_same(place):
     assert posteriors(place / "again") == pytest.approx(posteriors(place / "run"), abs=1e-9)
 
 
+def test_a_log_says_nothing_of_the_faults_nor_of_a_truth_that_the_filter_is_not_told(place):
+    (place / "world.yaml").write_text(LAWN + "belief: {robot: {speedDensity: 0.2}, sensors: {gnss: {sigma: 0.3}}}\n")
+    secret = ("robot.turnDensity=7", "sensors.gnss.sigma=0.7", "faults.leftScale=1.1", "faults.sensors.gnss.xBias=7")
+    set_secretly = [word for text in secret for word in ("--set", text)]
+    assert ekfsim("record", "drive.yaml", "-o", "log", "--set", "belief.start.x=1", *set_secretly).status == 0
+    about = (place / "log" / "about.txt").read_text()
+    assert "belief.start.x=1" in about
+    assert not any(text in about for text in secret)
+    sound = ("record", "drive.yaml", "-o", "sound", "--set", "belief.start.x=1", *set_secretly[:4])
+    assert ekfsim(*sound).status == 0
+    sound, faulty = table(place / "sound"), table(place / "log")
+    assert faulty["wheelspeeds.csv"] != sound["wheelspeeds.csv"]
+    assert faulty["gnss.csv"] != sound["gnss.csv"]
+    assert faulty["groundtruth.csv"] == sound["groundtruth.csv"]
+    told = "robot.speedDensity=0.2", "robot.turnDensity=7", "sensors.gnss.sigma=0.3"
+    (place / "world.yaml").write_text(LAWN)
+    assert ekfsim("run", "logged.yaml", "--log", "log", "-q", "--trace", "one", *set_of(told)).status == 0
+    (place / "world.yaml").write_text(LAWN + "belief: {robot: {speedDensity: 0.2}, sensors: {gnss: {sigma: 0.3}}}\n")
+    assert ekfsim("run", "logged.yaml", "--log", "log", "-q", "--trace", "two", *set_of(told[1:2])).status == 0
+    assert posteriors(place / "one") == posteriors(place / "two")
+
+
+def set_of(settings):
+    return [word for text in settings for word in ("--set", text)]
+
+
+def table(folder):
+    return {file.name: file.read_text() for file in folder.iterdir()}
+
+
 def test_another_seed_and_run_make_another_log(place):
     texts = set()
     for n, args in enumerate(([], ["--seed", "4"], ["--run", "1"])):

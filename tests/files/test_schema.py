@@ -108,6 +108,15 @@ def test_a_template_loads_with_each_of_its_examples_switched_on(tmp_path, kind):
         assert mistakes in ([], ["belief.obstacles lists all that the filter's map holds"]), block
 
 
+def test_a_template_loads_with_what_is_believed_and_wrong_of_a_driven_robot(tmp_path):
+    """Its examples of `belief` and `faults` for driven robots stand behind three spaces."""
+    head = "name: a\nsystem: mower\nlandmarks: [{id: 1, x: 2, y: 2}]\nstart: {x: 0, y: 0, theta: 0}\n"
+    apart = re.findall(r"^#   ((?:belief|faults): .*\n)", template("world"), re.MULTILINE)
+    assert len(apart) == 2
+    checked = check(written("world", tmp_path, head + "".join(apart)))
+    assert (checked.mistakes, checked.warnings) == ([], [])
+
+
 def test_a_template_loads_with_each_way_to_drive(tmp_path):
     """Its examples of `drive` and `recording` stand behind three spaces, in place of `commands`."""
     (tmp_path / "mower.yaml").write_text("name: a\nsystem: mower\nstart: {x: 0, y: 0, theta: 0}\n")

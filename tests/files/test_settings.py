@@ -7,6 +7,7 @@ import pytest
 from ekfsim.errors import InputError, UsageError
 from ekfsim.files.load import read_scene
 from ekfsim.files.settings import setting, swept
+from ekfsim.systems.faults import SensorFaults
 from ekfsim.systems.instruments import Infrared
 
 WORLD = """\
@@ -120,6 +121,84 @@ def test_the_numbers_of_other_systems(place):
         scene("robot.turnDensity=3")
     with pytest.raises(UsageError, match=r"--set noise.rangeSigmaRatio=3: the noise ratios belong to the classroom's"):
         scene("noise.rangeSigmaRatio=3")
+
+
+MOWER = "name: course\nsystem: mower\nlandmarks: [{id: 0, x: 5, y: 1}]\nstart: {x: 0, y: 0, theta: 0}\n"
+
+
+@pytest.fixture
+def course(place):
+    def written(more="", way="drive: {path: circle, radius: 3}\n"):
+        (place / "world.yaml").write_text(MOWER + more)
+        (place / "commands.yaml").write_text(f"world: world.yaml\n{way}")
+
+    return written
+
+
+def test_a_number_of_a_driven_robot_moves_truth_and_filter_unless_belief_pins_it(course):
+    course()
+    world = scene("robot.wheelSigma=0.03", "sensors.markers.azimuthSigma=9").world
+    assert (world.robot.wheel_sigma, world.told_robot.wheel_sigma) == (0.03, 0.03)
+    assert world.told_instruments[0].azimuth_sigma == world.instruments[0].azimuth_sigma == math.radians(9)
+    course("belief: {robot: {wheelSigma: 0.02}, sensors: {markers: {azimuthSigma: 5}}}\n")
+    world = scene("robot.wheelSigma=0.03", "robot.headingSigma=2", "sensors.markers.azimuthSigma=9").world
+    assert (world.robot.wheel_sigma, world.told_robot.wheel_sigma) == (0.03, 0.02)
+    assert world.told_robot.heading_sigma == world.robot.heading_sigma == math.radians(2)
+    assert [i.azimuth_sigma for i in (*world.instruments, *world.told_instruments)] == [
+        math.radians(9),
+        math.radians(5),
+    ]
+    assert remarks("robot.wheelSigma=0.03", "robot.headingSigma=2", "sensors.markers.azimuthSigma=9") == [
+        "robot.wheelSigma: only the truth changes, the filter goes on believing 0.02: the world file has "
+        "'belief.robot.wheelSigma'; set that as well",
+        "sensors.markers.azimuthSigma: only the truth changes, the filter goes on believing 5: the world file has "
+        "'belief.sensors.markers.azimuthSigma'; set that as well",
+    ]
+
+
+def test_belief_and_faults_of_a_driven_robot_are_set_key_by_key(course):
+    course("belief: {robot: {wheelSigma: 0.02}}\n")
+    world = scene(
+        "belief.robot.headingSigma=1", "belief.sensors.markers.height=1", "faults.gyroBias=3", "faults.leftScale=1.1",
+        "faults.sensors.markers.elevationBias=2", "faults.sensors.markers.delay=0.5",
+        "faults.sensors.markers.outliers=1",
+    ).world  # fmt: skip
+    assert (world.robot.heading_sigma, world.told_robot.heading_sigma) == (math.sqrt(7.62e-5), math.radians(1))
+    assert (world.instruments[0].height, world.told_instruments[0].height) == (0.226, 1)
+    faults = world.drive_faults
+    assert (faults.left_scale, faults.right_scale, faults.gyro_bias) == (1.1, 1, math.radians(3))
+    assert faults.sensors == {"markers": SensorFaults((0, math.radians(2)), 1, 10, 0.5)}
+    for wrong, told in (
+        ("faults.yawBias=1", "the robot of the system 'mower' has no fault 'yawBias'; it may have: leftScale"),
+        ("faults.gyroBais=1", r"unknown key 'gyroBais'; did you mean 'faults.gyroBias'\?"),
+        ("belief.sensors.gnss.sigma=1", "the world has no sensor 'gnss'; it has: markers"),
+        ("belief.robot.rate=1", "unknown key 'rate'"),
+    ):
+        with pytest.raises(UsageError, match=f"--set {wrong}: {told}"):
+            scene(wrong)
+
+
+def test_on_a_log_what_is_said_of_the_robot_is_what_the_filter_is_told(course, place):
+    """Also where the world tells apart what is true of a simulation: a recording has no other truth."""
+    row = " ".join(["1", "0", "{}", "0.01", "0.01", *["0"] * 16])
+    (place / "log").mkdir()
+    (place / "log/a-poselog.txt").write_text("".join(row.format(n / 100) + "\n" for n in range(5)))
+    (place / "log/a-angles.txt").write_text("0.02 0 0.1 -0.05\n")
+    (place / "log/a-map.txt").write_text("0 5 1\n")
+    course("belief: {robot: {headingSigma: 0.5}, sensors: {markers: {azimuthSigma: 5}}}\n",
+           "recording: {format: mower, path: log}\n")  # fmt: skip
+
+    def told(*settings):
+        assert remarks(*settings) == []
+        played = scene(*settings)
+        assert played.settings == settings
+        _, motion, *_, sight, _, _ = (entry.given for entry in played.log.entries)
+        return math.degrees(math.sqrt(motion.motion.process[2, 2])), math.degrees(sight.sensor.azimuth_sigma)
+
+    assert told() == pytest.approx((0.5, 5))
+    assert told("robot.headingSigma=2", "sensors.markers.azimuthSigma=3") == pytest.approx((2, 3))
+    assert told("belief.robot.headingSigma=2", "belief.sensors.markers.azimuthSigma=3") == pytest.approx((2, 3))
+    assert told("belief.robot.headingSigma=2", "robot.headingSigma=4") == pytest.approx((2, 5))
 
 
 def test_two_mistakes_are_two_lines():

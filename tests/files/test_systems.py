@@ -181,12 +181,22 @@ def mistakes_in(model, name, example):
 def test_the_schema_says_which_keys_go_together():
     schema = json_schema("world")
     assert schema["required"] == ["name", "start"]
-    assert schema["if"] == {"properties": {"system": {"const": "classroom"}}}
-    assert schema["then"] == {"required": ["noise"], "properties": {"robot": False, "sensors": False}}
-    assert schema["else"]["properties"] == {
+    classroom, *others = schema["allOf"]
+    assert classroom["if"] == {"properties": {"system": {"const": "classroom"}}}
+    assert classroom["then"]["required"] == ["noise"]
+    assert (classroom["then"]["properties"]["robot"], classroom["then"]["properties"]["sensors"]) == (False, False)
+    assert [other["if"]["properties"]["system"]["const"] for other in others] == list(SYSTEMS)
+    pylon = next(other for other in others if other["if"]["properties"]["system"]["const"] == "pylon")
+    assert pylon["then"]["properties"] == {
         "noise": False,
-        "faults": False,
-        "belief": {"properties": {"noise": False}},
+        "robot": {"propertyNames": {"enum": ["rate", "forwardSigma", "lateralSigma", "yawSigma"]}},
+        "faults": {"propertyNames": {"enum": ["forwardBias", "lateralBias", "yawBias", "sensors"]}},
+        "belief": {
+            "properties": {
+                "noise": False,
+                "robot": {"propertyNames": {"enum": ["forwardSigma", "lateralSigma", "yawSigma"]}},
+            }
+        },
     }
     ways = [{"required": ["commands"]}, {"required": ["drive"]}, {"required": ["recording"]}]
     assert json_schema("commands")["oneOf"] == ways
@@ -239,14 +249,49 @@ ROOMS = {
         [
             "3:8: noise: the noise ratios belong to the classroom's robot; 'robot' and 'sensors' hold that of the system 'mower'",
             "5:17: belief.noise: the noise ratios belong to the classroom's robot; 'robot' and 'sensors' hold that of the system 'mower'",
-            "6:9: faults: faults belong to the classroom's robot; delete 'faults'",
         ],
     ),
     "another's keys": (
         MOWER + "robot: {halfTrack: 0.2, wdth: 3}\n",
         [
-            "5:20: robot.halfTrack: the robot of the system 'mower' has no key 'halfTrack'; it has: rate, width, wheelSigma, positionSigma, headingSigma",
+            "5:20: robot.halfTrack: the robot of the system 'mower' has no key 'halfTrack'; it has: rate, width, wheelSigma, positionSigma, headingSigma, gyroSigma, odometry",
             "5:25: robot: unknown key 'wdth'; did you mean 'width'?",
+        ],
+    ),
+    "told and wrong in the classroom": (
+        CLASSROOM + "belief: {robot: {width: 1}, sensors: {}}\nfaults: {rangeBias: 1, gyroBias: 1, gyroBais: 1}\n",
+        [
+            "4:17: belief.robot: what is believed of the classroom's robot is told by 'noise'; delete 'robot', or write e.g. noise: {rangeSigmaRatio: 0.02}",
+            "4:38: belief.sensors: what is believed of the classroom's laser is told by 'noise'; delete 'sensors', or write e.g. noise: {rangeSigmaRatio: 0.02}",
+            "5:34: faults.gyroBias: the classroom's robot has no fault 'gyroBias'; it may have: rangeBias, rangeScale, shortReturns, odometryDstScale, odometryAngScale",
+            "5:37: faults: unknown key 'gyroBais'; did you mean 'gyroBias'?",
+        ],
+    ),
+    "told and wrong elsewhere": (
+        MOWER
+        + "belief: {robot: {rate: 5, halfTrack: 1, odometry: arctan, headingSigma: -1}, sensors: {gnss: {}, markers: {range: 3}}}\n"
+        "faults: {rangeBias: 1, yawBias: 2, leftScale: x, sensors: {infrared: {bias: 1}, markers: {azimuthBais: 1, outliers: 2, delay: -1}}}\n",
+        [
+            "5:18: belief.robot: unknown key 'rate'; known keys here: width, wheelSigma, positionSigma, headingSigma, gyroSigma, wheelRatio, wheelFloor, odometry, skid, skidSigma, halfTrack, speedDensity, turnDensity, forwardSigma, lateralSigma, yawSigma, distanceDensity, headingDensity",
+            "5:38: belief.robot.halfTrack: the robot of the system 'mower' has no key 'halfTrack'; it has: width, wheelSigma, positionSigma, headingSigma, gyroSigma, odometry",
+            "5:51: belief.robot.odometry: the robot of the system 'mower' has no odometry 'arctan'; write gyro or midpoint",
+            "5:73: belief.robot.headingSigma: -1 is negative; write a number of 0 or more",
+            "5:94: belief.sensors.gnss: the world has no sensor 'gnss'; it has: markers",
+            "5:108: belief.sensors.markers: unknown key 'range'; known keys here: height, azimuthSigma, elevationSigma",
+            "6:21: faults.rangeBias: the robot of the system 'mower' has no fault 'rangeBias'; it may have: leftScale, rightScale, gyroBias, sensors",
+            "6:33: faults.yawBias: the robot of the system 'mower' has no fault 'yawBias'; it may have: leftScale, rightScale, gyroBias, sensors",
+            "6:47: faults.leftScale: 'x' is text where a number belongs; write e.g. 1.05",
+            "6:70: faults.sensors.infrared: the world has no sensor 'infrared'; it has: markers",
+            "6:91: faults.sensors.markers: unknown key 'azimuthBais'; did you mean 'azimuthBias'?",
+            "6:117: faults.sensors.markers.outliers: 2 is too large; write a number from 0 to 1",
+            "6:127: faults.sensors.markers.delay: -1 is negative; write a number of 0 or more",
+        ],
+    ),
+    "told to be another": (
+        HEAD + "system: pioneer\nbelief: {robot: {odometry: skidSteer, skid: [[1, 1], [0, 0], [2, 2]]}}\n",
+        [
+            "4:28: belief.robot.odometry: a robot of the odometry 'arctan' cannot be read as one of 'skidSteer'; write robot: {odometry: skidSteer} as well, or skidSteer in neither",
+            "4:45: belief.robot.skid: by its rows 1 and 3, other speeds of the two sides make the same motion; write e.g. [[0.5, 0.5], [0, 0], [2.5, -2.5]]",
         ],
     ),
     "numbers of a robot": (

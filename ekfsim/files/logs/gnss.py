@@ -38,9 +38,9 @@ def read_gnss(path: Path, world: World, reading: DocumentReading, warnings: list
     dt = np.diff(wheels.t)
     moved = dt > 0  # of two rows of one time the second tells nothing
     u = np.column_stack([wheels.values[1:, 1:], dt])[moved]
-    assert world.robot is not None
+    assert world.told_robot is not None
     motions = Motions(
-        world.robot.motion(reading), wheels.t[:-1][moved], wheels.t[1:][moved], u, np.array([False, False, True])
+        world.told_robot.motion(reading), wheels.t[:-1][moved], wheels.t[1:][moved], u, np.array([False, False, True])
     )
     gnss = only(world, reading, Gnss)
     samples = [

@@ -43,13 +43,13 @@ def read_mower(path: Path, world: World, reading: DocumentReading, warnings: lis
     tell_gaps(poses, warnings)
     angles = bare_table(files[1], ANGLES, warnings, mixed=True)
     landmarks = _landmarks(bare_table(files[2], MAP, warnings, mixed=True), warnings)
-    assert world.robot is not None
-    dT = 1 / world.robot.rate
+    assert world.told_robot is not None
+    dT = 1 / world.told_robot.rate
     readings = _by_row(poses, angles, dT, _readings(angles, landmarks, world, reading, warnings), warnings)
     u = np.column_stack([poses.values[:, 1:4], np.full(len(poses), dT)])
     truth = poses.values[:, 4:7].copy()
     truth[:, 2] = wrap(truth[:, 2])
-    motion = world.robot.motion(reading)
+    motion = world.told_robot.motion(reading)
     entries = [Entry(0, None, truth[0], t=float(poses.t[0]) - dT)]  # the listing begins before its first time update
     for row, t in enumerate(poses.t.tolist()):
         for given in (Control(motion, u[row]), *readings.get(row, ())):

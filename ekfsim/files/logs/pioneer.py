@@ -38,8 +38,8 @@ def read_pioneer(path: Path, world: World, reading: DocumentReading, warnings: l
     tell_gaps(odometry, warnings)
     truth = read_truth(folder, warnings)
     samples = _samples(folder, world, reading, warnings)
-    assert world.robot is not None
-    motion = world.robot.motion(reading)
+    assert world.told_robot is not None
+    motion = world.told_robot.motion(reading)
     u = _inputs(motion, odometry.values[1:, 1:], np.diff(odometry.t))
     motions = Motions(motion, odometry.t[:-1], odometry.t[1:], u, _amounts(motion))
     return Timeline(str(path), float(odometry.t[0]), motions, samples, truth).recorded(world, reading, warnings)
@@ -61,7 +61,7 @@ def _inputs(motion: Motion, ways: Array, dt: Array) -> Array:
 def _samples(folder: Path, world: World, reading: DocumentReading, warnings: list[str]) -> list[Sample]:
     """The readings of the world's instruments, in the order in which the world names them."""
     samples, found = list[Sample](), list[Path]()
-    for instrument in world.instruments:
+    for instrument in world.told_instruments:
         if instrument.name not in FILES:
             continue
         file = find_any(folder, "the beams", f"{instrument.name}*.csv")

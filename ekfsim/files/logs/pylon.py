@@ -38,8 +38,8 @@ def read_pylon(path: Path, world: World, reading: DocumentReading, warnings: lis
     lines = lines_of(table_file(path, "the CSV file of the lidar and the inertial unit", ".csv"))
     wanted = Wanted(COLUMNS, PLACES, range(12, 13), frozenset({"X", "Y", "Latitude", "Longitude"}))
     rows = some(numbers_of(lines, wanted, ",", warnings), "lidar and accelerations")
-    assert world.robot is not None
-    step = 1 / world.robot.rate
+    assert world.told_robot is not None
+    step = 1 / world.told_robot.rate
     rows = _timed(rows, lines, step, warnings)
     θ = heading_of(rows.values[:, 5])
     # As in the authors' code the time between two rows is taken for constant; only the corrected reading measures it.
@@ -50,7 +50,7 @@ def read_pylon(path: Path, world: World, reading: DocumentReading, warnings: lis
     beam = rows.values[:, 1:3]
     beam = np.where((beam == 0).all(axis=1, keepdims=True), np.nan, beam)  # no pylon stands within the lidar
     z, fixes = to_global(beam, θ), metres(rows.values[:, 3:5])
-    motion, pylon = world.robot.motion(reading), only(world, reading, Pylon)
+    motion, pylon = world.told_robot.motion(reading), only(world, reading, Pylon)
     entries = [Entry(0, None, t=0.0)]
     for t, given, offset, fix in zip(rows.t.tolist(), u, z, fixes, strict=True):
         known = None if np.isnan(fix).any() else fix

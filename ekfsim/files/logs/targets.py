@@ -13,15 +13,14 @@ def of_landmarks(
     world: World, reading: DocumentReading, landmarks: tuple[Landmark, ...], kinds: tuple[type[Instrument], ...]
 ) -> list[tuple[Instrument, dict[int, Target]]]:
     """The world's instruments of these kinds, each with its sensor for every landmark, by the landmark's id."""
-    there = replace(world, landmarks=landmarks)
-    found = [instrument for instrument in world.instruments if isinstance(instrument, kinds)]
+    around = replace(world, landmarks=landmarks).around(reading)
+    found = [instrument for instrument in world.told_instruments if isinstance(instrument, kinds)]
     if not found:
         wanted = " or ".join(kind.name for kind in kinds)
         raise UsageError(f"{world.name}: this log belongs to a world with the sensor {wanted}")
     by_instrument = []
     for instrument in found:
-        targets = replace(there, instruments=(instrument,)).targets(reading, world.told.map)
-        by_id = {mark.id: target for mark, (_, target) in zip(landmarks, targets, strict=True)}
+        by_id = {mark.id: target for mark, target in zip(landmarks, instrument.targets(around), strict=True)}
         by_instrument.append((instrument, by_id))
     return by_instrument
 
@@ -44,13 +43,12 @@ def landmarks_of(rows: Rows) -> tuple[Landmark, ...]:
 
 def by_name(world: World, reading: DocumentReading, instrument: Instrument) -> dict[str, Target]:
     """All sensors of an instrument of the world, by their names."""
-    alone = replace(world, instruments=(instrument,))
-    return {target.name: target for _, target in alone.targets(reading, world.told.map)}
+    return {target.name: target for target in instrument.targets(world.around(reading))}
 
 
 def only(world: World, reading: DocumentReading, kind: type[Instrument]) -> Target:
     """The one sensor that the world has of a kind. Raises UsageError where it has none, or several."""
-    found = [target for instrument, target in world.targets(reading, world.told.map) if isinstance(instrument, kind)]
+    found = [target for instrument, target in world.targets(reading) if isinstance(instrument, kind)]
     if len(found) != 1:
         wanted = f"this log belongs to a world with one thing that the sensor {kind.name} sees"
         raise UsageError(f"{world.name}: {wanted}, not {len(found)}")

@@ -111,9 +111,9 @@ def _snapped(t: Array, edges: Array) -> Array:
 
 def beginning(world: World, reading: DocumentReading, pose: Array | None) -> Gaussian:
     """The first belief: at the true pose, or where the world file says, as uncertain as the robot's document has it."""
-    assert world.robot is not None
+    assert world.told_robot is not None
     pose = world.told.start if pose is None else pose
-    return Gaussian(world.layout.state(pose), world.robot.first_covariance(reading))
+    return Gaussian(world.layout.state(pose), world.told_robot.first_covariance(reading))
 
 
 Happened = tuple[float, Control | Reading | None, bool]  # t, what the filter is given, whether errors are counted

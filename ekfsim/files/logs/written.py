@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -30,10 +31,17 @@ def write_log(scene: Scene, entries: Iterable[Entry], out: Path, force: bool) ->
     writer = _writer_of(scene)
     with whole_folder(out, *ALL_FILES, force=force) as folder:
         run = Run.of(entries)
-        files = {**writer(scene, run, out), "about.txt": f"A recorded log: {told_in_a_line(scene)}\n"}
+        files = {**writer(scene, run, out), "about.txt": f"A recorded log: {told_in_a_line(_as_told(scene))}\n"}
         for name, text in files.items():
             (folder / name).write_text(text, encoding="utf-8")
     return _differences(scene, run)
+
+
+def _as_told(scene: Scene) -> Scene:
+    """The scene without the settings that no one knows of: its faults, and what the filter is told otherwise."""
+    told = scene.world.told
+    hidden = ["faults.", *(["robot."] if told.robot else ()), *(["sensors."] if told.instruments else ())]
+    return replace(scene, settings=tuple(one for one in scene.settings if not one.startswith(tuple(hidden))))
 
 
 def _writer_of(scene: Scene) -> Writer:
