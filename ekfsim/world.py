@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ekfsim.geometry import Array
+from ekfsim.geometry.walls import BOUNDARY as BOUNDARY
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.systems.document import DocumentReading
@@ -12,8 +13,6 @@ from ekfsim.systems.faults import NOTHING_WRONG, DriveFaults
 from ekfsim.systems.instruments import Instrument, Surroundings, Target
 from ekfsim.systems.instruments import Landmark as Landmark
 from ekfsim.systems.robots import PylonCart, Robot
-
-BOUNDARY = "boundary"  # the name that the boundary's ring goes by among the obstacles
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,11 @@ from ekfsim.geometry.bundle import bundle
 from ekfsim.geometry.cells import Cells
 from ekfsim.geometry.fan import fan
 from ekfsim.geometry.grid import Grid
+from ekfsim.geometry.ground import Ground
 from ekfsim.geometry.march import march
 from ekfsim.geometry.meeting import REACH, TIE, meet, see
 
+BOUNDARY = "boundary"  # the name of the ring that is the room's own wall
 COLLINEAR = 1e-9  # rad, and of the polygon's size: edges that differ by less lie on one line
 RECENT = 8  # beams that are remembered
 FEW = 64  # beams that are sooner followed one by one than all at once
@@ -165,6 +167,11 @@ class Walls:
     @cached_property
     def _boxes(self) -> tuple[Array, Array]:
         return self.segments.min(axis=1), self.segments.max(axis=1)
+
+    @cached_property
+    def ground(self) -> Ground:
+        """Where a robot can stand among these walls."""
+        return Ground.of(self.segments, self.polygon, self.names.index(BOUNDARY) if BOUNDARY in self.names else -1)
 
     @cached_property
     def grid(self) -> Grid | None:

@@ -22,10 +22,16 @@ class Sighting:
 
     wall: Integers  # (…) the wall that the estimate predicts, −1 where it predicts none
     incidence: Array  # (…) rad between beam and wall, 0 along it, π/2 at right angles; nan where there is no wall
-    ambiguous: Booleans  # (…) from a pose 3σ away the beam would meet another wall line, or none
-    probes: Array  # (…, 6, 3) those poses; the mean itself where P has no such direction
+    probes: Array  # (…, 6, 3) the poses that were asked; the mean itself where there is none in that direction
     probe_ranges: Array  # (…, 6) m from each of them, nan where the beam meets no wall
     probe_walls: Integers  # (…, 6) the walls met there, −1 where none is
+    astray: Booleans  # (…, 6) it is another wall line than the mean's, or none
+
+    @property
+    def ambiguous(self) -> Booleans:
+        """(…) from a pose about 3σ away the beam would meet another wall line, or none."""
+        ambiguous: Booleans = np.asarray(self.astray.any(axis=-1))
+        return ambiguous
 
     @property
     def grazing(self) -> Booleans:
@@ -96,49 +102,63 @@ class Laser(Sensor):
         """Look along the beam before using its reading. x : (…, 3), P : (…, 3, 3)
 
         The beam is cast again from the six poses x ± 3√λᵢ·vᵢ, λᵢ and vᵢ the eigenpairs of P (m and rad as they are).
+        Where the robot cannot stand at such a pose, in an obstacle or outside the room, it is no evidence: it is drawn
+        back along its arm to the last place where the robot can.
         """
         λ, V = np.linalg.eigh(P)
         if x.ndim == 1:
             return self._sight_one(x, λ.tolist(), V.T.tolist())
         reach = REACH * np.sqrt(np.where(λ > FLAT * λ[..., -1:], λ, 0.0))
         arms = (V * reach[..., None, :]).mT  # (…, 3, 3): a row for each eigenvector
-        poses = x[..., None, :] + np.concatenate([np.zeros_like(arms[..., :1, :]), arms, -arms], axis=-2)
+        probes = self._drawn_back(x, np.concatenate([arms, -arms], axis=-2))
+        poses = np.concatenate([x[..., None, :], probes], axis=-2)
         direction = poses[..., 2] + self.bearing
         hit = self.walls.cast(poses[..., :2], direction)
         line, wall = self._line(hit.wall), hit.wall[..., 0]
         d = np.stack([np.cos(direction[..., 0]), np.sin(direction[..., 0])], axis=-1)
         sine = np.minimum(np.abs(np.vecdot(self._normal(wall), d)), 1.0)
         incidence = np.where(wall >= 0, np.arcsin(sine), np.nan)
-        ambiguous = np.any(line[..., 1:] != line[..., :1], axis=-1)
-        return Sighting(wall, incidence, ambiguous, poses[..., 1:, :], hit.range[..., 1:], hit.wall[..., 1:])
+        astray = line[..., 1:] != line[..., :1]
+        return Sighting(wall, incidence, probes, hit.range[..., 1:], hit.wall[..., 1:], astray)
 
     def _sight_one(self, x: Array, λ: list[float], V: list[list[float]]) -> Sighting:
         """The same for one robot in plain floats: several times as fast, held equal to the above by a test."""
         first, bearing = self.walls.first, self.bearing
         px, py, θ = x.tolist()
-        here = first(px, py, θ + bearing)
-        probes, hits = [], []
-        for sign in (REACH, -REACH):
-            for λ_i, (vx, vy, vθ) in zip(λ, V, strict=True):
-                reach = sign * math.sqrt(λ_i) if λ_i > FLAT * λ[2] else 0.0
-                probe = (px + reach * vx, py + reach * vy, θ + reach * vθ)
-                probes.append(probe)
-                hits.append(first(probe[0], probe[1], probe[2] + bearing) if reach else here)
+        reaches = [REACH * math.sqrt(λ_i) if λ_i > FLAT * λ[2] else 0.0 for λ_i in λ]
+        arms = [
+            (reach * vx, reach * vy, reach * vθ)
+            for sign in (1.0, -1.0)
+            for reach, (vx, vy, vθ) in zip([sign * reach for reach in reaches], V, strict=True)
+        ]
+        probes = [(px + dx, py + dy, θ + dθ) for dx, dy, dθ in arms]
+        if not self.walls.ground.all_free(probes):
+            probes = [tuple(probe) for probe in self._drawn_back(x, np.array(arms)).tolist()]
+        wall = (here := first(px, py, θ + bearing))[1]
+        hits = [
+            first(x_i, y_i, θ_i + bearing) if any(arm) else here
+            for (x_i, y_i, θ_i), arm in zip(probes, arms, strict=True)
+        ]
         ranges, walls = zip(*hits, strict=True)
-        wall, incidence = here[1], math.nan
+        incidence, line = math.nan, self.walls.line
         if wall >= 0:
             nx, ny = self.walls.normals[wall].tolist()
             incidence = math.asin(min(abs(nx * math.cos(θ + bearing) + ny * math.sin(θ + bearing)), 1.0))
-        line = self.walls.line
-        ambiguous = any(other != wall and (wall < 0 or other < 0 or line[other] != line[wall]) for other in set(walls))
+        astray = [other != wall and (wall < 0 or other < 0 or line[other] != line[wall]) for other in walls]
         return Sighting(
             np.array(wall),
             np.array(incidence),
-            np.array(ambiguous),
             np.array(probes),
             np.array(ranges),
             np.array(walls),
+            np.array(astray),
         )
+
+    def _drawn_back(self, x: Array, arms: Array) -> Array:
+        """The ends of arms about x, or the last places on them where the robot can stand : (…, 6, 3)"""
+        share = self.walls.ground.reach(x[..., None, :2], arms[..., :2])
+        probes: Array = x[..., None, :] + share[..., None] * arms
+        return probes
 
     def _line(self, wall: Integers) -> Integers:
         """The straight line that each wall lies on, −1 where there is no wall."""

@@ -7,6 +7,7 @@ import numpy as np
 
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
+from ekfsim.geometry.ground import CLEARANCE
 from ekfsim.geometry.lanes import front, lanes
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.laser import Laser
@@ -17,7 +18,6 @@ from ekfsim.simulation.draws import Draws, true_start
 from ekfsim.world import World
 
 FEW = 32  # walls near any of the robots that are sooner looked at one by one
-CLEARANCE = 1e-3  # m that a robot stops short of a wall
 
 
 def obey(scene: Scene, draws: Draws) -> Iterator[Entry]:

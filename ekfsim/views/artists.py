@@ -169,8 +169,11 @@ class BeamArtists:
 
     def __init__(self, axes: Axes) -> None:
         self.probes = LineCollection([], colors=VERMILLION, linewidths=0.9, linestyles=":", zorder=3.2, gid="probes")
-        self.probes.set_label("ambiguous: from 3 σ away")
+        self.probes.set_label("ambiguous: from within 3 σ")
         axes.add_collection(self.probes, autolim=False)
+        self.arms = axes.add_line(
+            Line2D([], [], color=VERMILLION, lw=0.9, marker="o", ms=3, markevery=(1, 2), zorder=3.2, gid="arms")
+        )
         self.measured = axes.add_line(
             Line2D([], [], color=VERMILLION, lw=2, zorder=3.4, gid="beam", label="beam, as measured")
         )
@@ -183,11 +186,13 @@ class BeamArtists:
 
     def show(self, beam: Beam | None, far: float) -> None:
         """Move it to a beam, or away. far : m, how long a beam is drawn that meets nothing"""
-        for line in (self.measured, self.end, self.way, self.expected):
+        for line in (self.measured, self.end, self.way, self.expected, self.arms):
             line.set_data([], [])
         self.probes.set_segments([] if beam is None else [_ray(*probe, far) for probe in beam.probes])
         if beam is None:
             return
+        arms = [point for probe in beam.probes for point in (beam.pose[:2], probe.pose[:2])]
+        self.arms.set_data(*np.reshape(arms, (-1, 2)).T)
         echo = not np.isnan(beam.measured)
         self.measured.set_linestyle(":" if not echo else "--" if beam.refused else "-")
         self.measured.set_data(*_ray(beam.pose, beam.measured, far).T)

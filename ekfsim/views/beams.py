@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -14,9 +15,17 @@ from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.lettering import shortened
 from ekfsim.views.sights import BeamSensor, beam_length
+from ekfsim.views.told_beams import elsewhere, others_met
 from ekfsim.world import BOUNDARY, Map
 
 TOUCHING = 1e-9  # of the range: what rounding makes of an end on the wall
+
+
+class Probe(NamedTuple):
+    """A beam from another pose that the filter holds possible, where it meets another wall or none."""
+
+    pose: Array  # (3,) where it starts, in m, and its direction, in rad
+    range: float  # m, nan where it meets no wall
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +38,8 @@ class Beam:
     refused: Refused
     ambiguous: bool
     grazing: float | None  # rad between beam and wall, where that is little
-    probes: tuple[tuple[Array, float], ...]  # the beams from other poses that meet another wall, or none (nan)
+    probes: tuple[Probe, ...]
+    doubt: str  # where the first of them starts and what it meets: "from 0.3 m to the left it would meet desk, edge 3"
     solid: bool  # whether the measured end lies in, on or behind a wall rather than in the air before it
     ending: str  # the same in words: "in the air, 4 cm short of desk"
     reaching: bool = True  # whether the sensor meets a wall however far; an ultrasonic one does not
@@ -57,7 +67,8 @@ def beam(step: Step, scene: Scene) -> Beam | None:
         Refused(int(correction.refused)),
         bool(sighting.ambiguous),
         float(sighting.incidence) if sighting.grazing else None,
-        tuple(astray(sensor, sighting)) if sighting.ambiguous else (),
+        tuple(astray(sensor, sighting)),
+        doubt(sensor, sighting, posed(step.prior, scene.world.layout).mean) if sighting.ambiguous else "",
         solid,
         ending,
         reaching=isinstance(sensor, Laser),
@@ -83,13 +94,21 @@ def landing(floor: Map, end: Array, gap: float, wall: str, tolerance: float) -> 
     return False, "in the air" + (f", {length(-gap)} short of {called(wall)}" if gap < 0 else "")
 
 
-def astray(laser: BeamSensor, sighting: Sighting) -> Iterator[tuple[Array, float]]:
-    """The probe beams, as pose and range, that meet another wall line than the estimate's beam does, or none (nan)."""
-    beams = sighting.probes + np.array([0.0, 0.0, laser.bearing])
-    hit = laser.walls.cast(beams[:, :2], beams[:, 2])
-    lines = np.append(laser.walls.line, -1)  # the wall −1 takes the last place
-    for i in np.flatnonzero(lines[hit.wall] != lines[int(sighting.wall)]):
-        yield beams[i], float(hit.range[i])
+def astray(sensor: BeamSensor, sighting: Sighting) -> Iterator[Probe]:
+    """The beams from other poses that meet another wall line than the estimate's beam does, or none."""
+    for i in np.flatnonzero(sighting.astray):
+        yield Probe(sighting.probes[i] + np.array([0.0, 0.0, sensor.bearing]), float(sighting.probe_ranges[i]))
+
+
+def doubt(sensor: BeamSensor, sighting: Sighting, x: Array) -> str:
+    """Why a beam from x (3,) is ambiguous: a pose that disagrees, and what the beam would meet from there."""
+    i = next(others_met(sensor.walls, sighting))
+    met = "no wall"
+    if (wall := int(sighting.probe_walls[i])) >= 0:
+        name, edge = sensor.walls.name(wall)
+        met = f"{called(name)}, edge {edge + 1}"
+    place = elsewhere(x, sighting.probes[i]).replace(" degrees", "°")
+    return f"from {place} it would meet {met}"
 
 
 def called(name: str) -> str:

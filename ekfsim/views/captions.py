@@ -92,7 +92,7 @@ def _ranges(beam: Beam) -> list[str]:
 def _warnings(beam: Beam) -> list[str]:
     told = []
     if beam.ambiguous:
-        told.append("ambiguous: from a pose 3σ away it would meet another wall, or none")
+        told.append(f"ambiguous: {beam.doubt}")
     if beam.grazing is not None:
         told.append(f"grazing: {math.degrees(beam.grazing):.2g}° between beam and wall")
     if beam.refused in (Refused.GUARD, Refused.GATE, Refused.NO_WALL):

@@ -120,7 +120,7 @@ def _bump(step: Step, scene: Scene) -> str:
     if bump is None or bump < 0:
         return ""
     name, edge = scene.world.map.walls.name(int(bump))
-    return f"It bumped into edge {edge} of {name} and stopped short of it; the filter was not told\n"
+    return f"It bumped into edge {edge + 1} of {name} and stopped short of it; the filter was not told\n"
 
 
 def _beam(step: Step, angle: float, scene: Scene) -> str:

@@ -1,14 +1,20 @@
 """What is said of a beam: the wall that it was expected to meet, and what is doubtful about that."""
 
 import math
+from collections.abc import Iterator
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from ekfsim.filters.belief import posed
+from ekfsim.geometry import Array
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.laser import GRAZING, Sighting
 from ekfsim.records import Reading, Step
 from ekfsim.views.numbers import number, turn
+
+SLIGHT = 0.1  # of the longer part of an offset: a part that is shorter is not told
+UNTURNED = math.radians(0.05)  # nor is a smaller turn
 
 
 @runtime_checkable
@@ -27,14 +33,19 @@ def doubts(step: Step, guarded: bool) -> str:
         return ""
     told = ""
     if sighting.ambiguous and guarded:
+        x, walls = posed(step.prior, step.layout).mean, _walls(step)
+        others = [
+            f"({elsewhere(x, sighting.probes[i])}) it would meet {wall_name(step, int(sighting.probe_walls[i]))}"
+            for i in others_met(walls, sighting)
+        ]
         told += (
-            f"This beam is ambiguous: expected to meet {_wall_name(step, int(sighting.wall))}, but from a pose within "
-            f"3 sigma it would meet {_others(step, sighting)}\n"
+            f"This beam is ambiguous: expected to meet {wall_name(step, int(sighting.wall))}, but from a pose within "
+            f"3 sigma {', and from another '.join(others)}\n"
         )
     if sighting.grazing:
         told += (
-            f"This beam grazes its wall at {turn(float(sighting.incidence))} degrees (below {turn(GRAZING)}): "
-            "a small turn would move its end far\n"
+            f"This beam grazes its wall: the angle between beam and wall is {turn(float(sighting.incidence))} degrees "
+            f"(below {turn(GRAZING)}), and a small turn would move its end far\n"
         )
     return told
 
@@ -44,21 +55,47 @@ def expected_wall(step: Step) -> str:
     if step.sighting is None:
         return ""
     incidence = number(math.degrees(float(step.sighting.incidence)))
-    return f"It was expected to meet {_wall_name(step, int(step.sighting.wall))} at {incidence} degrees\n"
+    wall = wall_name(step, int(step.sighting.wall))
+    return f"It was expected to meet {wall}; the angle between beam and wall is {incidence} degrees\n"
 
 
-def _others(step: Step, sighting: Sighting) -> str:
-    """The other walls that the beam would meet from the poses around the estimate, each named once."""
-    line = np.append(_walls(step).line, -1)  # the wall −1, none, takes the last
-    others = sighting.probe_walls[line[sighting.probe_walls] != line[sighting.wall]]
-    return " or ".join(dict.fromkeys(_wall_name(step, wall) for wall in others.tolist()))
+def others_met(walls: Walls, sighting: Sighting) -> Iterator[int]:
+    """Which of the six poses make the beam ambiguous, one for each of the walls that it would meet from them."""
+    line = np.append(walls.line, -1)  # the wall −1, none, takes the last
+    met = set()
+    for i in np.flatnonzero(sighting.astray).tolist():
+        other = int(line[sighting.probe_walls[i]])
+        if other not in met:
+            met.add(other)
+            yield i
 
 
-def _wall_name(step: Step, wall: int) -> str:
+def elsewhere(x: Array, pose: Array) -> str:
+    """Where a pose is, seen from the pose x, both (3,): what matters of it.
+
+    >>> elsewhere(np.array([1.0, 1.0, math.pi / 2]), np.array([0.69, 1.02, math.pi / 2 + 0.05]))
+    '0.31 m to the left, turned 2.9 degrees to the left'
+    """
+    east, north, turned = (pose - x).tolist()
+    c, s = math.cos(x[2]), math.sin(x[2])
+    ahead, left = c * east + s * north, c * north - s * east
+    slight = SLIGHT * max(abs(ahead), abs(left))
+    told = []
+    if abs(ahead) > slight:
+        told.append(f"{abs(ahead):.2g} m {'ahead' if ahead > 0 else 'behind'}")
+    if abs(left) > slight:
+        told.append(f"{abs(left):.2g} m to the {'left' if left > 0 else 'right'}")
+    if abs(turned) > UNTURNED:
+        told.append(f"turned {math.degrees(abs(turned)):.2g} degrees to the {'left' if turned > 0 else 'right'}")
+    return ", ".join(told) or "beside it"
+
+
+def wall_name(step: Step, wall: int) -> str:
+    """A wall by the number of its edge, counted from 1 in the file's order, and its polygon's name."""
     if wall < 0:
         return "no wall"
     name, edge = _walls(step).name(wall)
-    return f"edge {edge} of {name}"
+    return f"edge {edge + 1} of {name}"
 
 
 def _walls(step: Step) -> Walls:

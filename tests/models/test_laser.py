@@ -130,6 +130,8 @@ def test_a_batch_equals_its_runs(axes):
         assert seen.incidence[k] == pytest.approx(float(one.incidence), nan_ok=True)
         assert seen.probe_ranges[k] == pytest.approx(one.probe_ranges, abs=1e-9, nan_ok=True)
         assert (seen.probe_walls[k] == one.probe_walls).all()
+        assert (seen.astray[k] == one.astray).all()
+        assert seen.probes[k] == pytest.approx(one.probes, abs=1e-12)
 
 
 def test_incidence_is_the_angle_between_beam_and_wall():
@@ -147,10 +149,41 @@ def ambiguous(x, P, walls=WALLS, bearing=0.0):
 
 
 def test_a_beam_is_ambiguous_within_three_sigma_of_a_corner():
-    """From (1, 7) to the east the corner of the room lies 1 m to the left."""
-    room = Walls.of({"boundary": ROOM})
-    assert not ambiguous((1, 7, 0), np.diag([0, 0.33**2, 0]), room)
-    assert ambiguous((1, 7, 0), np.diag([0, 0.34**2, 0]), room)
+    """From (5, 2) to the north-east the corner of the room lies 1 m to the north."""
+    room, heading = Walls.of({"boundary": ROOM}), math.pi / 4
+    assert not ambiguous((5, 2, heading), np.diag([0, 0.33**2, 0]), room)
+    assert ambiguous((5, 2, heading), np.diag([0, 0.34**2, 0]), room)
+
+
+def test_a_pose_outside_the_room_or_in_an_obstacle_is_no_evidence():
+    """It is drawn back along its arm, place and heading, to 1 mm before the wall."""
+    room = Walls.of({"boundary": ROOM, "desk": np.array([[4, 3], [5, 3], [5, 4], [4, 4.0]])})
+    P = np.diag([0, 0.34**2, 0])
+    assert not ambiguous((1, 7, 0), P, room)
+    assert laser(walls=room).sight(np.array([1.0, 7.0, 0.0]), P).probes[:, 1].max() == pytest.approx(7.999)
+    assert not ambiguous((4.5, 2.5, 0), np.diag([0, 0.3**2, 0]), room)  # in the desk it would meet the desk
+    assert ambiguous((4.5, 2.5, math.pi), np.diag([0, 0.6**2, 0.9**2]), room)
+    σ = np.array([0, 0.2, 0.1])  # 3σ away, at y = 3.1, the beam would be inside the desk
+    x = np.array([4.5, 2.5, 0.0])
+    (drawn,) = [p for p in laser(walls=room).sight(x, np.outer(σ, σ)).probes if p[1] > 2.5]
+    assert drawn[1] == pytest.approx(3, abs=1e-3)
+    assert drawn[2] == pytest.approx(0.25, abs=1e-3)
+
+
+def test_a_pose_behind_an_obstacle_is_possible():
+    """A robot may be mistaken for one on the other side of a thin wall."""
+    fence = Walls.of({"boundary": ROOM, "fence": np.array([[0, 4], [9, 4], [9, 4.1], [0, 4.1]])})
+    seen = laser(-math.pi / 2, fence).sight(np.array([5.0, 3.5, 0.0]), np.diag([0, 0.3**2, 0]))
+    assert seen.ambiguous
+    assert seen.probes[seen.astray][:, 1] == pytest.approx(3.5 + 0.9)
+
+
+def test_from_an_impossible_mean_the_possible_poses_are_asked_alone():
+    desk = only((4, 3), (5, 3), (5, 4), (4, 4))
+    for σ, asked in ((0.1, 0), (0.2, 1)):  # the desk ends 0.5 m to the west
+        seen = laser(walls=desk).sight(np.array([4.5, 3.5, 0.0]), np.diag([σ**2, 0, 0]))
+        assert np.count_nonzero(np.abs(seen.probes[:, 0] - 4.5) > 0) == 2 * asked
+        assert seen.ambiguous == bool(asked)
 
 
 def test_along_each_eigenvector_to_both_sides():
@@ -190,7 +223,7 @@ def test_edges_on_one_line_of_one_obstacle_are_one_wall():
 
 
 def test_flat_directions_are_not_looked_into():
-    room = Walls.of({"boundary": ROOM})
-    x = (5, 8 - 5e-6, 0)
-    assert not ambiguous(x, np.diag([1, 0.9e-10, 0]), room)
-    assert ambiguous(x, np.diag([1, 1.1e-10, 0]), room)
+    post = only((5, 0), (6, 0), (6, 1), (5, 1))
+    x = (0, 2e-5, 0)
+    assert not ambiguous(x, np.diag([1, 0.9e-10, 0]), post)
+    assert ambiguous(x, np.diag([1, 1.1e-10, 0]), post)

@@ -20,6 +20,7 @@ PLACE = scene(obstacles=(DESK,))
 BEFORE = Gaussian(np.array([1.0, -1.25, math.radians(86.5)]), np.zeros((3, 3)))
 P = np.array([[0.04, 0.0, -0.001], [0.0, 0.01, 0.0005], [-0.001, 0.0005, 0.0025]])
 AFTER = Gaussian(np.array([1.25, 0.5, math.radians(-178.25)]), P)
+ASKED = np.array([[0, 0.25, 0], [0.5, 0, 0], [0, 0, 0.1], [0, -0.25, 0], [-0.5, 0, 0], [0, 0.001, -0.1]])
 TRUTH = np.array([1.15, 0.5, math.pi])
 WALLS = PLACE.world.map.walls
 
@@ -38,9 +39,7 @@ def moved(command=Move(1.75, TURN), bump=-1, measured=nees(), truth=TRUTH):  # n
     return Step(entry, BEFORE, AFTER, prediction=Prediction(np.eye(3), np.eye(3, 2)), nees=measured)
 
 
-def sensed(
-    z=2.00572, h=2.00698, wall=2, incidence=80.0, ambiguous=False, probes=(2,) * 6, nis=0.000359, refused=Refused.NOT
-):
+def sensed(z=2.00572, h=2.00698, wall=2, incidence=80.0, probes=(2,) * 6, nis=0.000359, refused=Refused.NOT):
     """A reading whose numbers are those of no filter."""
     number = np.array([[0.0665**2]])
     correction = Correction(
@@ -48,8 +47,9 @@ def sensed(
         np.array([[0.5], [-0.25], [0.125]]), np.array(nis), np.array(int(refused)),
     )  # fmt: skip
     sighting = Sighting(
-        np.array(wall), np.radians(incidence), np.array(ambiguous), np.zeros((6, 3)), np.ones(6), np.array(probes)
-    )
+        np.array(wall), np.radians(incidence), BEFORE.mean + ASKED, np.ones(6), np.array(probes),
+        np.array(probes) != wall,
+    )  # fmt: skip
     entry = Entry(2, Reading(Laser(WALLS, TURN, 0.01), np.array([z])), TRUTH, Sense(TURN))
     return Step(entry, BEFORE, AFTER, correction=correction, sighting=sighting, nees=nees())
 
@@ -80,7 +80,7 @@ The range is 2.00572
 """
 REVISED = """\
 The predicted range was 2.00698
-It was expected to meet edge 2 of boundary at 80 degrees
+It was expected to meet edge 3 of boundary; the angle between beam and wall is 80 degrees
 The derivatives are:
   dh/dx = 0, dh/dy = 1.00059, dh/dth = 0.0689879
 The innovation is -0.00126, its standard deviation 0.0665; NIS is 0.000359
@@ -135,7 +135,7 @@ def lines(text):
 @pytest.mark.parametrize(
     ("step", "beam", "line"),
     [
-        (moved(bump=4), False, "It bumped into edge 0 of desk and stopped short of it; the filter was not told"),
+        (moved(bump=4), False, "It bumped into edge 1 of desk and stopped short of it; the filter was not told"),
         (moved(Move(1.0, 0.0, slip=0.25)), False, "==>The robot moved: distance=1, angle=0, slip=0.25"),
         (moved(Move(-1.0, -4 * math.pi)), False, "==>The robot moved: distance=-1, angle=-720"),
         (sensed(z=math.nan, refused=Refused.NO_ECHO), True, "There is no echo: the beam met no wall"),
@@ -150,14 +150,17 @@ def lines(text):
         (sensed(nis=1e-5), False, "NIS lies below its two-sided 99 % band, 3.92704e-05 to 7.87944"),
         (sensed(nis=math.nan), False,
          "The innovation is -0.00126; nothing is uncertain, so NIS is undefined and the gain is 0"),
-        (sensed(ambiguous=True, probes=(2, 2, 1, -1, 1, 2)), True,
-         "This beam is ambiguous: expected to meet edge 2 of boundary, but from a pose within 3 sigma it would meet "
-         "edge 1 of boundary or no wall"),
-        (sensed(ambiguous=True, wall=-1, probes=(-1, 4, -1, -1, 7, 4)), True,
-         "This beam is ambiguous: expected to meet no wall, but from a pose within 3 sigma it would meet "
-         "edge 0 of desk or edge 3 of desk"),
+        (sensed(probes=(2, 2, 1, -1, 1, 2)), True,
+         "This beam is ambiguous: expected to meet edge 3 of boundary, but from a pose within 3 sigma "
+         "(turned 5.7 degrees to the left) it would meet edge 2 of boundary, and from another "
+         "(0.25 m behind) it would meet no wall"),
+        (sensed(wall=-1, probes=(-1, 4, -1, -1, 7, 4)), True,
+         "This beam is ambiguous: expected to meet no wall, but from a pose within 3 sigma "
+         "(0.5 m to the right) it would meet edge 1 of desk, and from another "
+         "(0.5 m to the left) it would meet edge 4 of desk"),
         (sensed(incidence=7.5), True,
-         "This beam grazes its wall at 7.5 degrees (below 15): a small turn would move its end far"),
+         "This beam grazes its wall: the angle between beam and wall is 7.5 degrees (below 15), and a small turn would "
+         "move its end far"),
         (moved(measured=nees(math.nan, 2, True)), False,
          "The true position lies inside the ellipse, the true heading inside the cone; the belief is impossible: "
          "the error has a part where the covariance claims certainty"),
@@ -181,8 +184,8 @@ def test_what_was_not_used_has_no_gain():
 
 def test_without_a_guard_an_ambiguous_beam_is_not_told_and_a_grazing_one_is():
     unguarded = replace(PLACE, guard="off")
-    assert said(sensed(ambiguous=True, probes=(1,) * 6), beam=True, place=unguarded) == BEAM
-    assert "grazes" in said(sensed(ambiguous=True, incidence=3.0, probes=(1,) * 6), beam=True, place=unguarded)
+    assert said(sensed(probes=(1,) * 6), beam=True, place=unguarded) == BEAM
+    assert "grazes" in said(sensed(incidence=3.0, probes=(1,) * 6), beam=True, place=unguarded)
 
 
 def test_the_truth_is_told_only_where_it_is_known():
@@ -202,7 +205,7 @@ def test_any_name_of_an_obstacle_can_be_told(name):
     place = scene(Move(9.0, 0.0), Sense(0.0), Sense(0.7), start=(2, 3.5, 0), obstacles=(replace(DESK, name=name),))
     story = "".join(narrate(view, place) for view in views(play(place)))
     assert f" of {name} and stopped short" in story
-    assert f"It was expected to meet edge 3 of {name} at 90 degrees" in story
+    assert f"It was expected to meet edge 4 of {name}; the angle between beam and wall is 90 degrees" in story
 
 
 FLOAT = r"-?[\d.]+(?:e[-+]\d+)?"

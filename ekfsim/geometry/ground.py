@@ -1,0 +1,143 @@
+"""Where a robot can stand: inside the room and outside every obstacle."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from ekfsim.geometry import Array, Booleans, Integers
+
+CLEARANCE = 1e-3  # m; how near a robot comes to a wall
+HAIR = 1e-9  # of a wall's length: how far beyond its ends a way is cut, too
+
+Edge = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """The floor of a map. Obstacles may overlap, cross the room's wall or lie outside it."""
+
+    rings: tuple[Array, ...]  # (n, 2, 2) m each: the edges of every polygon
+    room: int  # which of them walls in what is free rather than what is not, -1 where none does
+    low: Array  # (p, 2) m: the corners of their boxes
+    high: Array  # (p, 2) m
+
+    @classmethod
+    def of(cls, segments: Array, polygon: Integers, room: int) -> Self:
+        """segments : (W, 2, 2) m, all edges; polygon : (W,) which polygon each belongs to"""
+        numbers = np.unique(polygon).tolist()
+        rings = [segments[polygon == number] for number in numbers]
+        corners = [(ring.min(axis=(0, 1)), ring.max(axis=(0, 1))) for ring in rings]
+        low, high = np.array(corners).reshape(-1, 2, 2).swapaxes(0, 1)
+        return cls(tuple(rings), numbers.index(room) if room in numbers else -1, low, high)
+
+    def free(self, places: Array) -> Booleans:
+        """Whether a robot can stand there : (…). places : (…, 2) m"""
+        points = places.reshape(-1, 2)
+        taken, indoors = np.zeros(len(points), bool), np.full(len(points), self.room < 0)
+        for number in self._near(np.fmin.reduce(points), np.fmax.reduce(points)) if len(points) else ():
+            boxed = np.flatnonzero(((self.low[number] <= points) & (points <= self.high[number])).all(axis=-1))
+            within = boxed[_inside(self.rings[number], points[boxed])]
+            (indoors if number == self.room else taken)[within] = True
+        free: Booleans = (indoors & ~taken & np.isfinite(points).all(axis=-1)).reshape(places.shape[:-1])
+        return free
+
+    def all_free(self, places: Sequence[tuple[float, ...]]) -> bool:
+        """Whether a robot can stand at every one of a few places, (x, y, …) in m each, without the cost of arrays."""
+        xs, ys = [place[0] for place in places], [place[1] for place in places]
+        indoors = self.room < 0
+        for number in self._near(np.array([min(xs), min(ys)]), np.array([max(xs), max(ys)])):
+            within = [_inside_one(self._edges[number], x, y) for x, y in zip(xs, ys, strict=True)]
+            if number == self.room:
+                indoors = all(within)
+            elif any(within):
+                return False
+        return indoors
+
+    def reach(self, place: Array, ways: Array) -> Array:
+        """How much of straight ways can be gone to where a robot can stand : (…), each in [0, 1]
+
+        1 where that is so at the end of the way. Elsewhere the way is cut back to the last such place on it, 1 mm clear
+        of the wall; to 0 where there is none. place : (…, 2) m, ways : (…, 2) m, broadcast together
+        """
+        place, ways = np.broadcast_arrays(place, ways)
+        share = np.ones(place.shape[:-1])
+        stuck = ~self.free(place + ways)
+        if stuck.any():
+            share[stuck] = self._cut_back(place[stuck], ways[stuck])
+        return share
+
+    def _cut_back(self, place: Array, ways: Array) -> Array:
+        """The same of ways that end where no robot can stand : (n,)
+
+        Every wall on a way parts it, and a part is free as a whole or not at all: each is tried in its middle, from the
+        end of the way back to its beginning.
+        """
+        share, length = np.zeros(len(ways)), np.linalg.norm(ways, axis=-1)
+        cuts, left = self._cuts(place, ways), np.arange(len(ways))
+        for k in range(cuts.shape[1] - 1):
+            far, near = cuts[left, k], cuts[left, k + 1]
+            left, far, near = (each[far > 0] for each in (left, far, near))
+            if not left.size:
+                break
+            middle = (far + near) / 2
+            free = (far > near) & self.free(place[left] + middle[:, None] * ways[left])
+            share[left[free]] = np.maximum(middle[free], far[free] - CLEARANCE / length[left[free]])
+            left = left[~free]
+        return share
+
+    def _cuts(self, place: Array, ways: Array) -> Array:
+        """Where ways meet walls, as shares of them, from the last to the first : (n, k); the way's own ends are two."""
+        ends = place + ways
+        low, high = np.fmin.reduce([place, ends]).min(axis=0), np.fmax.reduce([place, ends]).max(axis=0)
+        near = [np.empty((0, 2, 2)), *(self.rings[number] for number in self._near(low, high))]
+        a, along = (edges := np.concatenate(near))[:, 0], edges[:, 1] - edges[:, 0]
+        offset, ways = a - place[:, None], ways[:, None]
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            across = _cross(ways, along)
+            cut, where = _cross(offset, along) / across, _cross(offset, ways) / across
+            met = (cut > 0) & (cut < 1) & (np.abs(where - 0.5) <= 0.5 + HAIR)
+        one = np.ones((len(place), 1))
+        return -np.sort(-np.concatenate([one, np.where(met, cut, 0.0), 0 * one], axis=1), axis=1)
+
+    def _near(self, low: Array, high: Array) -> list[int]:
+        """The polygons whose boxes touch the box from its corner `low` (2,) to `high` (2,)."""
+        touching: list[int] = np.flatnonzero((self._boxes <= np.concatenate([high, -low])).all(axis=-1)).tolist()
+        return touching
+
+    @cached_property
+    def _boxes(self) -> Array:
+        """(p, 4) m: low, and −high, so that one comparison tells whether two boxes touch."""
+        return np.concatenate([self.low, -self.high], axis=-1)
+
+    @cached_property
+    def _edges(self) -> list[list[Edge]]:
+        """The rings in plain numbers."""
+        return [[(ax, ay, bx, by) for (ax, ay), (bx, by) in ring.tolist()] for ring in self.rings]
+
+
+def _inside(ring: Array, points: Array) -> Booleans:
+    """Whether points (n, 2) lie in a polygon : (n,). A line from there to the west crosses its edges oddly often."""
+    (ax, ay), (bx, by) = ring[:, 0].T, ring[:, 1].T
+    x, y = points[:, 0, None], points[:, 1, None]
+    beside = (ay > y) != (by > y)
+    rise = np.where(beside, by - ay, 1.0)
+    odd: Booleans = np.count_nonzero(beside & (x > ax + (bx - ax) * (y - ay) / rise), axis=-1) % 2 == 1
+    return odd
+
+
+def _inside_one(ring: list[Edge], x: float, y: float) -> bool:
+    """The same of one point, in plain floats."""
+    odd = False
+    for ax, ay, bx, by in ring:
+        if (ay > y) != (by > y) and x > ax + (bx - ax) * (y - ay) / (by - ay):
+            odd = not odd
+    return odd
+
+
+def _cross(v: Array, w: Array) -> Array:
+    """v × w : (…)"""
+    product: Array = v[..., 0] * w[..., 1] - v[..., 1] * w[..., 0]
+    return product
