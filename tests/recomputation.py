@@ -7,6 +7,7 @@ ekfsim is used but the description of the world.
 import math
 
 import numpy as np
+import shapely
 from scipy.stats import chi2
 
 from ekfsim.records import Kidnap, Move, Repeat, Say
@@ -32,6 +33,9 @@ class Edges:
     """The edges of a map, each with its polygon, its number there and the straight line it lies on."""
 
     def __init__(self, floor_plan):
+        everywhere = shapely.box(-1e9, -1e9, 1e9, 1e9)
+        indoors = everywhere if floor_plan.boundary is None else shapely.Polygon(floor_plan.boundary)
+        self.open = indoors - shapely.union_all([shapely.Polygon(o.points) for o in floor_plan.obstacles])
         self.all = []
         for name, ring in floor_plan.rings():
             points = ring.tolist()
@@ -168,7 +172,7 @@ def moved(mean, P, odometry, noise):
     G = [[math.cos(th), 0], [math.sin(th), 0], [0, 1]]
     Pu = [[(noise.odometry_distance * d) ** 2, 0], [0, (noise.odometry_angle * a) ** 2]]
     P = halved(total(product(product(F, P), transposed(F)), product(product(G, Pu), transposed(G))))
-    return [x + d * math.cos(th), y + d * math.sin(th), wrapped(th + a)], P, {"F": F, "G": G}
+    return [x + d * math.cos(th), y + d * math.sin(th), wrapped(th + a)], P, {"F": F, "G": G, "M": Pu}
 
 
 def sensed(mean, P, line, edges, ratio, guard, gate):
@@ -226,11 +230,28 @@ def is_ambiguous(mean, P, bearing, edges, edge):
     for variance, vector in zip(variances.tolist(), vectors.T.tolist(), strict=True):
         if variance > 1e-10 * variances[0]:
             for side in (3, -3):
-                x, y, th = (m + side * math.sqrt(variance) * v for m, v in zip(mean, vector, strict=True))
+                arm = [side * math.sqrt(variance) * v for v in vector]
+                share = possible(edges.open, mean, arm)
+                x, y, th = (m + share * a for m, a in zip(mean, arm, strict=True))
                 _, other = edges.first(x, y, th + bearing)
                 if (other and other[4]) != own:
                     return True
     return False
+
+
+def possible(open_floor, mean, arm):
+    """How far along an arm the last place lies where a robot can stand, 1 mm clear of what stops it; 0 if nowhere."""
+    x, y, dx, dy = *mean[:2], *arm[:2]
+    if open_floor.intersects(shapely.Point(x + dx, y + dy)):
+        return 1.0
+    way = open_floor.intersection(shapely.LineString([(x, y), (x + dx, y + dy)]))
+    length = math.hypot(dx, dy)
+    parts = [shapely.get_coordinates(part) - (x, y) for part in shapely.get_parts(way) if part.length > 0]
+    spans = [sorted((ends @ (dx, dy)) / length) for ends in parts]
+    if not spans:
+        return 0.0
+    begin, *_, end = max(spans, key=lambda span: span[-1])
+    return max(end - 0.001, (begin + end) / 2) / length
 
 
 def judged(mean, P, truth, confidence):

@@ -26,7 +26,7 @@ SCENES = {
     "unbounded": unbounded(),
 }
 
-MOVE = ["type", "index", "command", "odometry", "F", "G", "prior", "posterior", "truth", "bump", "ellipse", "nees",
+MOVE = ["type", "index", "command", "odometry", "F", "G", "M", "prior", "posterior", "truth", "bump", "ellipse", "nees",
         "nees_dof", "impossible"]  # fmt: skip
 SENSE = ["type", "index", "command", "range", "predicted_range", "range_variance", "wall", "incidence", "ambiguous",
          "H", "innovation", "innovation_variance", "gain", "nis", "updated", "refused", "prior", "posterior", "truth",
