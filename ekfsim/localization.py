@@ -18,7 +18,7 @@ from ekfsim.records import Control, Entry, Reading, Step
 from ekfsim.scene import Guard, Scene
 from ekfsim.simulation import simulate
 from ekfsim.simulation.draws import particle_generators
-from ekfsim.simulation.interpolation import interpolated
+from ekfsim.simulation.interpolation import stretched
 
 
 def localize(
@@ -94,7 +94,7 @@ def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
     """Localize in a scene: every Step of its run, or of N runs side by side. runs : (N,)"""
     entries = simulate(scene, runs) if scene.log is None else iter(scene.log.entries)
     if scene.world.system == "gnss" and scene.reading == "coded":  # its authors have a fix at every motion input
-        entries = interpolated(entries)
+        entries = stretched(entries)
     if scene.tuning.range_variance == "reading":
         entries = map(noise_by_reading, entries)
     belief = first_belief(scene, np.shape(scene.run if runs is None else runs))

@@ -1,16 +1,17 @@
 """Document 003's run, filtered as it should be and as the document's authors did."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from ekfsim.figures.over_runs import RUNS, EachRun
 from ekfsim.figures.retold import retold
 from ekfsim.figures.track import Track
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.localization import filter_of, first_belief, localize, play
-from ekfsim.records import Entry
+from ekfsim.records import Entry, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.simulation import simulate
 
@@ -84,6 +85,31 @@ class Runs:
     def wheels(self) -> Array:
         """(N, 3) the poses that the wheels alone make of the first one, at `right.t`"""
         return self.right.layout.pose(self.right.reckoned)
+
+
+@dataclass(frozen=True)
+class ManyRuns:
+    """Many simulated runs of a scene, filtered in both ways."""
+
+    right: EachRun
+    recipe: EachRun
+    fixes: Array  # (N,) m, RMSE of the raw fixes
+
+    @classmethod
+    def of(cls, scene: Scene) -> "ManyRuns":
+        """Filter the runs twice."""
+        squares = list[Array]()
+
+        def seen(steps: Iterable[Step]) -> Iterator[Step]:
+            for step in steps:
+                if isinstance(step.entry.given, Reading) and step.entry.truth is not None:
+                    squares.append(np.sum((step.entry.given.z - step.entry.truth[:, :2]) ** 2, axis=-1))
+                yield step
+
+        layout, numbers = scene.world.layout, np.arange(RUNS)
+        right = EachRun.of(seen(play(retold(scene, "corrected"), numbers)), layout)
+        recipe = EachRun.of(play(retold(scene, "coded"), numbers), layout)
+        return cls(right, recipe, np.sqrt(np.nanmean(squares, axis=0)))
 
 
 def pose_error(pose: Array, truth: Array) -> Array:

@@ -1,4 +1,4 @@
-"""A fix at every row of the wheels, interpolated: what the authors of document 003 give to their filter."""
+"""A fix at every row of the wheels, by its number: what the authors of document 003 give to their filter."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -9,31 +9,32 @@ from ekfsim.geometry import Array
 from ekfsim.records import Control, Entry, Reading
 
 
-def interpolated(entries: Iterable[Entry]) -> Iterator[Entry]:
-    """The same log with a reading after each motion input, on the straight line between the recorded ones.
+def stretched(entries: Iterable[Entry]) -> Iterator[Entry]:
+    """The same log with a reading after each motion input; what was recorded is spread evenly over them, by its number.
 
-    Before the first reading that one is held, after the last one that. No filter at work could do so: at every instant
-    it would have to know the next fix already. A row of the wheels that a fix cut in two counts as two.
+    Row i of n, the start being row 0, has the fix at place i (K − 1)/n of the K that were recorded, on the straight
+    line from the one before that place to the one after it. No stamp is looked at: where the first fix comes late, or
+    one is missing, all are given to the wrong rows. Nor could a filter at work do so: it would have to know the next
+    fix, and how many will come. A row of the wheels that a fix cut in two counts as two.
     """
     log = list(entries)
     given = [entry.given for entry in log if isinstance(entry.given, Reading)]
-    times = np.array([entry.t for entry in log if isinstance(entry.given, Reading)], np.float64)  # (k,) s
-    fixes, index = [reading.z for reading in given], 0
+    rows = sum(isinstance(entry.given, Control) for entry in log)
+    fixes, row, index = [reading.z for reading in given], 0, 0
     for entry in log:
         if isinstance(entry.given, Reading):
             continue
         yield replace(entry, index=index)
         index += 1
-        if given and isinstance(entry.given, Control) and entry.t is not None:
-            z = _at(entry.t, times, fixes)
+        if given and isinstance(entry.given, Control):
+            row += 1
+            z = _at(row / rows * (len(fixes) - 1), fixes)
             yield replace(entry, index=index, given=replace(given[0], z=z))
             index += 1
 
 
-def _at(t: float, times: Array, fixes: list[Array]) -> Array:
-    """The fix at an instant : (…, 2)"""
-    after = int(np.searchsorted(times, t))
-    one, other = max(after - 1, 0), min(after, len(times) - 1)
-    span = times[other] - times[one]
-    share = (t - times[one]) / span if span > 0 else 0.0
-    return np.asarray(fixes[one] + share * (fixes[other] - fixes[one]), np.float64)
+def _at(place: float, fixes: list[Array]) -> Array:
+    """The fix at a place between two numbers : (…, 2)"""
+    before = int(place)
+    after = min(before + 1, len(fixes) - 1)
+    return np.asarray(fixes[before] + (place - before) * (fixes[after] - fixes[before]), np.float64)
