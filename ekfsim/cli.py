@@ -232,14 +232,13 @@ def study(
     """Run COMMANDS, or what a study file tells, many times: how often is it lost, and is the filter honest?"""
     from ekfsim.files import load_study
     from ekfsim.files.filter_checks import refuse_unread
-    from ekfsim.study.doing import total
+    from ekfsim.study.doing import unkept
     from ekfsim.study.expectation import promised, verified
     from ekfsim.study.plan import Plan
-    from ekfsim.study.results import Result as OfCase
     from ekfsim.views.promise_words import broken, verify
     from ekfsim.views.study_words import conclude
 
-    if out is None and (resume or not expect):
+    if out is None and resume:
         raise click.MissingParameter(param_hint="'--out' / '-o'", param_type="option")
     plan = Plan.of(load_study.asked(**asked))
     refuse_unread(plan.settings, plan.filters)
@@ -247,12 +246,14 @@ def study(
         say(warning)
     plan, engine = promised(plan, asked["runs"]) if expect else plan, engine_of(workers, cluster)
     if out is None:
-        with blocks_bar(plan.blocks) as done:
-            results = [OfCase(plan.cases[0], total(plan, plan.tasks(), engine, done))]
+        with blocks_bar(plan.blocks * len(plan.cases)) as done:
+            results = unkept(plan, engine, done)
     else:
         results = study_into(plan, engine, out, resume, force)
     if not expect:
         click.echo(shown(conclude(plan, results, width())), nl=False)
+        if out is None:
+            say("nothing of this is kept; -o FOLDER writes it with tables of every step, pictures, and what repeats it")
         return
     found = verified(results[0])
     click.echo(shown(verify(plan, found)), nl=False)

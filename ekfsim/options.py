@@ -153,7 +153,7 @@ def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
         click.option("--expect", is_flag=True,
                      help="Verify what COMMANDS promises under `expect`: status 1 where it is not kept."),
         click.option("--out", "-o", type=Result(),
-                     help="A folder for tables and pictures; may be left out with --expect."),
+                     help="A folder for tables and pictures; a first look needs none."),
         FORCE,
     ])  # fmt: skip
 

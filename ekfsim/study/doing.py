@@ -1,7 +1,7 @@
 """Doing a plan: every block that the journal lacks, kept as it is done; or all blocks, where nothing is kept."""
 
 from collections.abc import Callable, Iterable
-from typing import Any, Protocol, Self, TypeVar
+from typing import Any, Generic, Protocol, Self, TypeVar
 
 from ekfsim.study.engines import Engine, Work
 from ekfsim.study.journal import Journal
@@ -33,19 +33,42 @@ def results_of(plan: Plan, journal: Journal) -> list[Result]:
     return [Result(case, journal.total(plan, number)) for number, case in enumerate(plan.cases)]
 
 
-def total(work: Work[S], tasks: Iterable[Task], engine: Engine, done: Callable[[Task, S], None]) -> S:
-    """All blocks of one case together, at once and without a journal.
+def unkept(plan: Plan, engine: Engine, done: Callable[[Task, Tally], None]) -> list[Result]:
+    """The same at once and without a journal, for a first look."""
+    found = [_InOrder[Tally]() for _ in plan.cases]
+    for task, made in engine(plan, plan.tasks()):
+        done(task, made)
+        found[task.case].add(task.block, made)
+    return [Result(case, blocks.total()) for case, blocks in zip(plan.cases, found, strict=True)]
 
-    They are put together in their order, in whichever they come: sums of floating numbers depend on it.
-    """
-    found: S | None = None
-    early, number = dict[int, S](), 0
+
+def total(work: Work[S], tasks: Iterable[Task], engine: Engine, done: Callable[[Task, S], None]) -> S:
+    """All blocks of one case together, without a journal."""
+    found = _InOrder[S]()
     for task, made in engine(work, tasks):
         done(task, made)
-        early[task.block] = made
-        while number in early:
-            following = early.pop(number)
-            found, number = following if found is None else found + following, number + 1
-    assert found is not None
-    assert not early
-    return found
+        found.add(task.block, made)
+    return found.total()
+
+
+class _InOrder(Generic[S]):
+    """Blocks put together in their order, in whichever they come: sums of floating numbers depend on it."""
+
+    def __init__(self) -> None:
+        self._found: S | None = None
+        self._early: dict[int, S] = {}
+        self._next = 0
+
+    def add(self, block: int, made: S) -> None:
+        """Put a block to those before it, once all of them are there."""
+        self._early[block] = made
+        while self._next in self._early:
+            following = self._early.pop(self._next)
+            self._found = following if self._found is None else self._found + following
+            self._next += 1
+
+    def total(self) -> S:
+        """All of them."""
+        assert self._found is not None
+        assert not self._early
+        return self._found

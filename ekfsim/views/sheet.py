@@ -19,7 +19,7 @@ from ekfsim.views.lettering import drawable, wrapped
 GREY = "#666666"
 DPI = 120
 FOOT, FOOT_LINES = 0.24, 2  # in, for the lines that tell what made it
-FOOT_LETTERS = 21  # to an inch
+FOOT_LETTERS, TITLE_LETTERS = 21, 10  # to an inch
 
 
 class Pen(NamedTuple):
@@ -46,7 +46,7 @@ def sheet(width: float, height: float, title: str, told: str) -> Figure:
     engine = figure.get_layout_engine()
     assert isinstance(engine, ConstrainedLayoutEngine)
     engine.set(rect=(0, FOOT / height, 1, 1 - FOOT / height))
-    figure.suptitle(title, fontsize=12)
+    figure.suptitle("\n".join(wrapped([title], int(TITLE_LETTERS * width), 2)), fontsize=12)
     lines = wrapped([drawable(told)], int(FOOT_LETTERS * width), FOOT_LINES)
     figure.text(0.995, 0.004, "\n".join(lines), fontsize=5.5, ha="right", va="bottom", color=GREY)
     return figure

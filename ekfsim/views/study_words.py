@@ -11,6 +11,8 @@ from ekfsim.study.verdict import MOST_LOST, Word, agrees, covers, proven, verdic
 from ekfsim.views.numbers import instant
 from ekfsim.views.text_table import aligned, folded
 
+MOST_TOLD = 6  # rows, each with what its verdict rests on
+IN_TABLE = "What each verdict rests on, and the worst and a typical run of each row, stand in summary.csv (-o)."
 HEAD = ("filter", "position", "heading", "> 50 %", "> 95 %", "> 99.9 %", "ellipse", "cone", "lost", "NIS", "verdict")
 
 
@@ -22,6 +24,10 @@ def conclude(plan: Plan, results: Sequence[Result], width: int | None = None) ->
         *folded("(RMSE in m and degrees; NEES above quantiles of χ², and the other shares, in %)", width),
         *aligned([[*plan.keys, *HEAD], *map(_row, results)], len(plan.keys) + 1, width),
     ]
+    if len(results) > MOST_TOLD:  # the table is what is wanted
+        worst = max(results, key=lambda result: (result.tally.worst.impossible, result.tally.worst.nees))
+        lines += ["", *folded(IN_TABLE, width), *plays(plan, worst)[:1]]
+        return "\n".join(lines) + "\n"
     for result in results:
         lines += ["", *folded(f"{title(result)}: {sentence(result)}", width)]
         lines += [line for told in evidence(result.last) for line in folded(f"  {told}", width)]

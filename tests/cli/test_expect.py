@@ -86,7 +86,7 @@ def test_without_an_ellipse_no_coverage_can_be_kept(place):
         ("expect: {runs: 5}\n", ["--expect"], "short.yaml: promises nothing;"),
         (KEPT, ["--expect", "--sweep", "gate=0.9,0.99"], "--expect verifies what one scene promises of one filter;"),
         (KEPT, ["--expect", "--filter", "ekf,ukf"], "--expect verifies what one scene promises of one filter;"),
-        (KEPT, [], "Missing option '--out' / '-o'."),
+        (KEPT, ["--resume"], "Missing option '--out' / '-o'."),
         (KEPT, ["--expect", "--resume"], "Missing option '--out' / '-o'."),
     ],
 )

@@ -65,6 +65,26 @@ def test_a_study_leaves_a_folder_and_says_what_is_to_be_thought_of_it(place):
     assert all(steps[-1][name] == row[name] for name in steps[-1])
 
 
+def test_a_first_look_needs_no_folder(place):
+    arguments = ("study", "short.yaml", "--runs", 1100, "--filter", "ekf,ukf", "--sweep", "gate=0.9,0.99")
+    before = left_in(place)
+    looked = ekfsim(*arguments, "--workers", 2)
+    assert (looked.status, looked.err[:33]) == (0, "ekfsim: nothing of this is kept; ")
+    assert left_in(place) == before
+    kept = ekfsim(*arguments, "-o", "out")
+    assert (kept.status, kept.out, kept.err) == (0, looked.out, "")
+
+
+def test_of_many_rows_the_table_is_enough(place):
+    told = ekfsim("study", "short.yaml", "--runs", 2, "--sweep", "gate=0.5,0.6,0.7,0.8", "--sweep", "guard=off,skip")
+    assert told.out.count("over-c") == told.out.count("\n0.") == 8
+    _, first, second = told.out.splitlines()[11:]
+    assert (
+        first == "What each verdict rests on, and the worst and a typical run of each row, stand in summary.csv (-o)."
+    )
+    assert second.startswith("the worst run: ekfsim play short.yaml --seed 0 --run ")
+
+
 def test_the_same_study_writes_the_same_bytes_wherever_it_runs():
     for out, more in (("one", ()), ("two", ("--workers", 2)), ("three", ())):
         assert ekfsim("study", "short.yaml", "--runs", 2500, "--filter", "ekf,ukf", *more, "-o", out).status == 0
@@ -107,7 +127,7 @@ def test_a_sweep_is_a_grid_with_a_row_for_each_cell_and_filter():
     assert keys == [(r, g, f) for r in ("0.01", "0.3") for g in ("off", "0.5") for f in ("ekf", "ukf")]
     assert float(found[0]["position_rmse"]) < float(found[4]["position_rmse"])
     assert "ekfsim play short.yaml --seed 0 --run " in told.out
-    assert "--set noise.rangeSigmaRatio=0.3 --set gate=0.5" in told.out
+    assert "--set noise.rangeSigmaRatio=0.01 --set gate=off" in told.out  # of the worst
 
 
 def test_the_worst_run_is_the_one_that_play_shows(place):

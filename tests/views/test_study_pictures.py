@@ -107,6 +107,16 @@ def test_two_keys_make_a_map_with_its_numbers():
     assert maps[0].get_ylabel() == "noise.\nrangeSigmaRatio"
 
 
+@pytest.mark.parametrize("name", PICTURES)
+def test_headings_lie_inside_the_picture(name):
+    plan, results = studied("noise.rangeSigmaRatio=0.01,0.1", "guard=warn,off,skip", filters=("ekf",))
+    figure = picture(plan, results, *PICTURES[name])
+    figure.draw_without_rendering()
+    for text in figure.texts:
+        extent = text.get_window_extent()
+        assert 0 <= extent.x0 < extent.x1 <= figure.bbox.width
+
+
 def test_of_very_many_maps_the_rest_is_told():
     plan, results = studied("faults.rangeBias=0,1,2,3,4,5,6,7,8,9,10,11,12", "gate=0.5,0.9", "guard=off,skip",
                             filters=("ekf",))  # fmt: skip
