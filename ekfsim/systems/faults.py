@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 
 from ekfsim.geometry import Array
 
@@ -32,7 +31,7 @@ class DriveFaults:
     forward_bias: float = 0.0  # m/s²
     lateral_bias: float = 0.0  # m/s²
     yaw_bias: float = 0.0  # rad
-    sensors: Mapping[str, SensorFaults] = field(default_factory=lambda: MappingProxyType({}))
+    sensors: Mapping[str, SensorFaults] = field(default_factory=dict)  # a plain one: workers of a study are sent it
 
     def misread(self, u: Array, entries: Mapping[str, int]) -> Array:
         """The motion input that is measured where u : (…, m) is right. entries : which entry each fault is about"""
