@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any, Literal
 
 from ekfsim.errors import UsageError
-from ekfsim.process import say, shown
+from ekfsim.process import say
 
 if TYPE_CHECKING:
     from ekfsim.scene import Scene
@@ -37,9 +37,6 @@ def scene_of(
         scene, gate = replace(scene, gate=None), None
     chosen: dict[str, Any] = {"seed": seed, "run": run_number, "gate": gate, "guard": guard}
     chosen |= {"filter": names[0] if names else None, "beside": names[1:]}
-    for name in ("world_source", "commands_source", "log_source"):  # every output holds them, in a line
-        source = getattr(scene, name)
-        chosen[name] = None if source is None else shown(source).replace("\n", "\\x0a")
     return replace(scene, **{name: value for name, value in chosen.items() if value is not None})
 
 

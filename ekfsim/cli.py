@@ -11,7 +11,7 @@ from ekfsim import process
 from ekfsim.asked import engine_of, scene_of
 from ekfsim.errors import RunError, UsageError
 from ekfsim.options import FORCE, READING, Result, Seed, Source, Whole, compare_options, scene_options, study_options
-from ekfsim.process import Program, heed, say, shown, width
+from ekfsim.process import Program, heed, part_with, say, shown, width
 from ekfsim.progress import blocks_bar, study_into
 from ekfsim.version import VERSION
 
@@ -230,6 +230,7 @@ def study(
     out: Path | None, resume: bool, force: bool, workers: int, cluster: str | None, expect: bool, **asked: Any
 ) -> None:
     """Run COMMANDS, or what a study file tells, many times: how often is it lost, and is the filter honest?"""
+    part_with()
     from ekfsim.files import load_study
     from ekfsim.files.filter_checks import refuse_unread
     from ekfsim.study.doing import unkept
@@ -267,6 +268,7 @@ def compare(
     a: str | None, b: str | None, out: Path | None, force: bool, workers: int, cluster: str | None, **asked: Any
 ) -> None:
     """Put two settings of COMMANDS side by side, each run under both on the same draws."""
+    part_with()
     from ekfsim.files import load_study
     from ekfsim.files.writing import refuse_existing_folder
     from ekfsim.study.comparison import Comparison, with_sides

@@ -1,7 +1,6 @@
 """How the process begins and ends: streams, signals, exit statuses, and mistakes told in sentences."""
 
 import os
-import re
 import shutil
 import signal
 import sys
@@ -12,10 +11,11 @@ from typing import Any, NoReturn
 import click
 
 from ekfsim.errors import EkfsimError
+from ekfsim.printable import shown as shown
 
 INTERRUPTED = 130
 _ending: list[int] = []  # the signal that is to end us, once it has come
-CONTROLS = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\udc80-\udcff]")  # and bytes of a file's name that are no text
+_parting: list[str] = []  # what is left to say where we are ended
 
 
 def run(program: click.Group) -> NoReturn:
@@ -29,14 +29,17 @@ def run(program: click.Group) -> NoReturn:
         with suppress(AttributeError, ValueError):
             stream.reconfigure(errors="replace")  # type: ignore[union-attr]
     _ending.clear()
+    _parting.clear()
     try:
         status = _status(program)
-    except Exception:
+    except (Exception, SystemExit):
         if not _ending:
             raise
-        status = 1  # what a library made of the signal's exception
-    if _ending and _ending[0] == signal.SIGINT and status != INTERRUPTED:
-        say("interrupted")
+        status = 1  # our own way out, or what a library made of the signal's exception
+    if status == INTERRUPTED or _ending[:1] == [signal.SIGINT]:
+        say("; ".join(["interrupted", *filter(None, _parting)]))
+    elif _ending and _parting:
+        say("; ".join(["ended", *filter(None, _parting)]))
     sys.exit(128 + _ending[0] if _ending else status)
 
 
@@ -53,8 +56,7 @@ def _status(program: click.Group) -> int:
     except EkfsimError as error:
         say(str(error))
         return error.status
-    except (KeyboardInterrupt, click.Abort):
-        say("interrupted")
+    except (KeyboardInterrupt, click.Abort, _InterruptedError):
         return INTERRUPTED
     except (_UnreadError, BrokenPipeError):
         _forget_what_is_buffered()
@@ -96,6 +98,11 @@ def heed() -> None:
         sys.exit(128 + _ending[0])
 
 
+def part_with(words: str = "") -> None:
+    """Tell it in a line where SIGTERM ends us, as of Ctrl-C always; and have these words stand in that line."""
+    _parting.append(words)
+
+
 def say(text: str) -> None:
     """Tell the user something on standard error: a mistake with its place as it is, all else in our name."""
     with suppress(OSError):
@@ -108,15 +115,6 @@ def width() -> int | None:
     return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
-def shown(text: object) -> str:
-    r"""A text, in which the name of a file may stand, as it does no harm to a terminal.
-
-    >>> print(shown("red\x1b[31m.yaml"))
-    red\x1b[31m.yaml
-    """
-    return CONTROLS.sub(lambda found: f"\\x{ord(found[0]) & 0xFF:02x}", str(text))
-
-
 def _placed(line: str) -> bool:
     """Whether a line begins with file:line:col, which an editor wants to find at its very start."""
     return line.count(":") > 2 and line.split(":")[1].isdigit() and line.split(":")[2].isdigit()
@@ -124,6 +122,10 @@ def _placed(line: str) -> bool:
 
 class _UnreadError(Exception):
     """Whoever read our output has seen enough."""
+
+
+class _InterruptedError(Exception):
+    """Ctrl-C, by another name than that which click answers with an empty line."""
 
 
 class Program(click.Group):
@@ -144,3 +146,7 @@ class Program(click.Group):
             return super().invoke(ctx)
         except BrokenPipeError:
             raise _UnreadError from None
+        except KeyboardInterrupt:
+            if sys.stderr.isatty():
+                click.echo(err=True)  # behind the ^C that the terminal shows
+            raise _InterruptedError from None

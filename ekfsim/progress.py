@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ekfsim.errors import RunError
-from ekfsim.process import heed, say
+from ekfsim.errors import EkfsimError
+from ekfsim.process import heed, part_with, say
 
 if TYPE_CHECKING:
     from ekfsim.study.engines import Engine
@@ -41,11 +41,10 @@ def progress(plan: "Plan", journal: "Journal") -> Iterator[Callable[["Task", "Ta
                     done(task, journal.tally(task))
         try:
             yield done
-        except RunError as failure:
-            raise RunError(f"{failure}{kept(journal, total)}") from None
+        except EkfsimError as failure:
+            raise type(failure)("; ".join(filter(None, (str(failure), kept(journal, total))))) from None
         except (KeyboardInterrupt, SystemExit):
-            if told := kept(journal, total):
-                say(told.removeprefix("; "))
+            part_with(kept(journal, total))
             raise
 
 
@@ -65,7 +64,9 @@ def kept(journal: "Journal", total: int) -> str:
     """What is kept of a study that ends early, and the way on."""
     if not len(journal):
         return ""
-    return f"; {len(journal)} of {total} blocks are kept in {journal.path.parent}, --resume goes on with the rest"
+    if len(journal) == total:
+        return f"all blocks are kept in {journal.path.parent}, --resume goes on with the tables"
+    return f"{len(journal)} of {total} blocks are kept in {journal.path.parent}, --resume goes on with the rest"
 
 
 def study_into(plan: "Plan", engine: "Engine", out: Path, resume: bool, force: bool) -> "list[Result]":
@@ -85,7 +86,7 @@ def study_into(plan: "Plan", engine: "Engine", out: Path, resume: bool, force: b
             say(f"{partial}: nothing is kept there to go on with; this is a study from the beginning")
         with progress(plan, journal) as done:
             do(plan, journal, engine, done)
-        results = results_of(plan, journal)
-        write_study(plan, results, out, force)
+            results = results_of(plan, journal)
+            write_study(plan, results, out, force)
     remove(partial)
     return results

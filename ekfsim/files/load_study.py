@@ -8,6 +8,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from ekfsim.errors import InputError, Mistake, Place, UsageError
+from ekfsim.files.looking import is_file
 from ekfsim.files.marked import Node, field_of, parse
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import packaged, resolve
@@ -117,7 +118,7 @@ def beside(path: Path, named: str, folder: str, root: Node) -> tuple[Path, str]:
     """
     near = Path(os.path.normpath(path.parent / named))
     known = packaged("worlds" if folder == "worlds" else "commands")
-    if near.is_file() or named not in known:
+    if named not in known or _is_there(near):
         try:
             text_of(near, str(near))
         except UsageError as error:
@@ -129,6 +130,14 @@ def beside(path: Path, named: str, folder: str, root: Node) -> tuple[Path, str]:
             raise InputError([at(str(path), root.nearest((key,)).mark, (key,), wrong, right)]) from None
         return near, str(near)
     return known[named], named
+
+
+def _is_there(path: Path) -> bool:
+    """Whether there is a file that could be meant; one that may not be looked at hides no name of ours."""
+    try:
+        return is_file(path)
+    except OSError:
+        return False
 
 
 def told_in(root: Node, file: str) -> Iterator[tuple[Route, list[Setting]]]:

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Protocol
 
 from ekfsim.errors import UsageError
+from ekfsim.files.looking import exists, is_folder
 from ekfsim.files.trace import Trace
 from ekfsim.files.trajectories import Table, Tum
-from ekfsim.files.writing import refuse_existing, special, whole_text
+from ekfsim.files.writing import refuse_existing, special, told, whole_text
 from ekfsim.provenance import provenance
 from ekfsim.records import Step
 from ekfsim.scene import Scene
@@ -86,7 +87,7 @@ class Outputs:
 
     def on_stdout(self) -> bool:
         """Whether a result goes to standard output, where the closing summary would spoil it."""
-        return any(path.exists() and os.path.samestat(path.stat(), os.fstat(1)) for path in self._paths())
+        return any(special(path) and os.path.samestat(path.stat(), os.fstat(1)) for path in self._paths())
 
     def _paths(self) -> list[Path]:
         return [path for path in (self.trace, self.csv, self.summary, *self._tum()) if path]
@@ -104,16 +105,27 @@ def _of_filter(path: Path, filter: str) -> Path:
 
 
 def _refuse_the_scene_itself(path: Path, scene: Scene) -> None:
-    """Raise UsageError where a result would replace the file that it is made from."""
+    """Raise UsageError where a result would replace the file that it is made from, or come to lie within its log."""
     sources = (scene.commands_source, scene.world_source, scene.log_source)
-    for source in (Path(name) for name in sources if name is not None):
-        if path.exists() and source.exists() and any(map(source.samefile, (path, path.parent))):
-            raise UsageError(f"{path}: is what the run is made from; choose another name")
+    with told(path):
+        for source in (Path(name) for name in sources if name is not None):
+            if _same(path, source):
+                raise UsageError(f"{path}: is what the run is made from; choose another name")
+            if is_folder(source) and _same(path.parent, source):
+                raise UsageError(f"{path}: lies in the folder of the log; choose another folder")
+
+
+def _same(path: Path, other: Path) -> bool:
+    """Whether two paths lead to one thing. Raises OSError where that may not be looked at."""
+    return exists(path) and exists(other) and path.samefile(other)
 
 
 def _refuse_one_place_for_two(paths: list[Path]) -> None:
     """Raise UsageError where two results, however spelled, would come to lie in one place or one inside the other."""
-    places = [Path(os.path.realpath(path.parent)) / path.name for path in paths]
+    places = list[Path]()
+    for path in paths:
+        with told(path):
+            places.append(Path(os.path.realpath(path.parent)) / path.name)
     for n, (path, place) in enumerate(zip(paths, places, strict=True)):
         if place in places[:n] + places[n + 1 :]:
             raise UsageError(f"{path}: named twice; give each result a file of its own")

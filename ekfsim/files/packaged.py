@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Literal
 
 from ekfsim.errors import EkfsimError, UsageError
+from ekfsim.files.looking import exists, is_folder
+from ekfsim.printable import in_a_line
 
 Folder = Literal["worlds", "commands"]
 PACKAGE = Path(__file__).resolve().parent.parent
@@ -31,12 +33,12 @@ def resolve(name_or_path: str | Path, kind: Folder) -> Path:
     known = packaged(kind)
     name = os.fspath(name_or_path)
     try:
-        exists = path.exists() and not (name in known and path.is_dir())  # `render tour -o tour` made that folder
-    except (OSError, ValueError):  # a name too long, or with a NUL in it
-        exists = False
-    if exists or name not in known:
+        there = exists(path) and not (name in known and is_folder(path))  # `render tour -o tour` made that folder
+    except (OSError, ValueError):
+        there = name not in known  # as something that cannot be read, which its reader tells
+    if there or name not in known:
         is_bare = not path.suffix and path.name == name and name.isprintable()
-        if not exists and is_bare:
+        if not there and is_bare:
             near = difflib.get_close_matches(name, known, 3, 0.7)
             right = f"did you mean {' or '.join(map(repr, near))}?" if near else "see `ekfsim list`, or name a file"
             raise UsageError(f"{name!r} is neither a file nor one of the packaged {kind}; {right}")
@@ -45,9 +47,9 @@ def resolve(name_or_path: str | Path, kind: Folder) -> Path:
 
 
 def source_name(path: str | Path) -> str:
-    """How outputs name a file: a packaged one alike on every machine, any other as it was given."""
-    given = os.path.normpath(path)
-    here = Path(path).resolve()
+    """How outputs name a file, in a line: a packaged one alike on every machine, any other as it was given."""
+    given = in_a_line(os.path.normpath(path))
+    here = Path(os.path.realpath(path))
     for kind in ("worlds", "commands"):
         if here.parent == folder(kind).resolve():
             return f"{kind}/{here.name}"

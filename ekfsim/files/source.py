@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 from ekfsim.errors import InputError, Mistake, Place, UsageError
+from ekfsim.files.looking import current_folder, read_from
 
 MAX_BYTES = 10_000_000
 
@@ -39,15 +40,16 @@ def text_of(path: Path, shown: str) -> str:
 
 def bytes_of(path: Path, shown: str) -> bytes:
     """At most MAX_BYTES + 1 bytes of a file. Raises UsageError where it cannot be read."""
-    try:
-        with open(path, "rb") as file:
-            return file.read(MAX_BYTES + 1)
-    except FileNotFoundError:
-        raise UsageError(f"{shown}: no such file" + nearest_file(path, shown)) from None
-    except IsADirectoryError:
-        raise UsageError(f"{shown}: is a folder; name a file in it") from None
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
-        raise UsageError(f"{shown}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    with read_from(shown):
+        try:
+            with open(path, "rb") as file:
+                return file.read(MAX_BYTES + 1)
+        except FileNotFoundError:
+            if current_folder() is None and not path.is_absolute():
+                raise UsageError(f"{shown}: cannot be read: the current folder was deleted; go to another") from None
+            raise UsageError(f"{shown}: no such file" + nearest_file(path, shown)) from None
+        except IsADirectoryError:
+            raise UsageError(f"{shown}: is a folder; name a file in it") from None
 
 
 def nearest_file(path: Path, shown: str) -> str:

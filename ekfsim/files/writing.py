@@ -4,22 +4,22 @@ import errno
 import io
 import os
 import re
-import shutil
 import stat
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from tempfile import mkdtemp, mkstemp
 from typing import TYPE_CHECKING, TextIO
 
 from ekfsim.errors import RunError, UsageError
+from ekfsim.files.looking import current_folder, exists, is_folder
+from ekfsim.files.partial import temporary_file, temporary_folder
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
 UNWRITABLE = {
     *(errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOENT),
-    *(errno.ENOTDIR, errno.EISDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP),
+    *(errno.ENOTDIR, errno.EISDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP, errno.EBUSY),
 }
 
 
@@ -28,9 +28,9 @@ def refuse_existing(path: Path, force: bool) -> None:
     if special(path):
         return
     with told(path):
-        if path.is_dir() and not path.is_symlink():
+        if is_folder(path) and not path.is_symlink():
             raise UsageError(f"{path}: this is a folder; name a file")
-        if path.exists() and not force:
+        if exists(path) and not force:
             raise UsageError(f"{path}: exists already; choose another name, or replace it with --force")
 
 
@@ -58,17 +58,17 @@ def refuse_existing_folder(path: Path, *patterns: str, force: bool = False) -> P
     """Raise UsageError where `whole_folder` would; else where the folder is to lie, at the end of every link."""
     with told(path):
         place = Path(os.path.realpath(path))  # where a link leads: it stays a link
-        if os.path.lexists(place) and not place.is_dir():
+        if os.path.lexists(place) and not is_folder(place):
             raise UsageError(f"{path}: this is a file; name a folder")
-        if place == Path.cwd():
+        if place == current_folder():
             raise UsageError(f"{path}: this is the current folder; name a new one")
         _refuse_what_is_no_folder(path, place)
-        held = sorted(place.iterdir()) if place.is_dir() else []
-    if held and not force:
-        raise UsageError(f"{path}: the folder is not empty; choose another, or replace what it holds with --force")
-    for file in held:
-        if file.is_dir() or not any(map(file.match, patterns)):
-            raise UsageError(f"{path}: holds {file.name!r}, which is no result of ekfsim; choose another folder")
+        held = sorted(place.iterdir()) if is_folder(place) else []
+        if held and not force:
+            raise UsageError(f"{path}: the folder is not empty; choose another, or replace what it holds with --force")
+        for file in held:
+            if is_folder(file) or not any(map(file.match, patterns)):
+                raise UsageError(f"{path}: holds {file.name!r}, which is no result of ekfsim; choose another folder")
     return place
 
 
@@ -82,16 +82,15 @@ def whole_folder(path: Path, *patterns: str, force: bool = False) -> Iterator[Pa
     Raises UsageError if the folder holds something and may not be replaced, RunError if the disk refuses.
     """
     place = refuse_existing_folder(path, *patterns, force=force)
-    with _parents(path, place), _temporary_folder(path, place) as beside:
-        with told(path):
-            yield beside
-        with told(path):
-            os.chmod(beside, 0o777 & ~_umask())
-            if place.is_dir():
-                with _temporary_folder(path, place) as older:
-                    _exchange(place, beside, older / place.name)
-            else:
-                os.replace(beside, place)
+    with _parents(path, place), told(path), temporary_folder(place) as beside:
+        yield beside
+        os.chmod(beside, 0o777 & ~_umask())
+        refuse_existing_folder(path, *patterns, force=force)  # it may have come meanwhile
+        if is_folder(place):
+            with temporary_folder(place, is_first=False) as older:
+                _exchange(place, beside, older / place.name)
+        else:
+            os.replace(beside, place)
 
 
 def _exchange(place: Path, new: Path, older: Path) -> None:
@@ -100,20 +99,9 @@ def _exchange(place: Path, new: Path, older: Path) -> None:
         os.replace(place, older)
         os.replace(new, place)
     except BaseException:
-        if older.exists() and not place.exists():
+        if exists(older) and not exists(place):
             os.replace(older, place)
         raise
-
-
-@contextmanager
-def _temporary_folder(path: Path, place: Path) -> Iterator[Path]:
-    """A new folder beside a place; what is left of it in the end is deleted."""
-    with told(path):
-        beside = Path(mkdtemp(prefix=f".{place.name[:100]}.", suffix=".partial", dir=place.parent))
-    try:
-        yield beside
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
 
 
 @contextmanager
@@ -123,18 +111,14 @@ def _beside(path: Path, force: bool) -> Iterator[Path]:
     if special(path):
         yield path
         return
-    with _parents(path, path):
+    with _parents(path, path), ExitStack() as stack:
         with told(path):
-            descriptor, name = mkstemp(prefix=f".{path.name[:100]}.", suffix=".partial", dir=path.parent)
-            os.close(descriptor)
-        beside = Path(name)
-        try:
-            yield beside
-            with told(path):
-                os.chmod(beside, 0o666 & ~_umask())  # mkstemp makes files that only their owner reads
-                os.replace(beside, path)
-        finally:
-            beside.unlink(missing_ok=True)
+            beside = stack.enter_context(temporary_file(path))
+        yield beside
+        with told(path):
+            os.chmod(beside, 0o666 & ~_umask())  # a temporary file is its owner's alone
+            refuse_existing(path, force)  # it may have come meanwhile
+            os.replace(beside, path)
 
 
 @contextmanager
@@ -156,7 +140,7 @@ def _parents(path: Path, place: Path) -> Iterator[None]:
 def _refuse_what_is_no_folder(path: Path, place: Path) -> None:
     """Raise UsageError where a result would lie below something that can hold none."""
     for folder in (*path.parents, *place.parents):
-        if os.path.lexists(folder) and not folder.is_dir():
+        if os.path.lexists(folder) and not is_folder(folder):
             raise UsageError(f"{path}: '{folder}' is no folder")
 
 
@@ -168,6 +152,8 @@ def told(path: Path) -> Iterator[None]:
     except BrokenPipeError:
         raise
     except OSError as refusal:
+        if refusal.errno == errno.ENOENT and current_folder() is None and not path.is_absolute():
+            raise UsageError(f"{path}: cannot be written: the current folder was deleted; go to another") from refusal
         if refusal.errno in UNWRITABLE:
             raise UsageError(f"{path}: cannot be written: {refusal.strerror}") from refusal
         raise RunError(f"{path}: writing failed: {refusal.strerror}") from refusal
@@ -179,7 +165,7 @@ def special(path: Path) -> bool:
         return True
     try:
         mode = path.stat().st_mode
-    except OSError:
+    except OSError:  # whoever goes on to write there is told
         return False
     return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
 
@@ -210,7 +196,7 @@ class _Told(io.FileIO):
 
 def _descriptor(path: Path) -> int | None:
     """The number of the open file that /dev/stdout, /dev/fd/3 and their like stand for; None for any other path."""
-    name = os.path.abspath(path)
+    name = os.path.normpath((current_folder() or Path("/")) / path)
     numbered = re.fullmatch(r"/(?:dev|proc/self)/fd/(\d+)", name)
     return int(numbered[1]) if numbered else {"/dev/stdout": 1, "/dev/stderr": 2}.get(name)
 

@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from ekfsim.errors import UsageError
-from ekfsim.files.writing import refuse_existing, whole_file, whole_folder
+from ekfsim.files.looking import is_folder
+from ekfsim.files.writing import refuse_existing, told, whole_file, whole_folder
 from ekfsim.provenance import metadata, told_in_a_line
 from ekfsim.records import expanded_length
 from ekfsim.scene import Scene
@@ -17,6 +18,7 @@ from ekfsim.views.png import Pixels
 
 BEAM, OTHER, LAST = 0.8, 1.2, 3.2  # s that a view stays
 DRIVEN = 0.4  # the same for a driven or recorded robot, whose run has thousands
+ANIMATIONS = (".gif", ".mp4")
 PATTERN = "frame-*.png"
 DIGITS, UNKNOWN_DIGITS = 4, 6  # in the pictures' names: at least, and where the length of a run is not known
 
@@ -41,8 +43,11 @@ def render(
     """
     if every < 1:
         raise UsageError(f"every {every}th view: choose 1 or more")
-    suffix = "" if target.is_dir() else target.suffix.lower()
-    if suffix not in ("", ".gif", ".mp4"):
+    suffix = target.suffix.lower()
+    if suffix not in ("", *ANIMATIONS):
+        with told(target):
+            suffix = "" if is_folder(target) else suffix
+    if suffix not in ("", *ANIMATIONS):
         raise UsageError(f"{target}: '{suffix}' is no kind of picture; name a .gif, an .mp4, or a folder for PNG files")
     write_video = video.writer() if suffix == ".mp4" else None
     if suffix:

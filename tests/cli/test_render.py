@@ -60,11 +60,12 @@ def test_a_folder_that_a_link_leads_to_is_filled(place):
     ("out", "why"),
     [
         ("foreign", "foreign: holds 'thesis.tex', which is no result of ekfsim; choose another folder"),
-        ("here", "here: this is a file; name a folder"),
+        ("here", "here: cannot be written: Too many levels of symbolic links"),
         (".", ".: this is the current folder; name a new one"),
         ("world.yaml", "world.yaml: '.yaml' is no kind of picture; "),
         ("world.yaml/frames", "world.yaml/frames: 'world.yaml' is no folder"),
         ("world.yaml/a.gif", "world.yaml/a.gif: 'world.yaml' is no folder"),
+        ("foreign.gif", "foreign.gif: this is a folder; name a file"),
         ("frames.jpg", "frames.jpg: '.jpg' is no kind of picture; "),
         ("/dev/null", "/dev/null: this is a file; name a folder"),
         ("/proc/frames", "/proc/frames: cannot be written: "),
@@ -73,6 +74,7 @@ def test_a_folder_that_a_link_leads_to_is_filled(place):
 def test_where_no_picture_can_be_none_is_drawn(place, out, why):
     (place / "foreign").mkdir()
     (place / "foreign/thesis.tex").write_text("years")
+    (place / "foreign.gif").mkdir()
     (place / "here").symlink_to("here")
     before = left_in(place)
     refused = ekfsim("render", "short.yaml", "-o", out, "--force")

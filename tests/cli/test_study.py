@@ -14,10 +14,12 @@ import pytest
 import yaml
 from program import COMMAND, SHORT, WORLD, ekfsim, ended, lay_out, left_in, process, started, wait_for
 
-from ekfsim.errors import UsageError
+from ekfsim.errors import RunError, UsageError
 from ekfsim.files.load_study import read_request
 from ekfsim.geometry import backend
+from ekfsim.study import engines
 from ekfsim.study.plan import Plan
+from ekfsim.views import study_folder
 
 FOLDER = ["commands.yaml", "coverage.png", "divergence.png", "nees.png", "steps.csv", "study.yaml", "summary.csv",
           "world.yaml"]  # fmt: skip
@@ -321,9 +323,9 @@ def test_an_interrupted_study_goes_on(place, whole, workers):
     os.killpg(running.pid, signal.SIGINT)
     told = ended(running)
     assert told.status == 130
-    kept, interrupted = filter(None, told.err.splitlines())
-    assert kept.endswith("of 20 blocks are kept in out.partial, --resume goes on with the rest")
-    assert interrupted == "ekfsim: interrupted"
+    (line,) = told.err.splitlines()
+    assert line.startswith("ekfsim: interrupted; ")
+    assert line.endswith(" of 20 blocks are kept in out.partial, --resume goes on with the rest")
     assert not (place / "out").exists()
     check_resumed(whole, "--workers", 2)
 
@@ -354,8 +356,32 @@ def test_an_interrupt_while_workers_begin_is_a_line(place):
     wait_for(lambda: any(b"spawn_main" in command_of(child) for child in children_of(running.pid)), running)
     os.killpg(running.pid, signal.SIGINT)
     told = ended(running)
-    assert (told.status, told.err.strip()) == (130, "ekfsim: interrupted")
+    assert (told.status, told.err) == (130, "ekfsim: interrupted\n")
     assert not (place / "out.partial").exists()
+
+
+@pytest.mark.parametrize("command", ["study", "compare"])
+def test_a_study_that_is_ended_before_its_first_block_says_so(place, command, monkeypatch):
+    monkeypatch.setattr(engines, "serial", lambda work, tasks: signal.raise_signal(signal.SIGTERM))
+    more = ("-o", "out") if command == "study" else ("--b", "guard=skip")
+    told = ekfsim(command, "short.yaml", "--runs", 5, *more)
+    assert (told.status, told.err) == (143, "ekfsim: ended\n")
+    assert not (place / "out.partial").exists()
+
+
+def test_a_study_that_fails_in_its_tables_says_how_it_goes_on(place, monkeypatch):
+    def full(*_):
+        raise RunError("out: writing failed: No space left on device")
+
+    monkeypatch.setattr(study_folder, "draw_study", full)
+    told = ekfsim("study", "short.yaml", "--runs", 5, "-o", "out")
+    why = "ekfsim: out: writing failed: No space left on device"
+    kept = "all blocks are kept in out.partial, --resume goes on with the tables"
+    assert (told.status, told.err) == (1, f"{why}; {kept}\n")
+    monkeypatch.undo()
+    monkeypatch.chdir(place)
+    assert ekfsim("study", "short.yaml", "--runs", 5, "-o", "out", "--resume").status == 0
+    assert left_in(place / "out") == FOLDER
 
 
 def test_a_dead_worker_is_told_in_a_line(place, whole):

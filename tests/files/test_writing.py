@@ -10,7 +10,8 @@ from scenes import scene
 
 from ekfsim.errors import RunError, UsageError
 from ekfsim.files.outputs import Outputs
-from ekfsim.files.writing import whole_folder, whole_text
+from ekfsim.files.partial import HOST
+from ekfsim.files.writing import whole_file, whole_folder, whole_text
 from ekfsim.localization import play
 from ekfsim.records import Move
 from ekfsim.summary import Summary
@@ -272,3 +273,66 @@ def test_two_results_cannot_be_one_file(tmp_path):
     with pytest.raises(UsageError, match="named twice"):
         put(Outputs(trace=tmp_path / "same", csv=tmp_path / "same"))
     assert left_in(tmp_path) == []
+
+
+def leftover(place, host=HOST):
+    """What a killed process leaves beside a place: nobody holds its lock."""
+    return place.with_name(f".{place.name}.{host}.abcd_123.partial")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no locks here")
+def test_what_a_killed_process_left_is_removed_by_the_next_one(tmp_path):
+    file, folder = tmp_path / "a.csv", tmp_path / "b"
+    leftover(file).write_text("half")
+    leftover(folder).mkdir()
+    (leftover(folder) / "half.png").write_text("half")
+    others = [leftover(file, "elsewhere"), leftover(tmp_path / "other.csv"), tmp_path / ".a.csv.partial"]
+    for other in others:
+        other.write_text("not ours to judge")
+    with whole_text(file) as out:
+        out.write("whole")
+    with whole_folder(folder):
+        pass
+    assert sorted(tmp_path.iterdir()) == sorted([file, folder, *others])
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no locks here")
+def test_a_folder_that_was_making_way_for_another_comes_back(tmp_path):
+    place = tmp_path / "out"
+    (leftover(place) / "out").mkdir(parents=True)
+    (leftover(place) / "out" / "kept.png").write_text("older")
+    with pytest.raises(UsageError, match="not empty"), whole_folder(place, "*.png"):
+        pass
+    assert [path.name for path in place.iterdir()] == ["kept.png"]
+    assert not leftover(place).exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no locks here")
+@pytest.mark.parametrize("write", [whole_text, whole_file, whole_folder])
+def test_two_at_once_are_told(tmp_path, write):
+    place = tmp_path / "out"
+    with write(place):
+        before = sorted(tmp_path.iterdir())
+        with pytest.raises(UsageError) as refusal, write(place, force=True):
+            pass
+        assert str(refusal.value) == (
+            f"{place}: cannot be written: another run is at work there; wait for it, or choose another name"
+        )
+        assert sorted(tmp_path.iterdir()) == before
+    assert list(tmp_path.iterdir()) == [place]
+
+
+@pytest.mark.parametrize("write", [whole_text, whole_folder])
+def test_what_came_meanwhile_is_not_replaced(tmp_path, write):
+    place = tmp_path / "out"
+    with pytest.raises(UsageError, match=r"exists already|is a file"), write(place):
+        place.write_text("of another machine")
+    assert place.read_text() == "of another machine"
+    assert list(tmp_path.iterdir()) == [place]
+
+
+def test_the_longest_name_that_a_folder_takes_can_be_written(tmp_path):
+    place = tmp_path / ("ж" * 127)  # 254 bytes
+    with whole_text(place) as file:
+        file.write("whole")
+    assert place.read_text() == "whole"

@@ -1,18 +1,21 @@
 """The files of a log, found by their names."""
 
 import os
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 from ekfsim.errors import UsageError
+from ekfsim.files.looking import exists, is_folder, read_from
 
 
 def folder_of(path: Path, holds: str) -> Path:
     """The folder of a log. Raises UsageError, saying what it `holds`, where there is none."""
-    if not path.exists():
-        raise UsageError(f"{path}: no such folder; name the one that holds {holds}")
-    if not path.is_dir():
-        raise UsageError(f"{path}: is a file; name the folder that holds {holds}")
-    return path
+    with read_from(path):
+        if not exists(path):
+            raise UsageError(f"{path}: no such folder; name the one that holds {holds}")
+        if is_folder(path):
+            return path
+    raise UsageError(f"{path}: is a file; name the folder that holds {holds}")
 
 
 def find(folder: Path, what: str, *patterns: str) -> Path:
@@ -28,24 +31,25 @@ def find(folder: Path, what: str, *patterns: str) -> Path:
 
 def find_any(folder: Path, what: str, *patterns: str) -> Path | None:
     """The same for a file that a log may lack."""
-    try:
-        for pattern in patterns:
-            found = sorted(path for path in folder.glob(pattern) if not path.name.startswith("."))
-            if len(found) > 1:
-                names = ", ".join(path.name for path in found)
-                raise UsageError(f"{folder}: several files '{pattern}' in it: {names}; leave one there for {what}")
-            if found:
-                return found[0]
-    except OSError as error:
-        raise UsageError(f"{folder}: cannot be read: {error.strerror or error}") from None
+    with read_from(folder):
+        names = sorted(name for name in os.listdir(folder) if not name.startswith("."))
+    for pattern in patterns:
+        found = [name for name in names if fnmatchcase(name, pattern)]
+        if len(found) > 1:
+            names_of_some = ", ".join([*found[:3], *(["…"] if len(found) > 3 else [])])
+            raise UsageError(f"{folder}: several files '{pattern}' in it: {names_of_some}; leave one there for {what}")
+        if found:
+            return folder / found[0]
     return None
 
 
 def table_file(path: Path, what: str, extension: str) -> Path:
     """A file that is named itself, or by the folder that holds it and no other of its kind."""
-    if not os.path.lexists(path):
-        raise UsageError(f"{path}: no such file; name {what}, or the folder that holds it")
-    return find(path, what, f"*{extension}") if path.is_dir() else path
+    with read_from(path):
+        if not exists(path):
+            raise UsageError(f"{path}: no such file; name {what}, or the folder that holds it")
+        holds = is_folder(path)
+    return find(path, what, f"*{extension}") if holds else path
 
 
 def _either(patterns: tuple[str, ...]) -> str:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ekfsim.errors import UsageError
+from ekfsim.files.looking import read_from
 from ekfsim.files.source import mistake, position
 
 MAX_BYTES = 400_000_000
@@ -32,15 +33,14 @@ def lines_of(path: Path) -> Lines:
     Raises UsageError where it cannot be read, InputError where it holds no text.
     """
     shown = str(path)
-    try:
-        with open(path, "rb") as file:
-            raw = file.read(MAX_BYTES + 1)
-    except FileNotFoundError:
-        raise UsageError(f"{shown}: no such file") from None
-    except IsADirectoryError:
-        raise UsageError(f"{shown}: is a folder, where a file of the log belongs") from None
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{shown}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    with read_from(path):
+        try:
+            with open(path, "rb") as file:
+                raw = file.read(MAX_BYTES + 1)
+        except FileNotFoundError:
+            raise UsageError(f"{shown}: no such file") from None
+        except IsADirectoryError:
+            raise UsageError(f"{shown}: is a folder, where a file of the log belongs") from None
     if len(raw) > MAX_BYTES:
         raise mistake(shown, 1, 1, f"the file is larger than {MAX_BYTES // 10**6} MB", "cut the log into parts")
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):

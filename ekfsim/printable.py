@@ -1,0 +1,34 @@
+"""Any text that a file or a name may hold, made harmless for a terminal, and for a line."""
+
+import re
+
+# Controls, bytes of a name that are no text, and signs without a shape that turn or hide what stands around them.
+UNSHOWN = re.compile(
+    "[\x00-\x09\x0b-\x1f\x7f-\x9f\xad\u061c\u115f\u1160\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\u3164\ufe00-\ufe0f"
+    "\ufeff\uffa0\ufff9-\ufffb\ud800-\udfff\U000e0000-\U000e0fff]"
+)
+
+
+def shown(text: object) -> str:
+    r"""A text, in which the name of a file may stand, as it does no harm to a terminal.
+
+    >>> print(shown("red\x1b[31m.yaml"), shown("gnp.exe\u202e"))
+    red\x1b[31m.yaml gnp.exe\u202e
+    """
+    return UNSHOWN.sub(lambda found: _escape(ord(found[0])), str(text))
+
+
+def in_a_line(text: object) -> str:
+    r"""The same, with its line breaks, too.
+
+    >>> print(in_a_line("a\nb"))
+    a\x0ab
+    """
+    return shown(text).replace("\n", "\\x0a")
+
+
+def _escape(code: int) -> str:
+    """How a sign is written that is not shown; a byte that is no text by its number."""
+    if 0xDC80 <= code <= 0xDCFF:
+        code -= 0xDC00
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
