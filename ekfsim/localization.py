@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ekfsim.consistency import nees
+from ekfsim.errors import UsageError
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Belief, Gaussian
 from ekfsim.filters.listing import ListingEKF
@@ -19,6 +20,9 @@ from ekfsim.scene import Guard, Scene
 from ekfsim.simulation import simulate
 from ekfsim.simulation.draws import particle_generators
 from ekfsim.simulation.interpolation import stretched
+from ekfsim.simulation.nominal import nominal_trajectory
+
+NO_PLAN = "a recording does not tell the way that was planned, which it is linearised about; take kf or ekf"
 
 
 def localize(
@@ -71,9 +75,11 @@ def _told_first(scene: Scene) -> Gaussian:
 def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
     """The filter that watches a scene, at the beginning of its run, or of N runs side by side."""
     numbers = np.asarray(scene.run if runs is None else runs)
+    if scene.log is not None and scene.filter == "kf-nominal":
+        raise UsageError(f"{scene.commands_source}: kf-nominal: {NO_PLAN}")
     beginning = Beginning(
         first_belief(scene), scene.world.layout.headings, scene.gate,
-        lambda: particle_generators(scene.seed, numbers), scene.tuning,
+        lambda: particle_generators(scene.seed, numbers), scene.tuning, lambda: nominal_trajectory(scene),
     )  # fmt: skip
     # the code of these two documents holds readings against the state of before the motion
     if scene.filter == "ekf" and scene.world.system in ("mower", "gnss") and scene.reading == "coded":

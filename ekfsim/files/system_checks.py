@@ -251,6 +251,8 @@ def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake
     elif keys.recording is not None and system != (wanted := SYSTEM_OF[keys.recording.format]):
         wrong = f"a '{keys.recording.format}' log is of the system '{wanted}', the world of the system '{system}'"
         yield file.mistake(("recording", "format"), wrong, f"name a world of the system '{wanted}'")
+    if keys.recording is not None and keys.filter == "kf-nominal":
+        yield file.mistake(("filter",), "a recording does not tell the way that was planned", "write kf or ekf")
 
 
 def check_length(file: Sound, drive: Drive, rate: float) -> Iterator[Mistake]:

@@ -1,12 +1,13 @@
 """A textbook table a file: predict and update of each filter, and the records that go in and come out.
 
     protocol.py    what every filter offers              kf.py      linear, about the first belief
-    belief.py      Gaussian, Particles, Correction       ekf.py     extended: read this one first
-    algebra.py     gain, inverse, wrapping               iekf.py    iterated
-    correcting.py  the end that the updates share        ukf.py     unscented, by the transform of unscented.py
-    chi_square.py  quantiles of χ²                       pf.py      particles
-    tuning.py      numbers that a person may set         listing.py the EKF that two of the documents' listings are
+    belief.py      Gaussian, Particles, Correction       nominal.py linear, about a trajectory that is planned
+    algebra.py     gain, inverse, wrapping               ekf.py     extended: read this one first
+    correcting.py  the end that the updates share        iekf.py    iterated
+    chi_square.py  quantiles of χ²                       ukf.py     unscented, by the transform of unscented.py
+    tuning.py      numbers that a person may set         pf.py      particles
     shadows.py     a counter-example: P without σ_xθ, σ_yθ
+                                                         listing.py the EKF that two of the documents' listings are
 
 The filters know no robot and no sensor: f, F, G, M, Q and h, H, R come from the models (see models/protocols.py).
 
@@ -20,8 +21,9 @@ Three files are speed alone; tests hold each equal to the EKF as ekf.py and corr
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.iekf import IEKF
 from ekfsim.filters.kf import KF
+from ekfsim.filters.nominal import NominalKF
 from ekfsim.filters.pf import PF
 from ekfsim.filters.protocol import Filter
 from ekfsim.filters.ukf import UKF
 
-FILTERS: dict[str, type[Filter]] = {"kf": KF, "ekf": EKF, "iekf": IEKF, "ukf": UKF, "pf": PF}
+FILTERS: dict[str, type[Filter]] = {"kf": KF, "kf-nominal": NominalKF, "ekf": EKF, "iekf": IEKF, "ukf": UKF, "pf": PF}

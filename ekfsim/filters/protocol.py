@@ -22,6 +22,7 @@ class Beginning:
     gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
     generators: Callable[[], Sequence["Generator"]] | None = None  # one for each run, from the run's seed and number
     tuning: Tuning = UNTUNED  # the numbers that this filter alone may have
+    nominal: Callable[[], Array] | None = None  # where the state would be by plan : (T + 1, n); None: no plan is known
 
 
 class Filter(Protocol):

@@ -63,6 +63,12 @@ class Driver:
         return speed * self._dt, turn_rate * self._dt
 
 
+def ticks_of(course: Course, poses: Array, dt: float) -> Tick:
+    """The T ticks of a robot that is on its course throughout; poses : (T + 1, 3)"""
+    asked = np.column_stack([course.speed, course.turn_rate]) * dt
+    return _ticks(np.column_stack([poses, np.concatenate([asked, asked[-1:]])]), dt)
+
+
 def _ticks(states: Array, dt: float) -> Tick:
     """T ticks, of x, y, θ, way and turn before each and after the last : (T + 1, …, 5). Arcs, by the mid-point rule."""
     pose, distance, turn = states[:-1, ..., :3], states[..., 3], states[..., 4]

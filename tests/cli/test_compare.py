@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from program import ekfsim, lay_out, left_in
 
+from ekfsim.filters import FILTERS
+
 LOUD = "belief.noise.rangeSigmaRatio=0.0005"  # a filter that trusts its laser too much
 RUNS = ("--runs", 200)
 
@@ -97,7 +99,7 @@ def test_the_options_of_either_side_win_over_those_of_both():
         (["--b", "filter=ekf,ukf"], "--b filter=ekf,ukf: 'ukf' is no KEY=VALUE; write e.g. --b guard=skip,gate=0.99"),
         (["--a", "gaurd=off"], "--a gaurd=off: unknown key 'gaurd'; did you mean 'guard'?"),
         (["--b", "guard=maybe"], "--b guard=maybe: 'maybe' is not known here; write off, warn or skip"),
-        (["--b", "filter=oracle"], "--b filter oracle: there is no such filter; known: kf, ekf, iekf, ukf, pf"),
+        (["--b", "filter=oracle"], f"--b filter oracle: there is no such filter; known: {', '.join(FILTERS)}"),
         (["--b", "gate=2"], "--b gate=2: "),
         (["--filter", "ekf,ukf", "--b", "gate=0.9"], "short.yaml: a study of several cells; compare two: say which"),
     ],
@@ -117,7 +119,7 @@ def test_mistakes_in_a_file_of_a_comparison_are_told_at_their_place(place):
     (place / "compare.yaml").write_text("study: short.yaml\na: {gaurd: off}\nb: {filter: oracle}\n")
     assert ekfsim("compare", "compare.yaml").err.splitlines() == [
         "compare.yaml:2:5: a: unknown key 'gaurd'; did you mean 'guard'?",
-        "compare.yaml:3:13: b.filter: 'oracle' is no filter; known: kf, ekf, iekf, ukf, pf",
+        f"compare.yaml:3:13: b.filter: 'oracle' is no filter; known: {', '.join(FILTERS)}",
     ]
 
 

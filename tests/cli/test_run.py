@@ -6,6 +6,8 @@ import os
 import pytest
 from program import LONG, MEASURED, SHORT, WORLD, ekfsim, lay_out, left_in, process
 
+from ekfsim.filters import FILTERS
+
 BREAKS = "\r\x85"  # to YAML the end of a line, as \n
 CONTROLS = sorted({chr(code) for code in [*range(32), *range(127, 160)]} - {*"\t\n"})
 
@@ -133,7 +135,7 @@ def test_a_value_that_cannot_be_is_refused_by_name(place, option, value):
 def test_an_unknown_filter_is_told_with_the_known_ones():
     ended = ekfsim("run", "short.yaml", "--filter", "oracle")
     assert (ended.status, ended.out) == (2, "")
-    assert ended.err.startswith("ekfsim: --filter oracle: there is no such filter; known: kf, ekf, iekf, ukf, pf")
+    assert ended.err.startswith(f"ekfsim: --filter oracle: there is no such filter; known: {', '.join(FILTERS)}")
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,8 @@ import json
 import pytest
 from program import ekfsim, lay_out, left_in
 
+from ekfsim.filters import FILTERS
+
 INPUTS = ["long.yaml", "short.yaml", "world.yaml"]
 
 
@@ -84,8 +86,8 @@ def test_files_of_several_filters_appear_together_or_not_at_all(place):
 @pytest.mark.parametrize(
     ("filters", "line"),
     [
-        ("ekf,oracle", "--filter oracle: there is no such filter; known: kf, ekf, iekf, ukf, pf"),
-        ("ekf,", "--filter : there is no such filter; known: kf, ekf, iekf, ukf, pf"),
+        ("ekf,oracle", f"--filter oracle: there is no such filter; known: {', '.join(FILTERS)}"),
+        ("ekf,", f"--filter : there is no such filter; known: {', '.join(FILTERS)}"),
         ("ekf,ukf,ekf", "--filter ekf,ukf,ekf: 'ekf' stands twice; delete one"),
     ],
 )

@@ -16,6 +16,7 @@ from program import COMMAND, SHORT, WORLD, ekfsim, ended, lay_out, left_in, proc
 
 from ekfsim.errors import RunError, UsageError
 from ekfsim.files.load_study import read_request
+from ekfsim.filters import FILTERS
 from ekfsim.geometry import backend
 from ekfsim.study import engines
 from ekfsim.study.plan import Plan
@@ -199,7 +200,7 @@ def test_a_recording_is_refused(command):
         (["--set", "belief.missing=desk"], "--set belief.missing=desk: 'belief.missing' is a list; "
          "only single values can be set, e.g. noise.rangeSigmaRatio"),
         (["--set", "start.x.y=3"], "--set start.x.y=3: 'start.x' is one value and holds no 'y'; write start.x"),
-        (["--filter", "ekf,ufk"], "--filter ufk: there is no such filter; known: kf, ekf, iekf, ukf, pf"),
+        (["--filter", "ekf,ufk"], f"--filter ufk: there is no such filter; known: {', '.join(FILTERS)}"),
         (["--filter", "ekf,ekf"], "--filter ekf,ekf: 'ekf' stands twice; delete one"),
         (["--sweep", "noise.rangeSigmaRatio=" + ",".join(map(str, range(5001))), "--filter", "ekf,ukf"],
          "the table would have 10002 rows, more than 10000; sweep fewer values"),
@@ -243,7 +244,7 @@ def test_a_study_file_is_overruled_by_options(place):
     [
         ("runs: 100", "runs: 0", "s.yaml:2:7: runs: 0 is too small; write a whole number of 1 or more"),
         ("runs: 100", "run: 100", "s.yaml:2:1: unknown key 'run'; did you mean 'runs'?"),
-        ("[ekf, ukf]", "[ekf, ufk]", "s.yaml:3:10: filters: 'ufk' is no filter; known: kf, ekf, iekf, ukf, pf"),
+        ("[ekf, ukf]", "[ekf, ufk]", f"s.yaml:3:10: filters: 'ufk' is no filter; known: {', '.join(FILTERS)}"),
         ("0.05]", "[1]]", "s.yaml:5:33: sweep.noise.rangeSigmaRatio[1]: a list stands where a number or a word "
          "belongs; write e.g. 0.02"),
         ("[0.01, 0.05]", "0.05", "s.yaml:5:26: sweep.noise.rangeSigmaRatio: 0.05 is a number where a list belongs; "

@@ -41,5 +41,5 @@ def test_all_mistakes_of_a_study_file_are_told_at_once(tmp_path):
         "s.yaml:2:7: runs: 'ten' is text where a whole number belongs; write e.g. 10000",
         "s.yaml:3:38: sweep.noise.rangeSigmaRatio[1]: 0.1 stands twice; delete one",
         "s.yaml:3:44: sweep: unknown key 'nois'; did you mean 'noise'?",
-        "s.yaml:4:10: filters: 'foo' is no filter; known: kf, ekf, iekf, ukf, pf",
+        f"s.yaml:4:10: filters: 'foo' is no filter; known: {', '.join(FILTERS)}",
     ]

@@ -409,6 +409,11 @@ SCENES = {
         "recording: {format: mrclam}\n",
         ["2:21: recording.format: a 'mrclam' log is of the system 'landmarks', the world of the system 'classroom'; name a world of the system 'landmarks'"],
     ),
+    "a plan that no recording tells": (
+        "gnss",
+        "recording: {format: gnss}\nfilter: kf-nominal\n",
+        ["3:9: filter: a recording does not tell the way that was planned; write kf or ekf"],
+    ),
     "a recording of another": (
         "mower",
         "recording: {format: pylon}\n",

