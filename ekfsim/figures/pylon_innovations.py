@@ -71,7 +71,8 @@ def over_time(coded: Innovations, corrected: Innovations, album: Album) -> None:
     axes.plot(corrected.t, corrected.nis, ".", ms=4, color=BLUE, label=f"corrected: mean {corrected.nis.mean():.2f}")
     axes.axhline(2, color=BLACK, lw=0.8, ls="--", label="2: what is right on average")
     axes.set_yscale("log")
-    axes.set_ylim(bottom=1e-2)
+    seen = np.concatenate([coded.nis, corrected.nis])
+    axes.set_ylim(bottom=min(1e-2, 0.7 * float(seen[seen > 0].min(initial=1.0))))
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), fontsize=8, ncols=4)
     axes.set_title("NIS with and without the yaw error in R")
     album.add(
@@ -181,7 +182,7 @@ def _parts(axes: Axes, found: Innovations) -> None:
     radius = np.sqrt(quantile(INSIDE, 2))
     axes.plot(radius * np.cos(turn), radius * np.sin(turn), color=BLACK, lw=1, label="95 % of a right filter's")
     axes.set_aspect("equal", adjustable="datalim")
-    axes.legend(loc="best", fontsize=8)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3, fontsize=7)
     axes.set_title("Innovations, normalised", fontsize=10)
 
 

@@ -10,11 +10,14 @@ from ekfsim.figures.track import Track
 from ekfsim.geometry import Array
 from ekfsim.geometry.outline import path_error
 from ekfsim.localization import filter_of, first_belief, localize
-from ekfsim.models.offset import LandmarkOffset, to_global_as_printed
+from ekfsim.models.lidar import LidarOffset
+from ekfsim.models.offset import LandmarkOffset, from_global, to_global_as_printed
 from ekfsim.records import Control, Entry, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.simulation import simulate
 from ekfsim.systems.document import READINGS, DocumentReading
+
+PUBLISHED = 707, 73.4  # rows, and s from the start to the last of them
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,13 @@ class Runs:
         return cls(told, tracks, scene.world.expected_path, scene.reading)
 
     @property
+    def published(self) -> bool:
+        """Whether it is the log whose figures the authors' own program is known to give."""
+        inputs = sum(isinstance(entry.given, Control) for entry in self.told["coded"].entries)
+        last = self.told["corrected"].entries[-1].t
+        return self.told["coded"].scene.log is not None and last is not None and (inputs, round(last, 3)) == PUBLISHED
+
+    @property
     def track(self) -> Track:
         """The one that the figures show."""
         return self.tracks[self.reading]
@@ -109,9 +119,21 @@ def by_the_letter(entries: Iterable[Entry]) -> Iterator[Entry]:
         if isinstance(entry.given, Control):
             θ = float(entry.given.u[2])
         elif isinstance(entry.given, Reading):
-            (east, north), s, c = entry.given.z, np.sin(θ), np.cos(θ)
-            lidar = np.array([east * s - north * c, east * c + north * s])  # x to the right, y ahead
+            lidar = from_global(entry.given.z, θ)
             entry = replace(entry, given=replace(entry.given, z=to_global_as_printed(lidar, θ)))
+        yield entry
+
+
+def in_its_own_frame(entries: Iterable[Entry]) -> Iterator[Entry]:
+    """The same log, its readings as the lidar saw them: turned back by the yaw that had turned them."""
+    θ: Array = np.zeros(())
+    for entry in entries:
+        if isinstance(entry.given, Control):
+            θ = entry.given.u[..., 2]
+        elif isinstance(entry.given, Reading) and isinstance(entry.given.sensor, LandmarkOffset):
+            seen, z = entry.given.sensor, from_global(entry.given.z, θ)
+            lidar = LidarOffset(seen.x, seen.y, seen.sigma_x, seen.layout)
+            entry = replace(entry, given=Reading(lidar, z, "lidar"))
         yield entry
 
 

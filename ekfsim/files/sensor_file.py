@@ -14,6 +14,7 @@ from ekfsim.systems.instruments import (
     Gnss,
     Infrared,
     Instrument,
+    Lidar,
     Markers,
     Pylon,
     RangeBearings,
@@ -144,6 +145,17 @@ class PylonKeys(PartKeys):
     views: Views = Field(degrees(Pylon.views), examples=[[[-180, 180]]])
 
 
+class LidarKeys(PartKeys):
+    """A lidar that tells how far to the right and ahead of the robot a pylon stands, and so corrects the heading."""
+
+    angles: ClassVar[frozenset[str]] = frozenset({"views"})
+
+    rate: Rate = Field(Lidar.rate, description=READ)
+    sigma: Spread = Field(Lidar.sigma, description="Standard deviation of the offset, ahead and aside, m.")
+    farthest: Positive = Field(Lidar.farthest, alias="range", description=FARTHEST, examples=[100])
+    views: Views = Field(degrees(Lidar.views), examples=[[[-180, 180]]])
+
+
 class UltrasonicKeys(PartKeys):
     """A ring of ultrasonic beams, whose error grows with the distance."""
 
@@ -216,6 +228,11 @@ class SensorKeys(Strict):
     pylon: PylonKeys | None = Field(
         None, description="A lidar that tells the offset of a pylon.", examples=[{"rate": 10, "sigma": 0.0075}]
     )
+    lidar: LidarKeys | None = Field(
+        None,
+        description="A lidar whose offset of a pylon is read in its own frame, and corrects the heading.",
+        examples=[{"rate": 10, "sigma": 0.0075}],
+    )
     ultrasonic: UltrasonicKeys | None = Field(
         None, description="A ring of ultrasonic beams.", examples=[{"rate": 2, "range": 2}]
     )
@@ -238,6 +255,7 @@ SENSORS: dict[type[PartKeys], type[Instrument]] = {
     BearingKeys: Bearings,
     GnssKeys: Gnss,
     PylonKeys: Pylon,
+    LidarKeys: Lidar,
     UltrasonicKeys: Ultrasonic,
     InfraredKeys: Infrared,
 }

@@ -25,6 +25,7 @@ from ekfsim.systems.instruments import (
     Bearings,
     Infrared,
     Instrument,
+    Lidar,
     Markers,
     Pylon,
     RangeBearings,
@@ -40,7 +41,7 @@ ODOMETRY = {  # what may tell the turn
 }
 BEAMS: dict[str, type[Ultrasonic] | type[Infrared]] = {"ultrasonic": Ultrasonic, "infrared": Infrared}
 NARROW = 2 * math.pi  # degrees: no bound of a field of view is larger, where radians are written
-LOOKING = (Markers, RangeBearings, Bearings, Ranges, Pylon)
+LOOKING = (Markers, RangeBearings, Bearings, Ranges, Pylon, Lidar)
 OF_LANDMARKS = tuple(kind.name for kind in LOOKING)
 ALL_IN_ONE = {  # how one sensor does the work of two
     **dict.fromkeys(BEAMS, ", with the 'bearings' of both"),

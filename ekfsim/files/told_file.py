@@ -80,6 +80,7 @@ class ToldSensorsKeys(Strict):
     bearing: ToldBearingKeys | None = Field(None, description="A camera.", examples=[{"sigma": 0.5}])
     gnss: ToldFixKeys | None = Field(None, description="Satellite fixes.", examples=[{"sigma": 0.5}])
     pylon: ToldFixKeys | None = Field(None, description="A lidar.", examples=[{"sigma": 0.02}])
+    lidar: ToldFixKeys | None = Field(None, description="A lidar in its own frame.", examples=[{"sigma": 0.02}])
     ultrasonic: ToldUltrasonicKeys | None = Field(None, description="Beams.", examples=[{"sigma": 0.05}])
     infrared: ToldInfraredKeys | None = Field(None, description="Pairs.", examples=[{"colour": "black"}])
 
@@ -148,6 +149,13 @@ class FaultyPylonKeys(FaultyKeys):
     left_bias: Metres = Field(0.0, alias="leftBias", description="m by which all is seen too far to the left.")
 
 
+class FaultyLidarKeys(FaultyKeys):
+    """What is wrong with a lidar that is read in its own frame."""
+
+    right_bias: Metres = Field(0.0, alias="rightBias", description="m by which all is seen too far to the right.")
+    ahead_bias: Metres = Field(0.0, alias="aheadBias", description="m by which all is seen too far ahead.")
+
+
 class FaultyInfraredKeys(FaultyKeys):
     """What is wrong with intensities."""
 
@@ -165,6 +173,7 @@ class FaultySensorsKeys(Strict):
     bearing: FaultyBearingKeys | None = Field(None, description="A camera.", examples=[{"bias": 1}])
     gnss: FaultyGnssKeys | None = Field(None, description="Satellite fixes.", examples=[{"xBias": 0.1}])
     pylon: FaultyPylonKeys | None = Field(None, description="A lidar.", examples=[{"aheadBias": 0.1}])
+    lidar: FaultyLidarKeys | None = Field(None, description="A lidar in its own frame.", examples=[{"aheadBias": 0.1}])
     ultrasonic: FaultyRangeKeys | None = Field(None, description="Beams.", examples=[{"bias": 0.02}])
     infrared: FaultyInfraredKeys | None = Field(None, description="Pairs.", examples=[{"bias": 0.1}])
 

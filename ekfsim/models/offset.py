@@ -24,6 +24,16 @@ def to_global(z: Array, θ: Array | float) -> Array:
     return np.stack([right * s + ahead * c, -right * c + ahead * s], axis=-1)
 
 
+def from_global(z: Array, θ: Array | float) -> Array:
+    """What `to_global` turned, turned back into the lidar's frame : (…, 2) m
+
+    >>> from_global(np.array([7.0, 0.0]), 0.0).tolist()
+    [-0.0, 7.0]
+    """
+    east, north, s, c = z[..., 0], z[..., 1], np.sin(θ), np.cos(θ)
+    return np.stack([east * s - north * c, east * c + north * s], axis=-1)
+
+
 def to_global_as_printed(z: Array, θ: Array | float) -> Array:
     """Eq. 8 to the letter: x_p = x_L cos θ + y_L sin θ, y_p = −x_L sin θ + y_L cos θ; wrong for its lidar's frame."""
     right, ahead, s, c = z[..., 0], z[..., 1], np.sin(θ), np.cos(θ)

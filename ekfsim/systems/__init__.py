@@ -18,7 +18,7 @@ and so on, wherever the package cites an equation, are these, and here is where 
          as its authors have coded it: WheelSpeedsAsWritten, filters/listing.py, simulation/interpolation.py
     004  pylon: King & Johnson, Lab 3: Extended Kalman Filter for Localization
          1 to 4 filters/ekf.py · 5 to 7, and R_t of 10 models/planar_imu.py · 8, 9, and Q_t of 10 models/offset.py
-         11 geometry/outline.py · 12 figures/track.py
+         the yaw filter of its conclusion models/lidar.py · 11 geometry/outline.py · 12 figures/track.py
 
 Two more systems read published logs, with models that no document prints: landmarks (MRCLAM) and ranges (Plaza).
 """
@@ -30,6 +30,7 @@ from ekfsim.systems.instruments import (
     Gnss,
     Infrared,
     Instrument,
+    Lidar,
     Markers,
     Pylon,
     RangeBearings,
@@ -56,5 +57,5 @@ SYSTEMS: dict[str, System] = {
     "ranges": System(RangingMower(), (Ranges(),)),
 }
 INSTRUMENTS: dict[str, type[Instrument]] = {
-    kind.name: kind for kind in (Markers, RangeBearings, Ranges, Bearings, Gnss, Pylon, Ultrasonic, Infrared)
+    kind.name: kind for kind in (Markers, RangeBearings, Ranges, Bearings, Gnss, Pylon, Lidar, Ultrasonic, Infrared)
 }

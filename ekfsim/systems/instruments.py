@@ -16,6 +16,7 @@ from ekfsim.geometry.walls import Walls
 from ekfsim.models.infrared import COLOURS, InfraredBeam
 from ekfsim.models.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.layout import Layout
+from ekfsim.models.lidar import LidarOffset
 from ekfsim.models.offset import LandmarkOffset
 from ekfsim.models.position import Position
 from ekfsim.models.protocols import Sensor
@@ -211,6 +212,23 @@ class Pylon(_Looking):
         for mark in around.landmarks:
             sensor = LandmarkOffset(mark.x, mark.y, self.sigma, self.sigma, around.layout, yaw_sigma)
             yield Target("pylon", sensor, (mark.x, mark.y))
+
+
+@dataclass(frozen=True)
+class Lidar(_Looking):
+    """The same lidar, its reading left as it sees the pylon: what document 004's conclusion asks for."""
+
+    name: ClassVar[str] = "lidar"
+    readings: ClassVar[tuple[DocumentReading, ...]] = ()
+    rate: float = 10.0
+    sigma: float = 0.0075  # m, Q_t of eq. 10
+    farthest: float = 100.0
+    views: tuple[tuple[float, float], ...] = ALL_ROUND
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """A sensor for each pylon."""
+        for mark in around.landmarks:
+            yield Target("lidar", LidarOffset(mark.x, mark.y, self.sigma, around.layout), (mark.x, mark.y))
 
 
 EIGHT = tuple(math.radians(angle) for angle in range(-180, 180, 45))

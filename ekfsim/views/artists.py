@@ -89,14 +89,22 @@ class BeliefArtists:
     """The estimate with its ellipse, cone and path, and the truth."""
 
     def __init__(
-        self, axes: Axes, probability: float, conditional: bool, driven: bool, body: bool = True, crowd: bool = False
+        self,
+        axes: Axes,
+        probability: float,
+        conditional: bool,
+        driven: bool,
+        body: bool = True,
+        crowd: bool = False,
+        true: bool = True,
     ) -> None:
         """driven : whether the path has a corner for each of many instants, rather than for each command
 
-        body : whether to draw the robot; crowd : whether the belief may be particles, for the legend
+        body : whether to draw the robot; for the legend, crowd : whether the belief may be particles, true : whether
+        the truth is known
         """
         self._driven = driven
-        self._probability, self._crowd = probability, crowd
+        self._probability, self._crowd, self._true = probability, crowd, true
         self.cone = _area(axes, SKY, 0.35, "--", 1.0, 2.0, "cone", cone_label(probability))
         self.ellipse = _area(axes, GREEN, 0.18, "-", 1.6, 3.1, "ellipse", ellipse_label(probability))
         self.conditioned: dict[int, Line2D] = {}
@@ -161,7 +169,8 @@ class BeliefArtists:
         yield from self.conditioned.values()
         if self._crowd:
             yield self.particles
-        yield self.heading, self.truth
+        if self._true:
+            yield self.heading, self.truth
 
 
 class BeamArtists:

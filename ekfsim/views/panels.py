@@ -46,7 +46,9 @@ class Main:
         self.axes = axes
         self.world = WorldArtists(axes, scene.world)
         static = set(axes.get_children())
-        self.belief = BeliefArtists(axes, probability, conditional, _driven(scene), crowd=scene.filter == "pf")
+        self.belief = BeliefArtists(
+            axes, probability, conditional, _driven(scene), crowd=scene.filter == "pf", true=_true(scene)
+        )
         self.others = others(axes, scene, probability)
         self.belief.call(scene.filter if self.others else "")
         self.beam = BeamArtists(axes)
@@ -165,6 +167,11 @@ def sensors(scene: Scene) -> set[type[Sensor]]:
     if _driven(scene):
         return kinds(scene)
     return {Laser} if senses(scene.commands) or not scene.commands else set()
+
+
+def _true(scene: Scene) -> bool:
+    """Whether the truth is known, at one instant at least."""
+    return scene.log is None or any(entry.truth is not None for entry in scene.log.entries)
 
 
 def _driven(scene: Scene) -> bool:

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 
 from ekfsim.geometry import Array
 from ekfsim.models.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
+from ekfsim.models.lidar import LidarOffset
 from ekfsim.models.offset import LandmarkOffset
 from ekfsim.models.position import Position
 from ekfsim.models.protocols import Sensor
@@ -28,9 +29,10 @@ LABELS: dict[type, str] = {
     RangeOnly: "range, as measured",
     Position: "fix as measured, with 1 σ",
     LandmarkOffset: "offset, as measured",
+    LidarOffset: "offset, as measured",
 }
 DIRECTIONS = {MarkerAngles, BearingOnly}  # the way that was expected ends nowhere
-POINTS = {RangeBearing, LandmarkOffset, Position}  # a reading of these puts something at a point
+POINTS = {RangeBearing, LandmarkOffset, LidarOffset, Position}  # a reading of these puts something at a point
 
 
 class SightArtists:

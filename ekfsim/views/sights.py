@@ -15,6 +15,7 @@ from ekfsim.models.frozen import Frozen
 from ekfsim.models.infrared import InfraredBeam
 from ekfsim.models.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.laser import Laser
+from ekfsim.models.lidar import LidarOffset
 from ekfsim.models.offset import LandmarkOffset
 from ekfsim.models.position import Position
 from ekfsim.models.protocols import Quantity, Sensor
@@ -68,6 +69,9 @@ def sight(step: Step) -> Sight | None:
             return _fix(sensor, z, predicted, refused)
         case LandmarkOffset():
             line, way = (_finite(np.stack([pose[:2], pose[:2] + offset])) for offset in (z, predicted))
+            return Sight(line, line[1:], way, way[1:], np.array([[sensor.x, sensor.y]]), refused, "offset")
+        case LidarOffset():
+            line, way = (_ray(pose, math.atan2(-x, y), math.hypot(x, y)) for x, y in (z, predicted))
             return Sight(line, line[1:], way, way[1:], np.array([[sensor.x, sensor.y]]), refused, "offset")
         case Laser() | UltrasonicBeam() | InfraredBeam():
             line, way = (_ray(pose, sensor.bearing, beam_length(sensor, float(value[0]))) for value in (z, predicted))

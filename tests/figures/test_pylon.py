@@ -11,11 +11,21 @@ from kept import Kept
 from ekfsim.errors import UsageError
 from ekfsim.figures.pylon import draw_pylon
 from ekfsim.figures.pylon_innovations import Tries
-from ekfsim.figures.pylon_runs import Runs, Told, by_the_letter, every_other, lidar_alone, timed, turned_by_the_yaw_of
+from ekfsim.figures.pylon_runs import (
+    Runs,
+    Told,
+    by_the_letter,
+    every_other,
+    in_its_own_frame,
+    lidar_alone,
+    timed,
+    turned_by_the_yaw_of,
+)
 from ekfsim.figures.pylon_sight import Innovations
+from ekfsim.figures.track import rmse
 from ekfsim.files.load import load_scene
 from ekfsim.localization import play
-from ekfsim.records import Control, Reading
+from ekfsim.records import Control, Log, Reading
 from ekfsim.systems.drives import Square, Stretch, Stretches
 
 LOG = Path(__file__).resolve().parents[2] / ".." / "shared" / "data" / "pylon" / "2020_2_26__17_21_59_filtered.csv"
@@ -168,7 +178,8 @@ def test_too_short_a_run_is_refused(tmp_path):
         drawn(stub, tmp_path)
 
 
-def test_a_run_that_stays_away_from_the_corner_has_no_figure_5(tmp_path):
+def test_a_run_that_stays_away_from_the_corner_has_no_figure_5(tmp_path, monkeypatch):
+    monkeypatch.setattr("ekfsim.figures.pylon_yaw.RUNS", 2)
     album = drawn(replace(load_scene("pylon"), drive=Stretches((Stretch(1.0, 0.0, 5.0),))), tmp_path)
     assert list(album.drawn) == [name for name in NAMES if name != "fig5-ellipses"]
     assert any("does not come near the south-west corner" in page for page in album.pages)
@@ -181,7 +192,7 @@ def test_on_the_authors_log_the_coded_reading_is_their_filter(logged):
     for start in ("coded: ", "coded, every other", "coded, dt from", "printed: ", "lidar and yaw", "GPS"):
         found = row(rows, start)
         assert float(found["path RMSE (m)"]) == pytest.approx(
-            float(found["path RMSE of the authors' program on their log (m)"]), abs=1.1e-6
+            float(found["the same of the authors' own program (m)"]), abs=1.1e-6
         )
     coded = row(rows, "coded: ")
     assert (float(coded["mean (m)"]), float(coded["largest (m)"])) == pytest.approx((0.191488, 1.0976), abs=1e-4)
@@ -190,6 +201,45 @@ def test_on_the_authors_log_the_coded_reading_is_their_filter(logged):
     assert float(row(rows, "corrected: ")["mean NIS"]) == pytest.approx(6, abs=0.2)
     assert "meet" in logged.captions["fig6-variances"]
     assert logged.captions["fig6-variances"].endswith("So they do here.")
+
+
+def test_the_numbers_of_the_authors_program_stand_beside_their_own_log_alone(twin):
+    assert not any("authors' own program" in column for column in next(iter(twin.rows("readings").values())))
+
+
+@LOGGED
+def test_another_log_is_not_held_against_the_numbers_of_the_published_one(tmp_path):
+    own = log("coded")
+    shorter = replace(own, log=Log(own.log.entries[:-200], own.log.first))
+    assert Runs.of(own).published
+    assert not Runs.of(shorter).published
+
+
+def test_the_yaw_filter_halves_no_position_but_the_heading(twin):
+    turned, own = twin.rows("yaw-filter").values()
+    at, off = ([float(row["RMSE position (m)"].split()[0]) for row in (turned, own)],
+               [float(row["RMSE heading (degrees)"].split()[0]) for row in (turned, own)])  # fmt: skip
+    assert at[1] == pytest.approx(at[0], rel=0.02)
+    assert off[1] < 0.8 * off[0]
+    assert "smaller in 100 of 100 runs" in " ".join("".join(twin.pages).split())
+
+
+def test_read_in_its_own_frame_a_run_is_as_that_of_the_sensor_lidar():
+    """The same noises are drawn for either, in another frame: alike on the whole, not reading by reading."""
+    told = Told.of(fast(), "corrected")
+    turned_back = told.but(in_its_own_frame(told.entries)).track()
+    own = Told.of(replace(fast(), world=load_scene("pylon", world="pylon-lidar").world), "corrected").track()
+    assert rmse(turned_back.position_error) == pytest.approx(rmse(own.position_error), rel=0.1)
+    assert rmse(turned_back.heading_error) == pytest.approx(rmse(own.heading_error), rel=0.05)
+
+
+@LOGGED
+def test_the_recorded_log_is_read_in_either_frame():
+    read = load_scene("pylon_log", log=LOG, world="pylon-lidar").log.entries
+    for one, other in zip(in_its_own_frame(log().log.entries), read, strict=True):
+        if isinstance(one.given, Reading):
+            assert one.given.sensor == other.given.sensor
+            assert one.given.z == pytest.approx(other.given.z, abs=1e-12)
 
 
 @LOGGED

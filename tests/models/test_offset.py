@@ -5,7 +5,18 @@ import pytest
 from numerics import jacobian
 
 from ekfsim.models.layout import INERTIAL
-from ekfsim.models.offset import LandmarkOffset, to_global
+from ekfsim.models.lidar import LidarOffset
+from ekfsim.models.offset import LandmarkOffset, from_global, to_global
+
+
+def test_the_lidars_own_frame_is_the_global_one_turned_back():
+    x = np.random.default_rng(5).uniform(-3, 3, (9, 7))
+    seen = LidarOffset(5, -5, 0.0075, INERTIAL).h(x)
+    offset = LandmarkOffset(5, -5, 0.0075, 0.0075, INERTIAL).h(x)
+    assert to_global(seen, x[:, 5]) == pytest.approx(offset, abs=1e-12)
+    assert from_global(offset, x[:, 5]) == pytest.approx(seen, abs=1e-12)
+    ahead = np.zeros(7)  # at the origin, looking east: the pylon is 5 m ahead and 5 m to the right
+    assert LidarOffset(5, -5, 0.0075, INERTIAL).h(ahead) == pytest.approx([5, 5])
 
 
 @pytest.mark.parametrize(

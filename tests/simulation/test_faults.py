@@ -29,7 +29,7 @@ TOLD_ROBOT = {  # a number of each robot, and where it stands in M or Q of its m
 }
 SIGMAS = {
     "markers": "azimuth_sigma", "rangeBearing": "range_sigma", "range": "sigma", "bearing": "sigma", "gnss": "sigma",
-    "pylon": "sigma", "ultrasonic": "sigma", "infrared": "sigma",
+    "pylon": "sigma", "lidar": "sigma", "ultrasonic": "sigma", "infrared": "sigma",
 }  # fmt: skip
 
 

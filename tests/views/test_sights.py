@@ -19,6 +19,7 @@ from ekfsim.models.frozen import Frozen
 from ekfsim.models.infrared import InfraredBeam
 from ekfsim.models.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.layout import INERTIAL, POSE, SPEED_POSE
+from ekfsim.models.lidar import LidarOffset
 from ekfsim.models.offset import LandmarkOffset
 from ekfsim.models.position import Position
 from ekfsim.records import Entry, Log, Move, Reading, Sense, Step
@@ -108,6 +109,14 @@ def test_an_offset_is_drawn_in_the_global_frame():
     seen = sight(step_of(LandmarkOffset(4.0, 6.0, 0.1, 0.1, INERTIAL), [3.5, 4.5], [3.0, 4.0], INERTIAL))
     assert seen.line == pytest.approx(np.array([[1.0, 2.0], [4.5, 6.5]]))
     assert seen.expected[0] == pytest.approx([4.0, 6.0])
+
+
+def test_what_the_lidar_saw_is_drawn_from_the_estimate_as_it_is_turned():
+    at = np.array([1.0, 2.0, math.radians(90)])  # it looks north: 3 m to the right is east, 4 m ahead is north
+    seen = sight(step_of(LidarOffset(4.0, 6.0, 0.1), [3.0, 4.0], [2.5, 4.5], pose=at))
+    assert seen.line == pytest.approx(np.array([[1.0, 2.0], [4.0, 6.0]]))
+    assert seen.expected[0] == pytest.approx([3.5, 6.5])
+    assert seen.place[0] == pytest.approx([4.0, 6.0])
 
 
 def test_an_intensity_is_drawn_as_the_distance_that_it_stands_for():
@@ -282,6 +291,13 @@ def test_a_log_shows_every_fix_up_to_now():
     assert source(run) == "pylon — recorded, ekf"
     assert source(replace(run, filter="pf", gate=0.99)) == "pylon — recorded, seed 0, run 0, pf, gate 99 %"
     assert source(replace(systems_scenes.gnss(), reading="printed")) == "gnss — seed 0, run 0, ekf, as printed"
+
+
+def test_a_log_without_truth_has_none_in_its_legend():
+    run = recorded(systems_scenes.pylon())
+    assert "truth" in words(drawn(run)[0])
+    blind = replace(run, log=Log(tuple(replace(entry, truth=None) for entry in run.log.entries), run.log.first))
+    assert "truth" not in words(drawn(blind)[0])
 
 
 def test_titles_tell_the_instant_and_what_was_measured():

@@ -17,10 +17,11 @@ from ekfsim.files.logs.timeline import beginning
 from ekfsim.files.telling import quoted
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
+from ekfsim.models.lidar import LidarOffset
 from ekfsim.models.offset import to_global
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.systems.document import DocumentReading
-from ekfsim.systems.instruments import Pylon
+from ekfsim.systems.instruments import Lidar, Pylon
 from ekfsim.world import World
 
 COLUMNS = ("X", "Y", "Latitude", "Longitude", "Yaw", "AccelX", "AccelY")
@@ -49,8 +50,9 @@ def read_pylon(path: Path, world: World, reading: DocumentReading, warnings: lis
     # document turns the offset rightly.
     beam = rows.values[:, 1:3]
     beam = np.where((beam == 0).all(axis=1, keepdims=True), np.nan, beam)  # no pylon stands within the lidar
-    z, fixes = to_global(beam, θ), metres(rows.values[:, 3:5])
-    motion, pylon = world.told_robot.motion(reading), only(world, reading, Pylon)
+    fixes = metres(rows.values[:, 3:5])
+    motion, pylon = world.told_robot.motion(reading), only(world, reading, Pylon, Lidar)
+    z = beam if isinstance(pylon.sensor, LidarOffset) else to_global(beam, θ)
     entries = [Entry(0, None, t=0.0)]
     for t, given, offset, fix in zip(rows.t.tolist(), u, z, fixes, strict=True):
         known = None if np.isnan(fix).any() else fix

@@ -46,10 +46,11 @@ def by_name(world: World, reading: DocumentReading, instrument: Instrument) -> d
     return {target.name: target for target in instrument.targets(world.around(reading))}
 
 
-def only(world: World, reading: DocumentReading, kind: type[Instrument]) -> Target:
-    """The one sensor that the world has of a kind. Raises UsageError where it has none, or several."""
-    found = [target for instrument, target in world.targets(reading) if isinstance(instrument, kind)]
+def only(world: World, reading: DocumentReading, *kinds: type[Instrument]) -> Target:
+    """The one sensor that the world has of some kinds. Raises UsageError where it has none, or several."""
+    found = [target for instrument, target in world.targets(reading) if isinstance(instrument, kinds)]
     if len(found) != 1:
-        wanted = f"this log belongs to a world with one thing that the sensor {kind.name} sees"
+        names = " or ".join(kind.name for kind in kinds)
+        wanted = f"this log belongs to a world with one thing that the sensor {names} sees"
         raise UsageError(f"{world.name}: {wanted}, not {len(found)}")
     return found[0]

@@ -11,6 +11,7 @@ from ekfsim.errors import UsageError
 from ekfsim.files.logs.pylon import CLOCK, EARTH_RADIUS
 from ekfsim.files.logs.ticks import Run, numbered, text_of
 from ekfsim.files.writing import whole_folder
+from ekfsim.models.offset import from_global
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Entry
 from ekfsim.scene import Scene
@@ -118,9 +119,8 @@ def _pylon(scene: Scene, run: Run, out: Path) -> Files:
         ahead, left, θ, _ = tick.u.tolist()
         x = y = math.nan
         for reading in tick.readings:
-            numbered(reading, ("pylon",), out)
-            east, north = reading.z.tolist()
-            x, y = east * math.sin(θ) - north * math.cos(θ), east * math.cos(θ) + north * math.sin(θ)
+            kind, _ = numbered(reading, ("pylon", "lidar"), out)
+            x, y = (from_global(reading.z, θ) if kind == "pylon" else reading.z).tolist()
         stamp = (BEGINNING + int(tick.t)) * CLOCK + round(tick.t * 1e6) % CLOCK
         latitude, longitude = _degrees(*((0.0, 0.0) if tick.fix is None else tick.fix.tolist()))
         yaw = math.degrees(-θ) % 360

@@ -94,7 +94,7 @@ def test_a_pylon_folder_holds_one_csv(tmp_path):
     assert len(read("pylon", folder / "walk.csv").log.entries) == 3
     with pytest.raises(UsageError, match="no such file; name the CSV file of the lidar"):
         read("pylon", folder / "walk.txt")
-    with pytest.raises(UsageError, match="the sensor pylon sees, not 0"):
+    with pytest.raises(UsageError, match="the sensor pylon or lidar sees, not 0"):
         read("pylon", folder / "walk.csv", world("pylon"))
     with pytest.raises(InputError, match=r"walk.csv:1:1: 3 columns stand in this row; it must have 12"):
         read("pylon", lay(tmp_path / "short", **{"walk.csv": "1,2,3\n" * 3}))

@@ -168,5 +168,5 @@ def test_ranges_of_plaza():
 def test_the_pylon_wants_one_landmark():
     from ekfsim.errors import UsageError
 
-    with pytest.raises(UsageError, match="one thing that the sensor pylon sees, not 2"):
+    with pytest.raises(UsageError, match="one thing that the sensor pylon or lidar sees, not 2"):
         read("pylon", shared("pylon"), world("pylon", (*PYLON, PYLON[0]._replace(id=2))))
