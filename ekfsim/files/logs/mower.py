@@ -1,7 +1,6 @@
 """A log of document 000, as its MATLAB listing reads it: poselog, angles and map, text files of bare numbers."""
 
 import math
-from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,7 @@ from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.table import Rows, Wanted, bare_table, some
 from ekfsim.files.logs.targets import of_landmarks
 from ekfsim.files.logs.timeline import beginning
-from ekfsim.geometry import Array, Integers
+from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.systems.document import DocumentReading
@@ -24,10 +23,13 @@ HOLDS = "marker-001-poselog.txt, marker-001-003-angles.txt and marker-001-map.tx
 POSELOG = Wanted(("t", "ΔD_L", "ΔD_R", "ω", "x", "y", "heading"), (2, 3, 4, 8, 18, 19, 20), range(21, 1000))
 ANGLES = Wanted(("t", "marker", "azimuth", "elevation"), (0, 1, 2, 3), range(4, 1000))
 MAP = Wanted(("marker", "x", "y"), (0, 1, 2), range(3, 1000))
+MUCH_LATER = 10  # steps dT from which on it is told that a picture has to wait so long for its row
 
 
 def read_mower(path: Path, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
-    """Every row of the poselog, the first too, is one time update of dT; then the markers of its window are taken.
+    """Every row of the poselog, the first too, is one time update of dT; then the markers that belong to it are taken.
+
+    To which row a picture belongs, the text and its listing say differently where stamps are uneven or repeat.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
@@ -45,7 +47,10 @@ def read_mower(path: Path, world: World, reading: DocumentReading, warnings: lis
     landmarks = _landmarks(bare_table(files[2], MAP, warnings, mixed=True), warnings)
     assert world.told_robot is not None
     dT = 1 / world.told_robot.rate
-    readings = _by_row(poses, angles, dT, _readings(angles, landmarks, world, reading, warnings), warnings)
+    tell_back(angles, warnings)
+    rows_of = _rows_of_listing if reading == "coded" else _rows_of_text
+    rows = rows_of(poses, angles, dT, warnings)
+    readings = _by_row(rows, _readings(angles, landmarks, world, reading, warnings))
     u = np.column_stack([poses.values[:, 1:4], np.full(len(poses), dT)])
     truth = poses.values[:, 4:7].copy()
     truth[:, 2] = wrap(truth[:, 2])
@@ -117,23 +122,44 @@ def _readings(
     return found
 
 
-def _by_row(
-    poses: Rows, angles: Rows, dT: float, readings: list[Reading | None], warnings: list[str]
-) -> dict[int, list[Reading]]:
-    """The readings by the row of the poselog at which they are used: the first whose stamp is not before theirs.
+def _by_row(rows: list[Integers], readings: list[Reading | None]) -> dict[int, list[Reading]]:
+    """The readings by the row of the poselog at which they are used, there in the order of their file."""
+    used = dict[int, list[Reading]]()
+    for at, reading in zip(rows, readings, strict=True):
+        if reading is not None:
+            for row in at.tolist():
+                used.setdefault(row, []).append(reading)
+    return used
 
-    It must not be later than dT after it, or the listing's window t − dT ≤ t_m ≤ t would not hold.
-    """
-    tell_back(angles, warnings)
-    row: Integers = np.searchsorted(poses.t, angles.t, side="left")
+
+def _rows_of_text(poses: Rows, angles: Rows, dT: float, warnings: list[str]) -> list[Integers]:
+    """At which rows each reading is used: the first whose stamp is not before its own, however late (section 2)."""
+    row = np.searchsorted(poses.t, angles.t, side="left")
     last = len(poses) - 1
-    used = (row <= last) & (angles.t >= poses.t[np.minimum(row, last)] - dT)
-    if missed := np.flatnonzero(~used).tolist():
-        more = f", nor do {len(missed) - 1} more" if len(missed) > 1 else ""
-        told = f"{angles.at(missed[0])}: the stamp {angles.t[missed[0]]:.12g} lies in no row's last {dT:g} s{more}"
-        warnings.append(f"{told}: left out")
-    order = sorted(np.flatnonzero(used).tolist(), key=lambda i: int(row[i]))  # stable: in a row as in the file
-    return {
-        at: [one for i in group if (one := readings[i]) is not None]
-        for at, group in groupby(order, key=lambda i: int(row[i]))
-    }
+    late = np.where(row <= last, poses.t[np.minimum(row, last)] - angles.t, 0.0)
+    outside = (row > last) | ((row == 0) & (late > MUCH_LATER * dT))
+    _tell(angles, outside, f"is not of the time of {poses.file}", "left out", warnings)
+    span = np.max(late[~outside], initial=0.0)
+    used = f"taken there all the same; the longest wait is {span:.3g} s"
+    _tell(
+        angles, ~outside & (late > MUCH_LATER * dT), f"is {MUCH_LATER * dT:g} s or more before any row", used, warnings
+    )
+    return [row[i : i + 1] if not outside[i] else row[:0] for i in range(len(row))]
+
+
+def _rows_of_listing(poses: Rows, angles: Rows, dT: float, warnings: list[str]) -> list[Integers]:
+    """The same by the listing: every row with t − dT ≤ t_m ≤ t, of which there are many where stamps repeat."""
+    first = np.searchsorted(poses.t, angles.t, side="left")
+    end = np.searchsorted(poses.t - dT, angles.t, side="right")
+    _tell(angles, end <= first, f"lies in no row's last {dT:g} s", "left out", warnings)
+    _tell(
+        angles, end > first + 1, f"lies in more than one row's last {dT:g} s", "used at each, by the listing", warnings
+    )
+    return [np.arange(a, b) for a, b in zip(first, end, strict=True)]
+
+
+def _tell(angles: Rows, which: Booleans, wrong: str, made: str, warnings: list[str]) -> None:
+    """Warn of stamps, and of what is made of them."""
+    if rows := np.flatnonzero(which).tolist():
+        more = f", and so do {len(rows) - 1} more" if len(rows) > 1 else ""
+        warnings.append(f"{angles.at(rows[0])}: the stamp {angles.t[rows[0]]:.12g} {wrong}{more}: {made}")

@@ -1,12 +1,18 @@
 """The mower's files against the MATLAB listing of document 000, transcribed here line by line."""
 
 import math
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 from log_worlds import lay, read, steps_of, world
 
 from ekfsim.errors import InputError, UsageError
+from ekfsim.files.load import load_scene
+from ekfsim.files.logs.written import write_log
+from ekfsim.simulation import simulate
+from ekfsim.systems.drives import Course
 
 MAP = np.array([[0, 4.0, 1.0], [1, 2.0, -3.0], [2, -3.0, 0.5]])
 
@@ -53,7 +59,10 @@ def write(folder, poses, angles, separator=" "):
 
 
 def listing(poses, angles, stale):
-    """Appendix A with bgn = 1; unless `stale`, with initHead from row 1 and xM yM Phi refreshed before each marker."""
+    """Appendix A with bgn = 1; unless `stale`, as the text has it: with initHead from row 1, xM yM Phi refreshed
+
+    before each marker, and each marker at the first row that is not before it.
+    """
 
     def within(angle):  # mod(angle, sign(angle)*2*pi)
         return math.fmod(angle, 2 * math.pi)
@@ -63,7 +72,8 @@ def listing(poses, angles, stale):
     headings = [within(angle) for angle in poses[:, 20]]
     x = np.array([*poses[0, 18:20], within(np.mean(headings[1:100])) if stale else headings[0]])
     P, states = Q.copy(), []
-    for row in poses:
+    first = np.array([np.argmax(poses[:, 2] >= stamp) for stamp in angles[:, 0]])
+    for number, row in enumerate(poses):
         left, right, fog, t = row[3], row[4], row[8], row[2]
         xM, yM, Phi = x
         dD = (left + right) / 2
@@ -75,7 +85,8 @@ def listing(poses, angles, stale):
         ds, dc = dD / 2 / b * math.sin(argument), dD / 2 / b * math.cos(argument)
         B = np.array([[c + ds, c - ds], [s - dc, s + dc], [-1 / b, 1 / b]])
         P = A @ P @ A.T + var_in * B @ B.T + Q
-        for _, marker, α, η in angles[(angles[:, 0] >= t - 0.01) & (angles[:, 0] <= t)]:
+        window = (angles[:, 0] >= t - 0.01) & (angles[:, 0] <= t)
+        for _, marker, α, η in angles[window if stale else first == number]:
             if not stale:
                 xM, yM, Phi = x
             xB, yB = MAP[int(marker), 1:]
@@ -115,7 +126,12 @@ def test_our_states_are_those_of_the_listing(tmp_path, reading, separator):
         e[2] = math.remainder(e[2], 2 * math.pi)
         assert np.abs(e).max() < 1e-9
         np.testing.assert_allclose(last[t].posterior.covariance, P, rtol=1e-9, atol=1e-15)
-    assert sum("lies in no row's last 0.01 s" in told for told in warnings) == 1  # the marker in the gap
+    gap = {  # of the marker in it
+        "coded": "the stamp 1001.69 lies in no row's last 0.01 s: left out",
+        "corrected": "the stamp 1001.69 is 0.1 s or more before any row: taken there all the same; the longest wait is "
+        "0.31 s",
+    }
+    assert [told.partition("angles.txt:5: ")[2] for told in warnings if "angles.txt" in told] == [gap[reading]]
 
 
 def test_every_row_is_a_time_update_and_then_come_its_markers(tmp_path):
@@ -123,8 +139,8 @@ def test_every_row_is_a_time_update_and_then_come_its_markers(tmp_path):
     _, steps, _ = ours(write(tmp_path / "log", poses, angles), "corrected")
     assert sum(step.prediction is not None for step in steps) == len(poses)
     seen = [step.entry for step in steps if step.correction is not None]
-    assert [entry.given.name for entry in seen] == [f"marker {n}" for n in (0, 1, 0, 2, 0, 1, 2)]
-    assert [entry.t for entry in seen] == [float(poses[row, 2]) for row in (0, 20, 20, 60, 200, 200, 200)]
+    assert [entry.given.name for entry in seen] == [f"marker {n}" for n in (0, 1, 0, 2, 1, 0, 1, 2)]
+    assert [entry.t for entry in seen] == [float(poses[row, 2]) for row in (0, 20, 20, 60, 150, 200, 200, 200)]
     assert [step.entry.index for step in steps] == list(range(len(steps)))
     first = steps[0]
     np.testing.assert_allclose(first.posterior.mean, poses[0, 18:21])
@@ -142,6 +158,112 @@ def test_a_reading_is_used_once_where_two_rows_share_a_stamp(tmp_path):
     assert sum(step.correction is not None for step in steps) == 2
     assert sum(step.prediction is not None for step in steps) == 60
     assert any(":22: the time 1000.2 is that of the row above, too" in told for told in warnings)
+    _, steps, warnings = ours(tmp_path / "log", "coded")
+    assert [s.entry.given.name for s in steps if s.correction is not None] == ["marker 1", "marker 0"] * 2
+    assert sum("and so do 1 more: used at each, by the listing" in told for told in warnings) == 1
+
+
+@pytest.fixture(scope="module")
+def shared_stamps(tmp_path_factory):
+    """12 000 rows of a simulated mower's log, in groups of one to four that bear the stamp of the last of them."""
+    scene = load_scene("mower")
+    course = scene.drive.course(0.01)
+    scene = replace(scene, drive=Cut(Course(course.speed[:12_000], course.turn_rate[:12_000], course.held)), seed=5)
+    folder = tmp_path_factory.mktemp("mower") / "log"
+    write_log(scene, simulate(scene), folder, force=False)
+    poses, angles, marks = (np.loadtxt(folder / f"marker-001-{name}.txt") for name in ("poselog", "003-angles", "map"))
+    sizes = np.random.default_rng(3).integers(1, 5, 12_000)
+    ends = np.minimum(np.cumsum(sizes) - 1, 11_999)
+    poses[:, 2] = poses[ends[np.searchsorted(ends, np.arange(12_000))], 2]
+    np.savetxt(folder / "marker-001-poselog.txt", poses, fmt="%.17g")
+    return folder, poses, angles, marks
+
+
+class Cut(NamedTuple):
+    """A drive that is a course already."""
+
+    way: Course
+
+    def course(self, dt):
+        return self.way
+
+
+def of_the_listing(poses, angles, marks):
+    """The loop of the listing once more, from its print, with nothing but what its states need : (rows, 3)"""
+    x = np.array([poses[0, 18], poses[0, 19], np.fmod(np.fmod(poses[1:100, 20], 2 * np.pi).mean(), 2 * np.pi)])
+    Q, R = np.diag([1e-4, 1e-4, 7.62e-5]), np.diag([0.048**2, 0.006**2])
+    P, b, h, states, used = Q, 1.41, 0.226, [], 0
+    for stamp, ΔL, ΔR, ω in poses[:, [2, 3, 4, 8]]:
+        (X, Y, Φ), D, a = x, (ΔL + ΔR) / 2, x[2] + ω / 2 * 0.01
+        x = np.array([X + D * np.cos(a), Y + D * np.sin(a), np.fmod(Φ + ω * 0.01, 2 * np.pi)])
+        A = np.array([[1, 0, -D * np.sin(a)], [0, 1, D * np.cos(a)], [0, 0, 1]])
+        along, across = np.array([np.cos(a), np.sin(a)]) / 2, D / 2 / b * np.array([np.sin(a), -np.cos(a)])
+        B = np.vstack([np.column_stack([along + across, along - across]), [-1 / b, 1 / b]])
+        P = A @ P @ A.T + 1e-4 * B @ B.T + Q
+        for entry in np.flatnonzero((angles[:, 0] >= stamp - 0.01) & (angles[:, 0] <= stamp)):
+            used += 1
+            dx, dy = marks[int(angles[entry, 1]), 1:] - (X, Y)
+            d2 = dx**2 + dy**2
+            d = np.sqrt(d2)
+            slope = -h / (d * (h**2 + d2))
+            H = np.array([[dy / d2, -dx / d2, -1], [slope * dx, slope * dy, 0]])
+            ν = angles[entry, 2:4] - (np.angle(np.exp(1j * (np.arctan2(dy, dx) - Φ))), -np.arctan(h / d))
+            ν[0] = np.angle(np.exp(1j * ν[0]))
+            K = P @ H.T @ np.linalg.inv(H @ P @ H.T + R)
+            x, I_KH = x + K @ ν, np.eye(3) - K @ H
+            P = I_KH @ P @ I_KH.T + K @ R @ K.T
+        states.append(x)
+    return np.array(states), used
+
+
+def after_each_row(steps):
+    """(rows, 3) the state after a row's time update and all its markers"""
+    states = []
+    for step in steps[1:]:
+        if step.prediction is not None:
+            states.append(step.posterior.mean)
+        states[-1] = step.posterior.mean
+    return np.array(states)
+
+
+def test_on_shared_stamps_the_listing_uses_a_reading_at_every_row_that_bears_them(shared_stamps):
+    folder, poses, angles, marks = shared_stamps
+    _, steps, warnings = ours(folder, "coded")
+    theirs, used = of_the_listing(poses, angles, marks)
+    assert sum(step.correction is not None for step in steps) == used != len(angles)
+    e = after_each_row(steps) - theirs
+    e[:, 2] = np.remainder(e[:, 2] + math.pi, 2 * math.pi) - math.pi
+    assert np.abs(e).max() < 1e-6
+    assert sum("used at each, by the listing" in told for told in warnings) == 1
+
+
+def test_on_shared_stamps_the_text_uses_every_reading_once_at_the_first_row_that_is_not_before_it(shared_stamps):
+    folder, poses, angles, _ = shared_stamps
+    _, steps, warnings = ours(folder, "corrected")
+    row, used = -1, []
+    for step in steps[1:]:
+        row += step.prediction is not None
+        if step.correction is not None:
+            used.append((row, step.entry.given.z.tolist()))
+    assert len(used) == len(angles) > 100
+    for (row, z), (stamp, _, *seen) in zip(used, angles, strict=True):
+        assert z == seen
+        assert poses[row, 2] >= stamp
+        assert row == 0 or poses[row - 1, 2] < stamp
+    assert not any("angles.txt" in told for told in warnings)
+
+
+def test_what_is_not_of_the_time_of_the_poselog_is_left_out_and_told(tmp_path):
+    poses, angles = short_log()
+    angles = angles[[0, 0, 1, 1]].copy()
+    angles[:, 0] = [990, 999.95, 1000.196, 1000.7]
+    for reading, used, told in (
+        ("corrected", 2, "the stamp 990 is not of the time of"),
+        ("coded", 1, "the stamp 990 lies in no row's last 0.01 s, and so do 2 more: left out"),
+    ):
+        _, steps, warnings = ours(write(tmp_path / "log", poses, angles), reading)
+        assert sum(step.correction is not None for step in steps) == used
+        assert sum(told in warning for warning in warnings) == 1
 
 
 def test_markers_out_of_order_are_put_in_order_and_told(tmp_path):
