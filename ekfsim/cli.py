@@ -10,7 +10,18 @@ import click
 from ekfsim import process
 from ekfsim.asked import engine_of, scene_of
 from ekfsim.errors import RunError, UsageError
-from ekfsim.options import FORCE, READING, Result, Seed, Source, Whole, compare_options, scene_options, study_options
+from ekfsim.options import (
+    DOCUMENTS,
+    FORCE,
+    READING,
+    Result,
+    Seed,
+    Source,
+    Whole,
+    compare_options,
+    scene_options,
+    study_options,
+)
 from ekfsim.process import Program, heed, part_with, say, shown, width
 from ekfsim.progress import blocks_bar, study_into
 from ekfsim.version import VERSION
@@ -198,7 +209,7 @@ def new(file: Path, kind: str | None, force: bool) -> None:
     click.echo(shown(f"{file}: a {told} file to start from; ekfsim check {file} validates it"))
 
 
-@ekfsim.command()
+@ekfsim.command(epilog=DOCUMENTS)
 @click.argument("name", type=click.Choice(["classroom", "mower", "pioneer", "gnss", "pylon"]))
 @click.option("--out", "-o", type=Result(), required=True, help="A folder for the figures, tables and captions.md.")
 @click.option("--format", "formats", type=click.Choice(["png", "svg", "pdf"]), multiple=True, default=("png",),

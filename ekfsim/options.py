@@ -93,6 +93,16 @@ PARTICLES = click.option("--particles", type=Whole(1, MOST_PARTICLES), metavar="
                          help="Of each run's particle filter; short for --set filter.particles=N.")  # fmt: skip
 GATE = click.option("--gate", type=Gate(), metavar="P|off",
                     help="Refuse readings whose NIS lies beyond this χ² quantile; off refuses none.")  # fmt: skip
+DOCUMENTS = """\b
+Documents, by the numbers under which captions cite them:
+  000  mower      Kiriy, Buehler: Three-state Extended Kalman Filter for
+                  Mobile Robot Localization, 2002
+  001  pioneer    Tamás, Lazea, Robotin, Marcu, Herle, Szekely: State Estimation
+                  Based on Kalman Filtering Techniques in Navigation
+  002  classroom  Localization and the extended Kalman filter, an assignment
+  003  gnss       Sahni: Assignment 3: Sensor fusion for lawn mower, 2023
+  004  pylon      King, Johnson: Lab 3: Extended Kalman Filter for Localization
+"""
 GUARD = click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams.")
 
 

@@ -1,14 +1,17 @@
 """The misprints of the documents that are no model's own; those of the models stand in models/test_model_errata.py."""
 
 import math
+from pathlib import Path
 
 import numpy as np
+import pytest
 from documents import equation, text_of
 
 from ekfsim.filters.unscented import sigma_points, square_root, unscented_transform, weights
 from ekfsim.geometry.ellipse import radius_factor
 from ekfsim.models.move_turn import MoveTurn
 from ekfsim.models.polar import cartesian, cartesian_moments
+from ekfsim.options import DOCUMENTS
 from ekfsim.simulation.bench import sigma_of
 from ekfsim.systems.echo import Pair, flight_bound
 
@@ -168,3 +171,16 @@ def test_erratum_mower_eq_12_and_eq_28_are_one_for_the_optimal_gain():
     K = P @ H.T @ np.linalg.inv(H @ P @ H.T + R)
     I_KH = np.eye(3) - K @ H
     np.testing.assert_allclose(I_KH @ P @ I_KH.T + K @ R @ K.T, I_KH @ P, atol=1e-12)
+
+
+@pytest.mark.parametrize("number", ["000", "001", "002", "003", "004"])
+def test_who_looks_a_document_up_finds_its_title_and_its_authors(number):
+    told = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    row = next(line for line in told.splitlines() if line.startswith(f"| {number} |"))
+    title, helped = row.split("*")[1], " ".join(DOCUMENTS.split())
+    assert title in helped
+    assert f"{number} {row.split('|')[2].strip()} " in helped
+    beginning = text_of(number)[:400]
+    assert title in beginning
+    authors = row.split("|")[3].partition(", *")[0].replace(" and ", ", ").split(", ") * (number != "002")
+    assert all(author.split()[-1] in beginning for author in authors)

@@ -120,10 +120,11 @@ class Picture:
 class Frame:
     """Pictures of 900 × 700 pixels, many of one scene: what stands still is drawn once, what moves for each view."""
 
-    def __init__(self, scene: Scene, limits: Limits, look: Look = STANDARD) -> None:
+    def __init__(self, scene: Scene, limits: Limits, look: Look = STANDARD, legend: bool = True) -> None:
         figure = Figure(figsize=INCHES, dpi=DPI)
         self._canvas: Any = FigureCanvasAgg(figure)  # matplotlib leaves its methods untyped
         self.picture = Picture(figure, scene, limits, look)
+        self.picture.legend.set_visible(legend)
         for artist in self.picture.moving():
             artist.set_animated(True)
         self._draw_still()
