@@ -7,7 +7,7 @@ from typing import TextIO
 
 from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
-from ekfsim.study.verdict import verdict
+from ekfsim.study.verdict import Verdict, Word
 from ekfsim.version import VERSION
 
 SHARES = ("above_50", "above_95", "above_999", "ellipse", "cone", "lost")
@@ -19,8 +19,8 @@ AT_STEP = (
 OF_RUNS = (
     *("nees_mean_warning", "nis_mean", "nis_low", "nis_high", "nis_readings"),
     *("nis_runs", "nis_runs_above", "nis_runs_below", "nees_runs_above", "nees_runs_below"),
-    *("lost_from_median", "lost_from_median_t", "worst_run", "typical_run", "verdict", "verdict_from_step"),
-    "verdict_from_t",
+    *("lost_from_median", "lost_from_median_t", "worst_run", "typical_run"),
+    *("verdict", "decided", "on_the_way", "from_step", "to_step", "from_t", "to_t"),
 )
 ORIGIN = ("seed", "gate", "guard", "reading", "set", "ekfsim")
 
@@ -56,13 +56,25 @@ def _at(at: AtStep) -> list[str]:
 
 
 def _of_runs(result: Result) -> Iterator[str]:
-    of, nis, found = result.tally.of, result.nis, verdict(result)
+    of, nis = result.tally.of, result.nis
     yield warning(result)
     yield from map(_cell, (*nis, of.nis_readings))
     yield from map(_cell, (of.nis_runs, of.nis_above, of.nis_below, of.nees_above, of.nees_below))
     yield from map(_cell, (result.lost_from, result.time_of(result.lost_from), result.worst, result.typical))
-    yield found.word.value
-    yield from map(_cell, (None, None) if found.since is None else (found.since.step, found.since.t))
+    yield from _verdict(Verdict(result))
+
+
+def _verdict(found: Verdict) -> Iterator[str]:
+    """The word at the end, 1 where it is decided and 0 where it only leans; the word on the way, and where it holds."""
+    end, way = found.at_end, found.on_the_way
+    yield end.word.value
+    yield "" if end.word is Word.NO_EVIDENCE else str(int(end.decided))
+    yield "" if way.word is None else way.word.value
+    first, last = (way.steps[0], way.steps[-1]) if way.steps else (None, None)
+    for at in (first, last):
+        yield _cell(at and at.step)
+    for at in (first, last):
+        yield _cell(at and at.t)
 
 
 def _origin_columns(plan: Plan) -> list[str]:

@@ -57,12 +57,16 @@ def test_a_study_leaves_a_folder_and_says_what_is_to_be_thought_of_it(place):
     lines = told.out.splitlines()
     assert lines[0].startswith("short.yaml: 1500 runs of seed 0, at the last step")
     assert " ".join(lines[2].split()).startswith("filter position heading > 50 % > 95 % > 99.9 % ellipse cone lost NIS")
-    assert lines[5].startswith(f"ekf: {row['verdict']}")
+    lean = "" if row["decided"] == "1" else "leans "
+    assert lines[5].startswith(f"ekf: {lean}{row['verdict']} at the end")
     cells = lines[3].split()
     assert [line.partition(" %")[0].strip() for line in lines[6:9]] == [cells[3], cells[6], cells[8]]
     played = "ekfsim play short.yaml --seed 0 --run"
-    assert lines[9].startswith(f"  the worst run: {played} {row['worst_run']} --filter ekf  # its last NEES is ")
-    assert lines[10] == f"  a typical run: {played} {row['typical_run']} --filter ekf"
+    assert lines[9].startswith(f"  NIS is {float(row['nis_mean']):.3g} per number read")
+    assert " lie beyond the χ² 99.9 % quantile at step 2, the most of 2 steps with more than 2 %" in lines[10]
+    assert (row["on_the_way"], row["from_step"], row["to_step"], row["from_t"]) == ("over-confident", "2", "3", "")
+    assert lines[11].startswith(f"  the worst run: {played} {row['worst_run']} --filter ekf  # its last NEES is ")
+    assert lines[12] == f"  a typical run: {played} {row['typical_run']} --filter ekf"
     steps = rows("out/steps.csv")
     assert [step["step"] for step in steps] == ["0", "1", "2", "3"]
     assert all(steps[-1][name] == row[name] for name in steps[-1])
@@ -80,7 +84,7 @@ def test_a_first_look_needs_no_folder(place):
 
 def test_of_many_rows_the_table_is_enough(place):
     told = ekfsim("study", "short.yaml", "--runs", 2, "--sweep", "gate=0.5,0.6,0.7,0.8", "--sweep", "guard=off,skip")
-    assert told.out.count("over-c") == told.out.count("\n0.") == 8
+    assert sum("over-c" in line for line in told.out.splitlines()) == told.out.count("\n0.") == 8
     _, first, second = told.out.splitlines()[11:]
     assert (
         first == "What each verdict rests on, and the worst and a typical run of each row, stand in summary.csv (-o)."

@@ -29,7 +29,7 @@ from ekfsim.simulation import simulate
 from ekfsim.study.block import run_block
 from ekfsim.study.plan import Case
 from ekfsim.study.results import Result
-from ekfsim.study.verdict import Word, verdict
+from ekfsim.study.verdict import Verdict, Word
 
 RUNS, STEPS = 100_000, 20
 ONCE = 1e-5  # how often an honest number may lie outside its bounds
@@ -196,10 +196,18 @@ def made():
 @pytest.mark.parametrize("filter", ["ekf", "iekf", "ukf"])
 @pytest.mark.parametrize("name", ["diverge-00-control", "made"])
 def test_a_filter_that_knows_its_noise_is_consistent_in_an_empty_room(name, filter):
-    assert verdict(found(name, filter)).word is Word.CONSISTENT
+    verdict = Verdict(found(name, filter))
+    assert verdict.at_end.word is Word.CONSISTENT
+    assert verdict.at_end.decided
+    assert verdict.on_the_way.nis.value == pytest.approx(1.0, abs=0.1)
+    beyond = [at.above_999.value for at in verdict.on_the_way.steps]  # the vague start is a little curved
+    assert beyond == [] if name == "diverge-00-control" else max(beyond, default=0.0) < 0.03
 
 
 @pytest.mark.parametrize(("told", "word"), [(0.7, Word.OVER_CONFIDENT), (1.4, Word.OVER_CAUTIOUS)])
 @pytest.mark.parametrize("name", ["diverge-00-control", "made"])
 def test_one_that_is_told_another_noise_is_not(name, told, word):
-    assert verdict(found(name, "ekf", told)).word is word
+    verdict = Verdict(found(name, "ekf", told))
+    assert (verdict.at_end.word, verdict.on_the_way.word) == (word, word)
+    assert verdict.at_end.decided
+    assert verdict.on_the_way.decided
