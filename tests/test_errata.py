@@ -1,6 +1,7 @@
 """The misprints of the documents that are no model's own; those of the models stand in models/test_model_errata.py."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from documents import equation, text_of
 
 from ekfsim.filters.unscented import sigma_points, square_root, unscented_transform, weights
-from ekfsim.geometry.ellipse import radius_factor
+from ekfsim.geometry.ellipse import ellipse, radius_factor
 from ekfsim.models.move_turn import MoveTurn
 from ekfsim.models.polar import cartesian, cartesian_moments
 from ekfsim.options import DOCUMENTS
@@ -41,6 +42,45 @@ def test_erratum_classroom_sample_grows_a_variance_by_a_reading():
     after = (np.eye(3) - K @ H) @ before
     assert (np.diag(after) <= np.diag(before)).all()
     assert after[1, 1] < 0.0038 < 0.0301436
+
+
+def sample_of_the_classroom():
+    """Document 002, the narrative: its two covariances, and what is printed of each ellipse and cone."""
+    _, _, sample = text_of("002").partition("==>The robot moved")
+    rows = re.findall(r"\[+([-\d. ]+)\]", sample)
+    covariances = [np.array([[float(n) for n in row.split()] for row in rows[i : i + 3]]) for i in (0, 3)]
+
+    def printed(words):
+        return [float(number) for number in re.findall(rf"{words} is ([\d.]+)", sample)]
+
+    ellipses = [printed(words) for words in ("minor radius", "major radius", "orientation", r"2\*sigma_theta")]
+    return list(zip(covariances, *ellipses, strict=True))
+
+
+def test_erratum_classroom_sample_has_cones_that_are_not_of_its_covariances():
+    told = [(math.degrees(2 * math.sqrt(P[2, 2])), printed) for P, _, _, _, printed in sample_of_the_classroom()]
+    np.testing.assert_allclose(told, [(21.82, 12.44284), (15.44, 10.01445)], atol=5e-3)
+
+
+def test_erratum_classroom_sample_has_ellipses_that_lie_otherwise():
+    told = []
+    for P, _, _, printed, _ in sample_of_the_classroom():
+        (_, major) = np.linalg.eigh(P[:2, :2])[1].T
+        told.append((math.degrees(math.atan2(major[1], major[0])) % 180, printed))
+        assert told[-1][0] == pytest.approx(math.degrees(ellipse(P, 0.954).orientation))
+    np.testing.assert_allclose(told, [(177.83, 169.91084), (54.95, 75.51344)], atol=5e-3)
+
+
+def test_erratum_classroom_sample_has_ellipses_of_other_radii():
+    """Neither 2 standard deviations, as its section 4 has it, nor the 2.4816 of 95.4 % make what is printed."""
+    found = sample_of_the_classroom()
+    roots = np.sqrt([np.linalg.eigvalsh(P[:2, :2]) for P, *_ in found])  # minor, major
+    np.testing.assert_allclose(2 * roots, [[0.122, 0.347], [0.209, 0.398]], atol=5e-4)
+    np.testing.assert_allclose(radius_factor(0.954) * roots, [[0.151, 0.430], [0.259, 0.494]], atol=5e-4)
+    printed = np.array([[minor, major] for _, minor, major, _, _ in found])
+    np.testing.assert_allclose(printed, [[0.131259, 0.35163], [0.0481291, 0.343865]])
+    factors = printed / roots
+    assert np.ptp(factors, axis=1).min() > 0.1  # no one number of standard deviations makes both radii of an ellipse
 
 
 def test_erratum_classroom_two_sigma_are_no_954_percent_of_an_ellipse():

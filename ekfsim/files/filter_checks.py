@@ -8,7 +8,7 @@ from ekfsim.files.commands_file import CommandsKeys, TuningKeys
 from ekfsim.files.fields import aliases
 from ekfsim.files.settings import FILTER_SETTINGS, Setting, path_of
 from ekfsim.filters import FILTERS
-from ekfsim.filters.tuning import READ_BY, reads
+from ekfsim.filters.tuning import reads
 from ekfsim.world import World
 
 NUMBER = {key: name for name, key in aliases(TuningKeys).items()}  # the program's name of each key
@@ -33,8 +33,13 @@ def filter_warnings(file: Sound, keys: CommandsKeys) -> Iterator[str]:
     told = file.root.at((FILTER_SETTINGS,))
     for key in told.keys if told else ():
         if not reads(keys.filter, NUMBER[key]):
-            right = f"{' or '.join(READ_BY[NUMBER[key]])} would read it"
+            right = f"{who_reads(key)} would read it"
             yield str(file.mistake((FILTER_SETTINGS, key), f"the filter '{keys.filter}' has no {key}", right))
+
+
+def who_reads(key: str) -> str:
+    """The filters that read a key."""
+    return " or ".join(name for name in FILTERS if reads(name, NUMBER[key]))
 
 
 def unread(settings: Iterable[Setting], names: Sequence[str]) -> list[Setting]:
@@ -48,7 +53,7 @@ def refuse_unread(settings: Iterable[Setting], names: Sequence[str]) -> None:
     lines = []
     for one in unread(settings, names):
         key = str(path_of(one)[1])
-        others = ", ".join(name for name in FILTERS if reads(name, NUMBER[key]))
-        lines.append(f"{one.told}: no filter here ({', '.join(names)}) reads it; name one that does: --filter {others}")
+        wrong = f"no filter here ({', '.join(names)}) reads it"
+        lines.append(f"{one.told}: {wrong}; name one that does: --filter {who_reads(key)}")
     if lines:
         raise UsageError("\n".join(lines))

@@ -1,7 +1,8 @@
 """A counter-example: a filter that keeps of P what ellipse and cone show of it. Not to be localized by."""
 
+import dataclasses
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.filters.protocol import Beginning, Filter
@@ -21,22 +22,25 @@ class ShadowsAlone:
         """It stands around a filter that has begun, and does not begin by itself."""
         raise NotImplementedError
 
-    def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
+    def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Belief, Prediction]:
         """P⁻ of the filter within, its two cross covariances dropped."""
         after, prediction = self.filter.predict(belief, motion, u)
         return shadows(after), prediction
 
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
-    ) -> tuple[Gaussian, Correction]:
+    ) -> tuple[Belief, Correction]:
         """P of the filter within, its two cross covariances dropped."""
         after, correction = self.filter.update(prior, sensor, z, skip)
         return shadows(after), correction
 
 
-def shadows(belief: Belief) -> Gaussian:
-    """The belief without σ_xθ and σ_yθ : (…, 3), (…, 3, 3)"""
-    x, P = belief
-    P = P.copy()
+def shadows(belief: Belief) -> Belief:
+    """The belief without σ_xθ and σ_yθ : (…, 3), (…, 3, 3); whatever else it knows stays."""
+    P = belief.covariance.copy()
     P[..., :2, 2] = P[..., 2, :2] = 0.0
-    return Gaussian(x, P)
+    if isinstance(belief, Gaussian):
+        return belief._replace(covariance=P)
+    known: Any = belief
+    dropped: Belief = dataclasses.replace(known, covariance=P)
+    return dropped

@@ -6,14 +6,8 @@ from typing import Literal
 RangeVariance = Literal["prediction", "reading"]
 CrossCovariances = Literal["kept", "dropped"]
 MOST_PARTICLES = 1_000_000
-READ_BY = {  # by these filters alone
-    "particles": ("pf",),
-    "alpha": ("ukf",),
-    "beta": ("ukf",),
-    "kappa": ("ukf",),
-    "iterations": ("iekf",),
-    "cross_covariances": ("kf", "ekf", "iekf", "ukf"),
-}
+OF_ONE = {"particles": "pf", "alpha": "ukf", "beta": "ukf", "kappa": "ukf", "iterations": "iekf"}  # whose number it is
+HAS_NO_P = "pf"  # which has nothing to drop from
 
 
 @dataclass(frozen=True)
@@ -38,4 +32,6 @@ def reads(filter_name: str, number: str) -> bool:
     >>> reads("pf", "particles"), reads("ekf", "particles"), reads("ekf", "range_variance")
     (True, False, True)
     """
-    return filter_name in READ_BY.get(number, (filter_name,))
+    if number in OF_ONE:
+        return filter_name == OF_ONE[number]
+    return number != "cross_covariances" or filter_name != HAS_NO_P

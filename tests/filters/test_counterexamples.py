@@ -28,7 +28,7 @@ def used(steps):
     return [step for step in steps if step.correction is not None and step.correction.refused == 0]
 
 
-@pytest.mark.parametrize("name", ["kf", "ekf", "iekf", "ukf", "pf"])
+@pytest.mark.parametrize("name", ["kf", "kf-nominal", "ekf", "iekf", "ukf", "pf"])
 def test_c_v_is_of_the_reading(name):
     made = spoiled(BY_READING, name, short=0.5)
     ratio = made.world.told.noise.range
@@ -73,7 +73,7 @@ def test_without_an_echo_the_reading_is_refused_as_ever():
             assert one.correction.refused == other.correction.refused != 0
 
 
-@pytest.mark.parametrize("name", ["kf", "ekf", "iekf", "ukf"])
+@pytest.mark.parametrize("name", ["kf", "kf-nominal", "ekf", "iekf", "ukf"])
 def test_the_cross_covariances_are_dropped_after_every_step(name):
     for step in play(spoiled(DROPPED, name)):
         P = step.posterior.covariance
@@ -81,6 +81,12 @@ def test_the_cross_covariances_are_dropped_after_every_step(name):
         assert_array_equal(P[2, :2], 0.0)
         assert P[0, 1] != 0 or step.entry.index < 3
         assert np.linalg.eigvalsh(P)[0] >= -1e-15
+
+
+def test_a_filter_that_remembers_more_than_a_gaussian_goes_on_knowing_it():
+    kept, dropped = (list(play(spoiled(tuning, "kf-nominal"))) for tuning in (Tuning(), DROPPED))
+    assert [step.posterior.inputs for step in dropped[1:]] == [step.posterior.inputs for step in kept[1:]]
+    assert dropped[-1].posterior.inputs == 6
 
 
 def test_what_is_dropped_teaches_the_heading_nothing():
