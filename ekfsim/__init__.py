@@ -30,7 +30,12 @@ In the classroom x is the pose x, y, θ in m, m, rad, and u is d, a in m, rad; i
 
 Shapes: arrays carry leading axes (…): none for one run, (N,) for N runs side by side. x is (…, n), P is (…, n, n).
 x points east, y north, θ turns counter-clockwise from +x and lies in (−π, π]. Metres and radians inside, degrees where
-a person reads or writes. Mistakes in files raise `ekfsim.InputError`, missing files `ekfsim.UsageError`.
+a person reads or writes.
+
+More names, each with a page of its own such as `help(ekfsim.Scene)`: Scene and World, what is to be played; Entry, Step
+and Playback, what was; Gaussian, Summary, Verdict and Evidence, what is believed and judged; EKF, and FILTERS by their
+names; MoveTurn and Laser, the classroom's models; Look, the options of a picture. Mistakes in files raise
+`ekfsim.InputError`, missing files `ekfsim.UsageError`; both are an `ekfsim.EkfsimError`.
 """
 
 from importlib import import_module
@@ -92,7 +97,8 @@ _HOMES = {
     "world": ("World",),
 }
 _HOME_OF = {name: f"ekfsim.{home}" for home, names in _HOMES.items() for name in names}
-__all__ = sorted(_HOME_OF)
+# What `help(ekfsim)` tells at length; the classes have pages of their own, or it would run to a thousand lines.
+__all__ = sorted(name for name in _HOME_OF if name[0].islower())
 
 
 def __getattr__(name: str) -> Any:
@@ -102,4 +108,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return [*globals(), *__all__]
+    return [*globals(), *_HOME_OF]

@@ -79,7 +79,11 @@ class Told:
 
 @dataclass(frozen=True)
 class World:
-    """A world file: the truth, and beside it what the filter is told."""
+    """A world file: the truth, and beside it what the filter is told.
+
+    `dataclasses.replace(world, noise=n)` changes the truth alone, so that the filter is told wrongly of it. What is to
+    hold for both is changed in both: `replace(world, noise=n, told=replace(world.told, noise=n))`; map and start alike.
+    """
 
     name: str
     map: Map
