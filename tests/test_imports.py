@@ -14,7 +14,7 @@ MODULES = {
     if "_packaged" not in path.parts
 }
 ROOMS = (  # each imports only from those above it, and from its own
-    {"errors", "seeds", "version"},
+    {"errors", "printable", "seeds", "version"},
     {"geometry"},
     {"models"},
     {"filters"},
