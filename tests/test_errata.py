@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from documents import equation, text_of
 
-from ekfsim.filters.unscented import sigma_points, square_root, unscented_transform, weights
+from ekfsim.filters.conditioning import square_root
+from ekfsim.filters.unscented import sigma_points, unscented_transform, weights
 from ekfsim.geometry.ellipse import ellipse, radius_factor
 from ekfsim.models.move_turn import MoveTurn
 from ekfsim.models.polar import cartesian, cartesian_moments

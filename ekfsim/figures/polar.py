@@ -7,7 +7,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ekfsim.figures.album import BLACK, BLUE, GREY, VERMILLION, Album, labelled
-from ekfsim.filters.unscented import sigma_points, square_root, unscented_transform, weights
+from ekfsim.filters.conditioning import square_root
+from ekfsim.filters.unscented import sigma_points, unscented_transform, weights
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import outline
 from ekfsim.models.polar import cartesian, cartesian_jacobian, cartesian_moments

@@ -2,10 +2,11 @@
 
     protocol.py    what every filter offers              kf.py      linear, about the first belief
     belief.py      Gaussian, Particles, Correction       nominal.py linear, about a trajectory that is planned
-    algebra.py     gain, inverse, wrapping               ekf.py     extended: read this one first
-    correcting.py  the end that the updates share        iekf.py    iterated
-    chi_square.py  quantiles of χ²                       ukf.py     unscented, by the transform of unscented.py
-    tuning.py      numbers that a person may set         pf.py      particles
+    algebra.py     inverse, wrapping, refusals           ekf.py     extended: read this one first
+    conditioning.py  what a reading leaves of P          iekf.py    iterated, by the search of descent.py
+    correcting.py  the end that the updates share        ukf.py     unscented, by the transform of unscented.py
+    chi_square.py  quantiles of χ²                       pf.py      particles
+    tuning.py      numbers that a person may set
     shadows.py     a counter-example: P without σ_xθ, σ_yθ
                                                          listing.py the EKF that two of the documents' listings are
 

@@ -9,8 +9,7 @@ from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap, wrap_one
 
-ROUNDING = 1e-14  # a sum below this share of its terms' sizes is what rounding leaves of 0
-CERTAIN = 1e-20  # and so is an H P Hᵀ below this share of |H|² tr P, where sin π stands for 0
+ROUNDING = 16 * float(np.finfo(float).eps)  # a difference below this share of what it is taken of is rounding
 
 
 def symmetric(P: Array) -> Array:
@@ -18,40 +17,11 @@ def symmetric(P: Array) -> Array:
     return 0.5 * (P + P.mT)
 
 
-def innovation_covariance(P: Array, H: Array, R: Array) -> Array:
-    """S = H P Hᵀ + R : (…, k, k), exactly R where the rest is rounding."""
-    HPHt: Array = H @ P @ H.mT
-    if P.ndim == H.ndim == 2 and HPHt.diagonal().min() > 2 * ROUNDING * float(np.vdot(H, H)) * float(P.trace()):
-        return HPHt + R  # every variance is larger than what may be rounding
-    sin_π = CERTAIN * np.sum(H * H, axis=(-2, -1)) * np.trace(P, axis1=-2, axis2=-1)
-    rounding = ROUNDING * (np.abs(H) @ np.abs(P) @ np.abs(H.mT)) + sin_π[..., None, None]
-    return np.where(np.abs(HPHt) <= rounding, 0.0, HPHt) + R
-
-
-def settled(P: Array, prior: Array) -> Array:
-    """P after an update, without what rounding leaves of a variance that a perfect sensor has made 0. Both (…, n, n)"""
-    variances, before = (np.diagonal(M, axis1=-2, axis2=-1) for M in (P, prior))
-    left = variances > ROUNDING * before
-    if left.all():
-        return P
-    return P * (left[..., :, None] & left[..., None, :])
-
-
 def inverse(S: Array) -> Array:
     """S⁻¹ : (…, k, k); where S is singular an inverse on its range, where it is nan 0.
 
     Metres and radians must not decide what is singular: the correlations do.
     """
-    if S.shape == (2, 2):
-        (a, b), (_, d) = S.tolist()
-        det = a * d - b * b
-        if det > ROUNDING * a * d:
-            return np.array([[d / det, -b / det], [-b / det, a / det]])
-    elif S.shape[-1] == 2:
-        a, b, d = S[..., 0, 0], S[..., 0, 1], S[..., 1, 1]
-        det = a * d - b * b
-        if np.all(det > ROUNDING * a * d):
-            return np.stack([d, -b, -b, a], axis=-1).reshape(S.shape) / det[..., None, None]
     S = np.nan_to_num(S)
     σ = np.sqrt(np.maximum(np.diagonal(S, axis1=-2, axis2=-1), 0.0))
     per = np.divide(1.0, σ, out=np.zeros_like(σ), where=σ > 0)
@@ -78,8 +48,6 @@ def normalized_square(innovation: Array, S: Array) -> Array:
         s, ν = S[..., 0, 0], innovation[..., 0]
         nis: Array = np.divide(ν * ν, s, out=np.full(np.broadcast_shapes(ν.shape, s.shape), np.nan), where=s > 0)
         return nis
-    if S.ndim == 2 and innovation.ndim == 1:
-        return np.array(innovation @ inverse(S) @ innovation if S.any() else np.nan)
     square = np.vecdot(innovation, np.matvec(inverse(S), innovation))
     return np.where(np.any(S != 0, axis=(-2, -1)), square, np.nan)
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple, Protocol
 
-from ekfsim.geometry import Array, Integers
+from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.layout import Layout
 
 
@@ -85,3 +85,4 @@ class Correction:
     K: Array  # (…, n, k), 0 where S = 0 or undefined
     nis: Array  # νᵀ S⁻¹ ν : (…), refused readings included; nan where S = 0
     refused: Integers  # (…) one of Refused
+    settled: Booleans | bool = True  # (…) whether the search of an iterated filter came to rest

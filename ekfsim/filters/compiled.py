@@ -18,13 +18,13 @@ def propagated(P: Array, F: Array, G: Array, M: Array) -> Array | None:
 
 
 def revised(
-    x: Array, P: Array, H: Array, r: Array, ν: Array, rounding: float, sharp: float
+    x: Array, P: Array, H: Array, r: Array, ν: Array, sharp: float
 ) -> tuple[Array, Array, Array, Array, Array, Booleans]:
     """S, K, x, P and NIS as in unrolled.py, and for which runs they may be trusted."""
     new = np.empty(r.shape), np.empty(x.shape), np.empty(x.shape), np.empty(P.shape), np.empty(r.shape)
     clear = np.empty(r.shape, bool)
     x, P, H, r, ν = (np.ascontiguousarray(each) for each in (x, P, H, r, ν))
-    _revise(x, P, H, r, ν, rounding, sharp, *new, clear)
+    _revise(x, P, H, r, ν, sharp, *new, clear)
     return *new, clear
 
 
@@ -74,7 +74,7 @@ def _propagate(P: Array, F: Array, G: Array, M: Array, new: Array) -> bool:
 
 @compiled
 def _revise(
-    x: Array, P: Array, H: Array, r: Array, ν: Array, rounding: float, sharp: float,
+    x: Array, P: Array, H: Array, r: Array, ν: Array, sharp: float,
     s: Array, K: Array, mean: Array, covariance: Array, nis: Array, clear: Booleans,
 ) -> None:  # fmt: skip
     """The same, line by line; K holds P Hᵀ, and NIS 1/S, as long as they are needed."""
@@ -85,9 +85,8 @@ def _revise(
     for n in range(N):
         s[n] = H[0, n] * K[0, n] + H[1, n] * K[1, n] + H[2, n] * K[2, n]
     for n in range(N):
-        square = H[0, n] * H[0, n] + H[1, n] * H[1, n] + H[2, n] * H[2, n]
-        doubtful = 2 * rounding * square * (P[0, 0, n] + P[1, 1, n] + P[2, 2, n])
-        clear[n] = (s[n] > doubtful) & (r[n] > sharp * (s[n] + r[n])) & (ν[n] == ν[n])
+        terms = H[0, n] * H[0, n] * P[0, 0, n] + H[1, n] * H[1, n] * P[1, 1, n] + H[2, n] * H[2, n] * P[2, 2, n]
+        clear[n] = (r[n] > sharp * terms) & (ν[n] == ν[n])
     for n in range(N):
         s[n] += r[n]
         nis[n] = 1 / s[n]

@@ -5,8 +5,9 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from ekfsim.filters.algebra import symmetric, wrapped
+from ekfsim.filters.algebra import wrapped
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
+from ekfsim.filters.conditioning import covariance
 from ekfsim.filters.correcting import Linearized, corrected
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans
@@ -40,13 +41,13 @@ class KF:
         x, P = belief
         f, F, G, M, Q = motion.linearize(self.about, u)
         mean = wrapped(f + np.matvec(F, self._way(x)), self.headings)
-        return Gaussian(mean, symmetric(F @ P @ F.mT + G @ M @ G.mT + Q)), Prediction(F, G)
+        return Gaussian(mean, covariance(F @ P @ F.mT + G @ M @ G.mT + Q)), Prediction(F, G)
 
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
     ) -> tuple[Gaussian, Correction]:
         """ν = z − h(x₀) − H (x⁻ − x₀)      S = H P⁻ Hᵀ + R      K = P⁻ Hᵀ S⁻¹          eq. 9; z : (…, k)
-        x = x⁻ + K ν      P = (I − KH) P⁻ (I − KH)ᵀ + K R Kᵀ          eq. 10; for this K eq. 11, (I − KH) P⁻
+        x = x⁻ + K ν      P = (I − KH) P⁻          eqs 10, 11
 
         Where the reading is refused the belief stays as it is; ν, S, K and NIS are told all the same.
         """

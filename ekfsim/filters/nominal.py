@@ -57,7 +57,7 @@ class NominalKF:
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
     ) -> tuple[Underway, Correction]:
         """ν = z − h(x̄ₖ) − H (x⁻ − x̄ₖ)      S = H P⁻ Hᵀ + R      K = P⁻ Hᵀ S⁻¹          z : (…, k)
-        x = x⁻ + K ν      P = (I − KH) P⁻ (I − KH)ᵀ + K R Kᵀ
+        x = x⁻ + K ν      P = (I − KH) P⁻
         """
         k = inputs_of(prior)
         (x, P), correction = self._about(k).update(prior, sensor, z, skip)

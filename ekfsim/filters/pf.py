@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from ekfsim.filters.algebra import gain, inverse, symmetric, wrapped
+from ekfsim.filters.algebra import gain, inverse, normalized_square, refusal, symmetric, wrapped
 from ekfsim.filters.belief import Belief, Correction, Particles, Prediction, Refused
-from ekfsim.filters.correcting import judged
+from ekfsim.filters.conditioning import square_root
 from ekfsim.filters.protocol import Beginning
 from ekfsim.filters.tuning import Tuning
-from ekfsim.filters.unscented import square_root, weighted_mean
+from ekfsim.filters.unscented import weighted_mean
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.protocols import Motion, Sensor, angles
 
@@ -110,7 +110,8 @@ class PF:
         weighted = weights[..., None] * δz
         spread, noise = symmetric(δz.mT @ weighted), np.sum(weights[..., None, None] * R, axis=-3)
         cross, S, innovation = δx.mT @ weighted, spread + noise, sensor.residual(z, predicted)
-        nis, refused = judged(z, predicted, innovation, S, skip, self.gate)
+        nis = normalized_square(innovation, S)
+        refused = refusal(z, predicted, nis, skip, self.gate)
         H = np.nan_to_num(cross).mT @ inverse(crowd.covariance)
         return Correction(predicted, innovation, noise, S, H, gain(cross, S), nis, refused), spread
 

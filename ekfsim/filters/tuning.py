@@ -18,7 +18,7 @@ class Tuning:
     alpha: float = 1.0  # of the sigma points: √(α² (n + κ)) standard deviations from the mean
     beta: float = 0.0  # what is known of the shape: 2 for a Gaussian, where α is small
     kappa: float | None = None  # None: max(3 − n, 0)
-    iterations: int = 10  # how often the iterated filter linearises h again at most; 0 is the EKF
+    iterations: int = 50  # steps of the iterated filter's search at most, half a step counting as half; 0 is the EKF
     range_variance: RangeVariance = "prediction"  # whence the classroom's C_v = (ratio · r)² takes its r
     cross_covariances: CrossCovariances = "kept"  # σ_xθ and σ_yθ, which no picture shows
 

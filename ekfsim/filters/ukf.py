@@ -6,9 +6,10 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from ekfsim.filters.algebra import gain, settled, symmetric, wrapped
+from ekfsim.filters.algebra import refusal
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
-from ekfsim.filters.correcting import judged, where_used
+from ekfsim.filters.conditioning import conditioned, covariance
+from ekfsim.filters.correcting import revised, where_used
 from ekfsim.filters.protocol import Beginning
 from ekfsim.filters.tuning import Tuning
 from ekfsim.filters.unscented import (
@@ -28,8 +29,9 @@ _weights = lru_cache(maxsize=64)(weights)
 class UKF:
     """Unscented Kalman filter: Tamás et al., section II.C (document 001); Wan & van der Merwe, 2001, table 7.3.2.
 
-    Noise is added (eqs 21, 24), not drawn into the sigma points. Headings, and readings that are angles, have circular
-    means. As they come, α, β and κ give Julier's points, and no weight is negative.
+    Noise is added (eqs 21, 24), not drawn into the sigma points. Headings, and readings that are angles, are averaged
+    as turns from where the mean goes, so that a heading may be as uncertain as one likes. As they come, α, β and κ give
+    Julier's points, and no weight is negative.
     """
 
     remark: ClassVar[str] = ""
@@ -54,34 +56,40 @@ class UKF:
         """
         x, P = belief
         _, _, G, M, Q = motion.linearize(x, u)
-        moved = unscented_transform(x, P, lambda X: motion.f(X, u[..., None, :]), self._weights(x), self.headings)
-        P_new = symmetric(moved.covariance + G @ M @ G.mT + Q)
-        return Gaussian(moved.mean, self._definite(x, P_new)), Prediction(statistical_slope(moved.slope, moved.root), G)
+        n = x.shape[-1]
+        moved = unscented_transform(
+            x, P, lambda X: motion.f(X, u[..., None, :]), self._weights(x), self.headings, np.eye(n)
+        )
+        P_new = self._definite(x, covariance(moved.covariance + G @ M @ G.mT + Q))
+        return Gaussian(moved.mean, P_new), Prediction(statistical_slope(moved.slope, moved.root), G)
 
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
     ) -> tuple[Gaussian, Correction]:
         """Zᵢ = h(Xᵢ)      ẑ = Σ Wᵢᵐ Zᵢ      S = Σ Wᵢᶜ (Zᵢ − ẑ)(Zᵢ − ẑ)ᵀ + R          eqs 22 to 24; z : (…, k)
         P_xz = Σ Wᵢᶜ (Xᵢ − x⁻)(Zᵢ − ẑ)ᵀ      K = P_xz S⁻¹          eqs 25, 26
-        x = x⁻ + K (z − ẑ)      P = P⁻ − K S Kᵀ = (L − KD)(L − KD)ᵀ + K (S − DDᵀ) Kᵀ          eqs 27, 28
+        x = x⁻ + K (z − ẑ)      P = P⁻ − K S Kᵀ          eqs 27, 28
 
-        Xᵢ are the sigma points of the prior, drawn afresh; P⁻ = L Lᵀ, P_xz = L Dᵀ. The last form of P is a sum of
-        squares: it cannot turn negative by rounding. R is taken at x⁻; H told is P_zx P⁺. Where any Zᵢ predicts no
-        reading (nan), neither ẑ nor S is known, for the points that are left no longer have the prior's mean and
-        covariance: then the reading is refused as one that meets no wall.
+        Xᵢ are the sigma points of the prior, drawn afresh; P⁻ = L Lᵀ, P_xz = L Dᵀ, S = D Dᵀ + Ω + R. What bends, Ω,
+        is to the filter one more noise. R is taken at x⁻; H told is P_zx P⁺. Where any Zᵢ predicts no reading (nan),
+        neither ẑ nor S is known, for the points that are left no longer have the prior's mean and covariance: then
+        the reading is refused as one that meets no wall.
         """
         x, P = prior
-        R = sensor.linearize(x)[2]
-        seen = unscented_transform(x, P, sensor.h, self._weights(x), angles(sensor.outputs), sensor.residual)
-        L, D, noise = seen.root, seen.slope, self._definite(x, seen.bend + R)
-        innovation, S = sensor.residual(z, seen.mean), symmetric(D @ D.mT + noise)
-        nis, refused = judged(z, seen.mean, innovation, S, skip, self.gate)
-        K = gain(seen.cross, S)
-        left = L - K @ D
-        P_new = self._definite(x, settled(symmetric(left @ left.mT + K @ noise @ K.mT), P))
-        posterior = Gaussian(wrapped(x + np.matvec(K, innovation), self.headings), P_new)
+        _, H, R = sensor.linearize(x)
+        directions, turning = angles(sensor.outputs), None
+        if directions and self.headings:
+            turning = np.zeros_like(H)
+            turning[..., self.headings] = H[..., self.headings]
+        seen = unscented_transform(x, P, sensor.h, self._weights(x), directions, turning)
+        D, noise = seen.slope, self._definite(x, seen.bend + R)
+        innovation = sensor.residual(z, seen.mean)
+        learnt = conditioned(seen.root, D, noise, seen.mean)
+        nis = learnt.nis(innovation)
+        refused = refusal(z, seen.mean, nis, skip, self.gate)
+        posterior = revised(Gaussian(x, P), learnt, innovation, self.headings)
         return where_used(refused, posterior, Gaussian(x, P)), Correction(
-            seen.mean, innovation, R, S, statistical_slope(D, L), K, nis, refused
+            seen.mean, innovation, R, learnt.S(D, noise), statistical_slope(D, seen.root), learnt.K, nis, refused
         )
 
     def _weights(self, x: Array) -> Weights:

@@ -1,14 +1,12 @@
 """The extended Kalman filter of many runs, entry by entry: the twin of the readable one, a few times as fast.
 
 A product of N matrices of 3 × 3 is slow in numpy, the same sums over entries that lie side by side are not. Here every
-array has its entries in front, (3, 3, N), and the runs behind. What needs care (a reading that is nan, an H P Hᵀ that
-may be rounding, a sensor far sharper than the belief) is left to the readable text, for those runs alone. A test holds
-the two equal.
+array has its entries in front, (3, 3, N), and the runs behind. What needs care (a reading that is nan, a sensor far
+sharper than the belief) is left to the readable text, for those runs alone. A test holds the two equal.
 """
 
 import numpy as np
 
-from ekfsim.filters.algebra import ROUNDING
 from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.correcting import Linearized, corrected
@@ -17,7 +15,7 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.lanes import back, front
 
 MANY = 64  # runs from which on this pays
-SHARP = 1e-4  # of S; a sensor of less noise leaves less of a variance than P − K H P may be trusted with
+SHARP = 1e-4  # of Σ Hᵢ² Pᵢᵢ; a sensor of less noise leaves less than P − K H P may be trusted with
 STILL = np.eye(3)[:, :2, None]  # what the first two columns of F are where no motion depends on the place
 
 
@@ -81,7 +79,7 @@ def updated(
         from ekfsim.filters.compiled import revised
     _, h, ν, H, R = reading
     x, P = front(prior.mean, 1), front(prior.covariance)
-    s, K, mean, covariance, nis, clear = revised(x, P, front(H)[0], R[..., 0, 0], ν[..., 0], ROUNDING, SHARP)
+    s, K, mean, covariance, nis, clear = revised(x, P, front(H)[0], R[..., 0, 0], ν[..., 0], SHARP)
     mean[heading] = wrap(mean[heading])
     refused = np.full(len(s), np.int64(Refused.NOT))
     if gate is not None:
@@ -100,14 +98,13 @@ def updated(
 
 
 def _revised(
-    x: Array, P: Array, H: Array, r: Array, ν: Array, rounding: float, sharp: float
+    x: Array, P: Array, H: Array, r: Array, ν: Array, sharp: float
 ) -> tuple[Array, Array, Array, Array, Array, Booleans]:
     """S, K, x, P and NIS, and for which runs they may be trusted."""
     PHt = _summed(P * H)
     p = _summed(H * PHt)
     s = p + r
-    doubtful = 2 * rounding * _summed(H * H) * (P[0, 0] + P[1, 1] + P[2, 2])
-    clear = (p > doubtful) & (r > sharp * s) & (ν == ν)
+    clear = (r > sharp * _summed(H * H * np.stack([P[0, 0], P[1, 1], P[2, 2]]))) & (ν == ν)
     with np.errstate(all="ignore"):
         per_s = 1 / s
         K = PHt * per_s

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ekfsim.filters.algebra import symmetric
+from ekfsim.filters.conditioning import covariance as as_covariance
+from ekfsim.filters.conditioning import square_root
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
-
-NO_PIVOT = 1e-12  # a pivot below this share of its variance is what rounding leaves of 0
 
 
 class Weights(NamedTuple):
@@ -51,19 +51,6 @@ def weights(n: int, alpha: float = 1.0, beta: float = 0.0, kappa: float | None =
     return Weights(math.sqrt(scale), np.append(first, outer), np.append(first + 1 - alpha**2 + beta, outer))
 
 
-def square_root(P: Array) -> Array:
-    """Lower triangular L : (…, n, n) with P = L Lᵀ: Cholesky's, a column being zero where nothing is left to explain.
-
-    P is often singular: it starts at 0, and a straight move adds no heading noise.
-    """
-    L = np.zeros_like(P)
-    for j in range(P.shape[-1]):
-        rest = P[..., j:, j] - np.matvec(L[..., j:, :j], L[..., j, :j])
-        pivot = np.where(rest[..., 0] > NO_PIVOT * P[..., j, j], rest[..., 0], 0.0)[..., None]
-        L[..., j:, j] = np.divide(rest, np.sqrt(pivot), out=np.zeros_like(rest), where=pivot > 0)
-    return L
-
-
 def sigma_points(mean: Array, L: Array, spread: float) -> Array:
     """x̄, x̄ + √(n+λ) Lᵢ, x̄ − √(n+λ) Lᵢ, Lᵢ the columns of the root of P : (…, 2n + 1, n)          eq. 14"""
     arms = spread * L.mT
@@ -93,31 +80,39 @@ def unscented_transform(
     function: Callable[[Array], Array],
     weights: Weights,
     angles: tuple[int, ...] = (),
-    difference: Callable[[Array, Array], Array] | None = None,
+    turning: Array | None = None,
 ) -> Transformed:
     """ȳ = Σ Wᵢᵐ yᵢ      P_yy = Σ Wᵢᶜ (yᵢ − ȳ)(yᵢ − ȳ)ᵀ      P_xy = Σ Wᵢᶜ (xᵢ − x̄)(yᵢ − ȳ)ᵀ          eqs 15 to 17
 
-    function : (…, n) → (…, k), whose entries `angles` are directions. `difference` is y − ȳ, wrapped where it is an
-    angle; None wraps the `angles`.
+    function : (…, n) → (…, k), whose entries `angles` are directions. All is summed in differences δᵢ = yᵢ − y₀ to the
+    first point. That of a direction is not known but for whole turns, and a heading may be uncertain by more than one.
+    So it is taken next to T (xᵢ − x̄), what the state's own headings turn y by, however far. turning : (…, k, n) is T.
 
-    The points come in pairs, yᵢ± = ȳ + sᵢ ± dᵢ, and 2 Wᵢ (n + λ) = 1. So the sums are, without a small difference of
+    The points come in pairs, δᵢ± = δ̄ + sᵢ ± dᵢ, and 2 Wᵢ (n + λ) = 1. So the sums are, without a small difference of
     large numbers,
 
-        D = [dᵢ] / √(n+λ)      Ω = W₀ᶜ (y₀ − ȳ)(y₀ − ȳ)ᵀ + Σ 2 Wᵢ sᵢ sᵢᵀ      P_yy = D Dᵀ + Ω      P_xy = L Dᵀ
+        D = [dᵢ] / √(n+λ)      Ω = W₀ᶜ δ̄ δ̄ᵀ + Σ 2 Wᵢ sᵢ sᵢᵀ      P_yy = D Dᵀ + Ω      P_xy = L Dᵀ
     """
     n, L = mean.shape[-1], square_root(covariance)
-    y = function(sigma_points(mean, L, weights.spread))
-    y_mean = weighted_mean(y, weights.mean, angles)
-    δ = y - y_mean[..., None, :] if difference is None else difference(y, y_mean[..., None, :])
-    if difference is None:
+    X = sigma_points(mean, L, weights.spread)
+    y = function(X)
+    δ = y - y[..., :1, :]
+    if angles:
+        arms = weights.spread * np.concatenate([np.zeros_like(L[..., :1]), L, -L], axis=-1)  # X − x̄, never wrapped
+        turned = np.zeros_like(δ) if turning is None else (turning @ arms).mT
         for i in angles:
-            δ[..., i] = wrap(δ[..., i])
+            δ[..., i] = turned[..., i] + wrap(δ[..., i] - turned[..., i])
+    δ_mean = np.vecmat(weights.mean, δ)
+    y_mean = y[..., 0, :] + δ_mean
+    for i in angles:
+        y_mean[..., i] = wrap(y_mean[..., i])
+    δ = δ - δ_mean[..., None, :]
     ahead, behind = δ[..., 1 : n + 1, :], δ[..., n + 1 :, :]
     D = ((ahead - behind) / (2 * weights.spread)).mT
     s = np.concatenate([δ[..., :1, :], (ahead + behind) / 2], axis=-2)
     W = np.append(weights.covariance[0], 2 * weights.covariance[1 : n + 1])
     bend = s.mT @ (W[:, None] * s)
-    return Transformed(y_mean, symmetric(D @ D.mT + bend), L @ D.mT, L, D, bend)
+    return Transformed(y_mean, as_covariance(D @ D.mT + bend), L @ D.mT, L, D, bend)
 
 
 def statistical_slope(D: Array, L: Array) -> Array:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ekfsim.filters.unscented import square_root
+from ekfsim.filters.conditioning import square_root
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap, wrap_one
 from ekfsim.simulation.draws import Stream

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,9 +7,12 @@ from filterpy.kalman import JulierSigmaPoints, MerweScaledSigmaPoints, Unscented
 from numerics import covariance, definite
 from problems import close, landmark, problem
 
+from ekfsim.files.load import load_scene
 from ekfsim.filters.belief import Gaussian, Refused
+from ekfsim.filters.ekf import EKF
 from ekfsim.filters.ukf import UKF
 from ekfsim.geometry.walls import Walls
+from ekfsim.localization import play
 from ekfsim.models.laser import Laser
 from ekfsim.models.move_turn import MoveTurn
 from ekfsim.models.protocols import Quantity
@@ -123,3 +127,47 @@ def test_where_nothing_bends_the_points_do_not_matter():
     for other in results[1:]:
         assert other.mean == pytest.approx(results[0].mean, abs=1e-10)
         assert close(np.round(other.covariance, 10), np.round(results[0].covariance, 10))
+
+
+@pytest.mark.parametrize("heading", [0.0, math.pi - 0.01, -math.pi + 0.01])
+@pytest.mark.parametrize("degrees", [60, 90, 120, 180, 270, 360, 1000])
+def test_standing_still_forgets_no_doubt_of_the_heading(degrees, heading):
+    """Of σ 120° it made 60°, of 180° none: differences of sigma points were wrapped."""
+    σ = np.array([0.5, 0.2, math.radians(degrees)])
+    P = np.array([[1, 0.3, -0.5], [0.3, 1, 0.4], [-0.5, 0.4, 1]]) * np.outer(σ, σ)
+    belief, prediction = UKF().predict(Gaussian(np.array([1.0, 2.0, heading]), P), MoveTurn(0.1, 0.1), np.zeros(2))
+    assert belief.mean == pytest.approx([1.0, 2.0, heading], abs=1e-12)
+    np.testing.assert_allclose(belief.covariance, P, rtol=1e-12)
+    np.testing.assert_allclose(prediction.F, np.eye(3), atol=1e-9)
+    turned, _ = UKF().predict(Gaussian(np.array([1.0, 2.0, heading]), P), MoveTurn(0.0, 0.0), np.array([0.0, 2.0]))
+    assert math.remainder(turned.mean[2] - heading - 2.0, 2 * math.pi) == pytest.approx(0, abs=1e-12)
+    np.testing.assert_allclose(turned.covariance, P, rtol=1e-12)
+
+
+@pytest.mark.parametrize("degrees", [20, 100, 150, 360])
+@pytest.mark.parametrize("heading", [0.3, 3.1, -3.1])
+def test_a_bearing_is_read_with_a_heading_of_any_doubt(degrees, heading):
+    """The place is known, so all is linear in the heading: the Kalman filter's answer, whatever its σ."""
+    P = np.diag([0.0, 0.0, math.radians(degrees) ** 2])
+    prior, sensor = Gaussian(np.array([0.0, 0.0, heading]), P), landmark(3.0, 1.0)
+    z = sensor.h(prior.mean) + np.array([0.02, 0.4])
+    right, told = EKF().update(prior, sensor, z)
+    posterior, correction = UKF().update(prior, sensor, z)
+    assert posterior.mean == pytest.approx(right.mean, abs=1e-12)
+    np.testing.assert_allclose(posterior.covariance, right.covariance, rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(correction.S, told.S, rtol=1e-12)
+
+
+@pytest.mark.parametrize("system", ["gnss", "pioneer"])
+@pytest.mark.parametrize("degrees", [90, 180, 360])
+def test_an_unknown_heading_stays_unknown_until_something_is_read(system, degrees):
+    """The first input in a driven system, before any reading, leaves the deviation of the heading about as it was."""
+    made = load_scene(system)
+    sigma = np.array([0.05, 0.05, math.radians(degrees)])
+    told = replace(made.world.told, sigma=sigma)
+    made = replace(made, filter="ukf", world=replace(made.world, told=told))
+    for step in play(made):
+        if step.correction is not None:
+            break
+        i = step.layout.headings[0]
+        assert math.sqrt(step.posterior.covariance[i, i]) == pytest.approx(sigma[2], rel=0.02)

@@ -5,10 +5,10 @@ import pytest
 from filterpy.kalman import JulierSigmaPoints, MerweScaledSigmaPoints
 from numerics import covariance, definite
 
+from ekfsim.filters.conditioning import square_root
 from ekfsim.filters.unscented import (
     nearest_definite,
     sigma_points,
-    square_root,
     statistical_slope,
     unscented_transform,
     weighted_mean,
