@@ -142,7 +142,7 @@ class TuningKeys(Strict):
     )
     iterations: int = Field(
         Tuning.iterations,
-        description="How often the iekf linearises a reading again at most; 0 makes it the ekf.",
+        description="How many steps the iekf's search takes at most, half a step counting as half; 0 makes it the ekf.",
         ge=0,
         le=1000,
         examples=[20],
