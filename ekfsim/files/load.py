@@ -18,7 +18,7 @@ from ekfsim.files.marked import Mark, Node, parse
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import resolve, source_name
 from ekfsim.files.schema import MODELS, Kind
-from ekfsim.files.settings import Setting, of_log, overruled, pinned, refusal, remark
+from ekfsim.files.settings import Setting, idle_on_log, of_log, overruled, pinned, refusal, remark
 from ekfsim.files.source import bytes_of, text_of
 from ekfsim.files.system_checks import check_fit, check_system, check_ways, system_warnings
 from ekfsim.files.telling import at, details_of, tell
@@ -123,6 +123,8 @@ def read_scene(
     if settings and loaded.mistakes:
         raise refusal(loaded.mistakes, settings)
     if settings and loaded.value is not None:
+        if loaded.value.log is not None:
+            loaded.warnings += idle_on_log(given)
         loaded.value = replace(loaded.value, settings=tuple(map(str, given)))
     return loaded
 

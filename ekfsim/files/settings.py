@@ -158,6 +158,13 @@ def of_log(settings: Sequence[Setting]) -> tuple[Setting, ...]:
     return tuple(map(believed, settings))
 
 
+def idle_on_log(settings: Iterable[Setting]) -> Iterator[str]:
+    """Warnings of settings that change nothing where a run was recorded."""
+    for one in settings:
+        if one.key.startswith("faults."):
+            yield f"{one.told}: nothing changes: a recorded log holds its own faults"
+
+
 def _overruled(root: Node, one: Setting) -> Node:
     path = path_of(one)
     if path[0] == "sensors":

@@ -199,6 +199,9 @@ def test_on_a_log_what_is_said_of_the_robot_is_what_the_filter_is_told(course, p
     assert told("robot.headingSigma=2", "sensors.markers.azimuthSigma=3") == pytest.approx((2, 3))
     assert told("belief.robot.headingSigma=2", "belief.sensors.markers.azimuthSigma=3") == pytest.approx((2, 3))
     assert told("belief.robot.headingSigma=2", "robot.headingSigma=4") == pytest.approx((2, 5))
+    assert remarks("robot.headingSigma=2", "faults.leftScale=2") == [
+        "--set faults.leftScale=2: nothing changes: a recorded log holds its own faults"
+    ]
 
 
 def test_two_mistakes_are_two_lines():

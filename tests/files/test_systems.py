@@ -14,11 +14,13 @@ from ekfsim.errors import InputError, UsageError
 from ekfsim.files import commands_file, drive_file, fields, sensor_file, system_file, world_file
 from ekfsim.files.building import instrument_of
 from ekfsim.files.commands_file import SYSTEM_OF, LogFormat
+from ekfsim.files.fields import aliases
 from ekfsim.files.load import check, load_scene, load_world, read_scene
 from ekfsim.files.packaged import packaged
 from ekfsim.files.schema import json_schema
 from ekfsim.files.sensor_file import SENSORS, SensorKeys
 from ekfsim.files.system_file import RobotKeys, SystemName, fields_of, robot_fields
+from ekfsim.files.told_file import FaultySensorsKeys, ToldSensorsKeys
 from ekfsim.provenance import provenance
 from ekfsim.systems import INSTRUMENTS, SYSTEMS
 from ekfsim.systems.document import READINGS
@@ -121,6 +123,8 @@ def test_every_key_has_its_part_and_every_part_its_key():
     assert {made.name for made in SENSORS.values()} == set(INSTRUMENTS)
     for keys, made in SENSORS.items():
         assert list(keys.model_fields) == fields_of(made)
+    for apart in (ToldSensorsKeys, FaultySensorsKeys):  # what is told of a sensor, and what is wrong with it
+        assert set(aliases(apart).values()) == set(INSTRUMENTS)
     assert set(drive_file.PathKeys.model_fields) == {
         "path",
         *(name for way in DRIVES.values() for name in fields_of(way)),
@@ -176,6 +180,24 @@ def mistakes_in(model, name, example):
     except ValueError as error:
         return [detail["msg"] for detail in error.errors() if detail["loc"][0] == name]
     return []
+
+
+@pytest.mark.parametrize("name", INSTRUMENTS)
+def test_a_bias_has_a_key_for_each_number_that_a_sensor_tells_in_their_order(world, name):
+    """Beside the outliers and the delay of every sensor, which come first."""
+    around = "landmarks: [{id: 1, x: 2, y: 3}]\nboundary: [[0, 0], [4, 0], [4, 4], [0, 4]]\n"
+    system = "pylon" if name == "lidar" else "mower"
+    (attribute,) = (one for one, key in aliases(FaultySensorsKeys).items() if key == name)
+    keys = next(one for one in get_args(FaultySensorsKeys.model_fields[attribute].annotation) if one is not type(None))
+    biases = [key for key in aliases(keys).values() if key.lower().endswith("bias")]
+    written = ", ".join(f"{key}: {n + 1}" for n, key in enumerate(biases))
+    made = world(HEAD + around + f"system: {system}\nsensors: [{{{name}: {{}}}}]\n"
+                 f"faults: {{sensors: {{{name}: {{{written}}}}}}}\n")  # fmt: skip
+    quantities = made.true_targets()[0][1].sensor.outputs
+    assert len(biases) == len(quantities)
+    bias = made.drive_faults.sensors[name].bias
+    for n, (one, quantity) in enumerate(zip(bias, quantities, strict=True)):
+        assert one == (math.radians(n + 1) if quantity.unit == "rad" else n + 1)
 
 
 def test_the_schema_says_which_keys_go_together():
@@ -619,8 +641,10 @@ def test_warnings(worlds):
 def test_the_packaged_systems(name):
     scene = load_scene(name)
     assert scene.world.system == name
-    assert scene.world.robot == SYSTEMS[name].robot
-    assert scene.world.instruments == SYSTEMS[name].instruments
+    told, document = vars(scene.world.told_robot), vars(SYSTEMS[name].robot)
+    for key, number in document.items():
+        assert told[key] == (pytest.approx(number, rel=1e-15) if isinstance(number, float) else number), key
+    assert scene.world.instruments == scene.world.told_instruments == SYSTEMS[name].instruments
     assert scene.drive is not None
 
 
@@ -634,6 +658,7 @@ def test_the_packaged_logs():
 
 def test_the_packaged_mower_is_the_document_s():
     scene = load_scene("mower")
+    assert scene.world.robot.heading_sigma < 0.1 * scene.world.told_robot.heading_sigma  # the gyro is better than Q
     marks = np.array([[mark.x, mark.y] for mark in scene.world.landmarks])
     apart = np.linalg.norm(np.diff(marks, axis=0), axis=1)
     assert len(marks) == 28
