@@ -210,7 +210,7 @@ def new(file: Path, kind: str | None, force: bool) -> None:
 
 
 @ekfsim.command(epilog=DOCUMENTS)
-@click.argument("name", type=click.Choice(["classroom", "mower", "pioneer", "gnss", "pylon"]))
+@click.argument("name", type=click.Choice(["classroom", "mower", "pioneer", "gnss", "pylon", "gallery"]))
 @click.option("--out", "-o", type=Result(), required=True, help="A folder for the figures, tables and captions.md.")
 @click.option("--format", "formats", type=click.Choice(["png", "svg", "pdf"]), multiple=True, default=("png",),
               show_default=True, help="May be given several times.")  # fmt: skip
@@ -221,16 +221,15 @@ def new(file: Path, kind: str | None, force: bool) -> None:
 def figures(
     name: str, out: Path, formats: tuple[str, ...], log: str | None, reading: str, seed: int | None, force: bool
 ) -> None:
-    """Draw every figure and table of one of the five documents, with captions."""
+    """Draw every figure and table of one of the five documents, or of the gallery, with captions."""
     from ekfsim.views.look import get_ready
 
     get_ready()
     from ekfsim.figures import draw_figures
 
-    scene = scene_of(
-        "tour" if name == "classroom" else name if log is None else f"{name}_log",
-        log=log, reading=reading, seed=seed,
-    )  # fmt: skip
+    simulated = {"classroom": "tour", "gallery": "diverge-00-control"}.get(name)
+    commands = simulated or (name if log is None else f"{name}_log")
+    scene = scene_of(commands, log=log, reading=reading, seed=seed)
     written = draw_figures(name, scene, out, formats, force)
     click.echo(shown(f"{out}: {len(written)} files, read captions.md first"))
 

@@ -1,4 +1,4 @@
-"""Every figure and table of the five documents, each by one command: `ekfsim figures NAME -o DIR`."""
+"""Every figure and table of the five documents, and the gallery, each by one command: `ekfsim figures NAME -o DIR`."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ekfsim.figures.album import PATTERNS, Album
 from ekfsim.figures.classroom import draw_classroom
+from ekfsim.figures.gallery import draw_gallery
 from ekfsim.figures.gnss import draw_gnss
 from ekfsim.figures.mower import draw_mower
 from ekfsim.figures.pioneer import draw_pioneer
@@ -22,6 +23,7 @@ TITLES = {
     "pioneer": "State estimation based on Kalman filtering techniques in navigation: the P3 robot",
     "gnss": "Sensor fusion for a lawn mower: GNSS and wheel speeds",
     "pylon": "Extended Kalman filter for localization: lidar and IMU around a pylon",
+    "gallery": "Scenarios that make the filter fail",
 }
 FIGURES: dict[str, Callable[["Scene", Album], None]] = {
     "classroom": draw_classroom,
@@ -29,6 +31,7 @@ FIGURES: dict[str, Callable[["Scene", Album], None]] = {
     "pioneer": draw_pioneer,
     "gnss": draw_gnss,
     "pylon": draw_pylon,
+    "gallery": draw_gallery,
 }
 
 
