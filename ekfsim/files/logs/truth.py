@@ -39,7 +39,8 @@ def truth_of(rows: Rows, warnings: list[str]) -> Truth | None:
         warnings.append(f"{rows.at(int(np.argmin(distinct)))}: a second pose of the same time: left out")
         rows = rows[distinct]
     if not len(rows):
-        warnings.append(f"{rows.file}: holds no poses: the truth is unknown")
+        why = f"all {rows.left_out} poses are left out" if rows.left_out else "holds no poses"
+        warnings.append(f"{rows.file}: {why}: the truth is unknown")
         return None
     tell_gaps(rows, warnings)
     poses = rows.values[:, 1:4].copy()

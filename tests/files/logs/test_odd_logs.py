@@ -240,6 +240,14 @@ def test_stamps_of_another_unit_are_told_though_nothing_is_left_to_localize(log,
     assert str(refused.value) == f"log/wheelspeeds-1.csv:1:1: all 11 rows are left out; {nothing}"
 
 
+def test_a_truth_in_another_unit_is_none_and_told(log):
+    log(truth=table("t,x,y,phi", [[(1.5e9 + t) * 1e9, *pose] for t, *pose in TRUTH]))
+    found = read("gnss", LOG)
+    told = "t: 1.5e+18 is no time in s (are these nanoseconds?): this row is left out"
+    assert found.warnings[0] == f"log/groundtruth-1.csv:2: {told}"
+    assert "log/groundtruth-1.csv: all 11 poses are left out: the truth is unknown" in found.warnings
+
+
 def test_what_is_odd_in_a_log_is_told_before_why_it_is_refused(log):
     fixes = [*FIXES, [math.nan, 0.0, 0.0]]
     log(fixes=table("t,x,y", fixes), truth=table("t,x,y,phi", [[t + 100, *pose] for t, *pose in TRUTH]))
