@@ -71,11 +71,15 @@ class Timeline:
         start, motions = self.start, self.motions
         if self.truth is not None and not self.truth.t[0] <= start <= self.truth.t[-1]:
             if start > self.truth.t[-1] or not np.any(motions.end > self.truth.t[0]):
-                raise UsageError(f"{self.name}: the truth and the motion have no instant in common")
+                told = f"the truth is of {_span(self.truth.t)}, the motion of {_span([start, motions.end[-1]])}"
+                raise UsageError(f"{self.name}: the truth and the motion have no instant in common: {told}")
             start = float(self.truth.t[0])
             told = f"{self.name}: starts at {start:.12g} s, where the truth begins"
             warnings.append(f"{told}: what was before is left out")
             motions = motions.since(start)
+        if self.truth is not None and (after := float(motions.end[-1] - self.truth.t[-1])) > self.truth.longest:
+            told = f"the truth ends {after:.3g} s before the motion: errors are counted until then"
+            warnings.append(f"{self.name}: {told}")
         happened = [(start, None, True), *_merged(motions, self._within(start, motions, warnings), self.between)]
         truths = _truths(self.truth, np.array([t for t, _, _ in happened]))
         entries = tuple(
@@ -95,10 +99,16 @@ class Timeline:
         ]
         if missed := len(self.samples) - len(kept):
             readings = "1 reading lies" if missed == 1 else f"{missed} readings lie"
-            warnings.append(f"{self.name}: {readings} before or after the motion: left out")
+            spans = f"readings are of {_span(times)}, the motion of {_span(edges)}"
+            warnings.append(f"{self.name}: {readings} before or after the motion: left out; {spans}")
         if not kept:
             warnings.append(f"{self.name}: no reading is left: the filter follows the motion alone")
         return kept
+
+
+def _span(t: Array | list[float]) -> str:
+    """The first and the last of some instants; of two clocks it shows how far they are apart."""
+    return f"{np.min(t):.12g} to {np.max(t):.12g} s"
 
 
 def _snapped(t: Array, edges: Array) -> Array:

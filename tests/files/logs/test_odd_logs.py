@@ -378,7 +378,8 @@ def test_readings_before_and_after_the_motion_are_left_out_and_counted(log):
     log(fixes=table("t,x,y", [[-1.0, 0.0, 0.0], *FIXES, [1.5, 0.0, 0.0]]))
     found = read("gnss", LOG)
     assert len(given(found, Reading)) == 4
-    assert found.warnings == ["log: 2 readings lie before or after the motion: left out"]
+    spans = "readings are of -1 to 1.5 s, the motion of 0 to 1 s"
+    assert found.warnings == [f"log: 2 readings lie before or after the motion: left out; {spans}"]
 
 
 def test_a_log_starts_where_its_truth_does(log):
@@ -392,8 +393,16 @@ def test_a_log_starts_where_its_truth_does(log):
     assert "log: starts at 0.32 s, where the truth begins: what was before is left out" in found.warnings
     assert found.log.entries[-1].truth is not None
     log(truth=table("t,x,y,phi", [[t + 100, *pose] for t, *pose in TRUTH]))
-    with pytest.raises(UsageError, match="log: the truth and the motion have no instant in common"):
+    with pytest.raises(UsageError) as refused:
         read("gnss", LOG)
+    spans = "the truth is of 100 to 101 s, the motion of 0 to 1 s"
+    assert str(refused.value) == f"log: the truth and the motion have no instant in common: {spans}"
+
+
+def test_a_truth_that_ends_long_before_the_log_is_told(log):
+    log(wheels=table("time,vr,vl", [[k / 10, 1.0, 0.5] for k in range(40)]))
+    told = "log: the truth ends 2.9 s before the motion: errors are counted until then"
+    assert read("gnss", LOG).warnings == [told]
 
 
 def test_without_truth_the_filter_starts_where_the_world_says(log):
