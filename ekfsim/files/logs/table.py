@@ -184,7 +184,9 @@ def _row_mistakes(
         if place in wanted.places and not is_number(field):
             start, name = column + len(field) - len(field.lstrip()), wanted.names[wanted.places.index(place)]
             wrong = f"{quoted(field)} is not a number" if field.strip() else "nothing stands where a number belongs"
-            found.append(Mistake(Place(lines.file, lines.numbers[row], start + 1), name, wrong, "write e.g. 1.5"))
+            meant = field.strip().strip("\"'").replace(",", ".")  # as spreadsheets write it
+            right = f"write {meant}" if NUMBER.fullmatch(meant) else "write e.g. 1.5"
+            found.append(Mistake(Place(lines.file, lines.numbers[row], start + 1), name, wrong, right))
         column += len(field) + (separator is not None)
     return found
 
@@ -192,6 +194,8 @@ def _row_mistakes(
 def _width_mistake(lines: Lines, row: int, width: int, widths: range) -> Mistake:
     columns = "1 column stands" if width == 1 else f"{width} columns stand"
     right = f"{widths.start}" + (" or more" if len(widths) > 2 else f" or {widths[-1]}" if len(widths) == 2 else "")
+    if width == 1 and (mark := separator_of(lines.texts[row])):
+        right += f", and no '{mark}' between them"
     return Mistake(Place(lines.file, lines.numbers[row], 1), "", f"{columns} in this row", f"it must have {right}")
 
 

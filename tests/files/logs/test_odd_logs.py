@@ -314,7 +314,10 @@ def test_a_last_number_that_may_be_whole_is_used_and_told(log):
         ("t,vr,vl\n0,1_0,1\n0.1,0x1,1\n",
          "log/wheelspeeds-1.csv:2:3: vr: '1_0' is not a number; write e.g. 1.5\n"
          "log/wheelspeeds-1.csv:3:5: vr: '0x1' is not a number; write e.g. 1.5"),
-        ("t;vr;vl\n0;1,5;1\n0.1;1;1\n", "log/wheelspeeds-1.csv:2:3: vr: '1,5' is not a number; write e.g. 1.5"),
+        ("t;vr;vl\n0;1,5;1\n0.1;1;1\n", "log/wheelspeeds-1.csv:2:3: vr: '1,5' is not a number; write 1.5"),
+        ('t,vr,vl\n0,"1.5",1\n0.1,"1",1\n',
+         "log/wheelspeeds-1.csv:2:3: vr: '\"1.5\"' is not a number; write 1.5\n"
+         "log/wheelspeeds-1.csv:3:5: vr: '\"1\"' is not a number; write 1"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_read_is_refused_with_its_place(log, wheels, told):

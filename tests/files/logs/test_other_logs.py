@@ -159,6 +159,7 @@ def test_rows_of_mrclam_that_share_a_time_are_told(tmp_path):
         ("Landmark_Groundtruth.dat", "7 1 1 0 0\n7 2 2 0 0\n", "dat:2:1: the landmark 7 stands here again; name"),
         ("Landmark_Groundtruth.dat", "7.5 1 1 0 0\n", "dat:1:1: 7.5 names no landmark; an id is a whole number"),
         ("Robot3_Odometry.dat", "1 0 0 0\n", "Odometry.dat:1:1: 4 columns stand in this row; it must have 3"),
+        ("Robot3_Odometry.dat", "1;0;0\n", "Odometry.dat:1:1: 1 column stands in this row; it must have 3, and no ';'"),
         ("Landmark_Groundtruth.dat", "7 1\n", "dat:1:1: 2 columns stand in this row; it must have 3 or more"),
     ],
 )  # fmt: skip
