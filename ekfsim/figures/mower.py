@@ -55,7 +55,7 @@ def _tables_of_log(scene: Scene, entries: tuple[Entry, ...], real: Track, ideal:
     if scene.reading != "corrected":
         _strayed(scene.reading, Outcome.of(filtered(scene, with_ideal_angles(entries), scene.reading)), album)
     tracks = {reading: filtered(scene, entries, reading) for reading in READINGS}
-    readings_of_log({reading: Outcome.of(track) for reading, track in tracks.items()}, album)
+    readings_of_log({reading: Outcome.of(track) for reading, track in tracks.items()}, scene.reading, album)
 
 
 def _strayed(reading: DocumentReading, outcome: Outcome, album: Album) -> None:

@@ -88,8 +88,8 @@ def errors(track: Track, blind: Array, album: Album) -> None:
         figure, "fig6-errors", "Figure 6: position and heading error",
         _told_of_errors(track, blind)
         + " The heading's ±2σ is wider than its errors, and meant to be: the document takes the noise of the heading "
-        "from the wheels as well (eq. 22), although the gyro turns it. The print shows the errors alone, with peaks of "
-        "the same kind where no marker or a single one was visible.",
+        "from the wheels as well (eq. 22), although the gyro turns it, and chose Q with room to spare. The "
+        "print shows the errors alone, with peaks of the same kind where no marker or a single one was visible.",
     )  # fmt: skip
 
 
@@ -100,7 +100,8 @@ def _told_of_errors(track: Track, blind: Array) -> str:
         return "The truth is not known."
     worst = float(track.t[np.nanargmax(error)])
     after = [
-        f" during or just after the interruption from {a:.0f} to {b:.0f} s" for a, b in blind if a <= worst <= b + 4
+        *(f" during or just after the interruption from {a:.0f} to {b:.0f} s" for a, b in blind if a <= worst <= b + 4),
+        *(f" with no more than one marker in a picture since {a:.0f} s" for a in _alone_since(track, worst)),
     ]
     inside = np.mean(error <= 2 * np.sqrt(P[:, 0, 0] + P[:, 1, 1]))
     held = np.mean(np.abs(track.heading_error) <= 2 * np.sqrt(P[:, 2, 2]))
@@ -157,6 +158,14 @@ def _pictures(track: Track) -> tuple[Array, Array]:
     """When markers were seen, and how many : (n,) s, (n,)"""
     t, seen = np.unique([reading.t for reading in track.readings], return_counts=True)
     return t, seen.astype(float)
+
+
+def _alone_since(track: Track, when: float) -> list[float]:
+    """Since when, in s, no picture had two markers, where at an instant that is long ago; else nothing."""
+    t, seen = _pictures(track)
+    before = t[(seen > 1) & (t <= when)]
+    since = float(before[-1]) if len(before) else float(track.t[0])
+    return [since] if when - since >= BLIND else []
 
 
 def _shade(axes: Axes, blind: Array) -> None:

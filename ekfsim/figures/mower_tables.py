@@ -91,12 +91,13 @@ def readings_of_runs(
     )  # fmt: skip
 
 
-def readings_of_log(outcomes: Mapping[DocumentReading, Outcome], album: Album) -> None:
-    """What they cost on one log."""
+def readings_of_log(outcomes: Mapping[DocumentReading, Outcome], associated: DocumentReading, album: Album) -> None:
+    """What they cost on one log, whose pictures belong to its rows as the reading `associated` has it."""
     best, listing, wrong = (float(outcomes[reading].rmse[0]) for reading in ("corrected", "coded", "printed"))
     album.table(
         "readings", "What the print and the listing cost", ["reading", *READ], _rows(outcomes),
-        "One log, filtered three times; one log proves little. The sign of eq. 25 makes the filter go away from a "
+        f"One log, filtered three times, its pictures at the rows to which *{associated}* assigns them; one log proves "
+        "little. The sign of eq. 25 makes the filter go away from a "
         f"marker that is too near: {wrong:.3g} m in place of {best:.3g} m. The listing gives {listing:.3g} m: "
         f"{LISTING}. What that costs depends on how much room Q leaves; the figures of the simulated mower tell it "
         "over many runs.",

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator
 from dataclasses import fields
-from typing import get_args, get_type_hints
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from ekfsim.files.fields import aliases
 from ekfsim.files.marked import Path
 from ekfsim.files.schema import schema_at
 from ekfsim.files.sensor_file import SensorKeys
-from ekfsim.files.system_file import RobotKeys, ToldRobotKeys, fields_of, robot_fields
+from ekfsim.files.system_file import ODOMETRY, RobotKeys, ToldRobotKeys, fields_of, robot_fields
 from ekfsim.files.telling import at, example, meant, one_of
 from ekfsim.files.told_file import FaultKeys
 from ekfsim.systems import SYSTEMS
@@ -34,11 +33,6 @@ from ekfsim.systems.instruments import (
 )
 from ekfsim.world import Faults, World
 
-ODOMETRY = {  # what may tell the turn
-    system: get_args(get_type_hints(type(told.robot))["odometry"])
-    for system, told in SYSTEMS.items()
-    if "odometry" in robot_fields(system)
-}
 BEAMS: dict[str, type[Ultrasonic] | type[Infrared]] = {"ultrasonic": Ultrasonic, "infrared": Infrared}
 NARROW = 2 * math.pi  # degrees: no bound of a field of view is larger, where radians are written
 LOOKING = (Markers, RangeBearings, Bearings, Ranges, Pylon, Lidar)

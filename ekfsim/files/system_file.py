@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args, get_type_hints
 
 from pydantic import Field
 
@@ -38,6 +38,13 @@ def robot_fields(system: str) -> list[str]:
 def fields_of(part: Any) -> list[str]:
     """The names of what a robot, an instrument or a drive is made from, in their order."""
     return [field.name for field in dataclasses.fields(part) if field.init]
+
+
+ODOMETRY = {  # what may tell the turn of each robot
+    system: get_args(get_type_hints(type(told.robot))["odometry"])
+    for system, told in SYSTEMS.items()
+    if "odometry" in robot_fields(system)
+}
 
 
 class ToldRobotKeys(PartKeys):

@@ -20,7 +20,7 @@ from ekfsim.files.fields import (
     aliases,
 )
 from ekfsim.files.sensor_file import MARKERS, SensorKeys
-from ekfsim.files.system_file import RobotKeys, SystemName, ToldRobotKeys, robot_fields
+from ekfsim.files.system_file import ODOMETRY, RobotKeys, SystemName, ToldRobotKeys, robot_fields
 from ekfsim.files.told_file import FaultKeys, ToldSensorsKeys
 from ekfsim.systems import SYSTEMS
 from ekfsim.world import Faults
@@ -42,10 +42,12 @@ def only(names: Iterable[str], keys: type[BaseModel]) -> JsonDict:
 def of_system(system: str) -> JsonDict:
     """What a world of a driven robot may hold."""
     robot = robot_fields(system)
-    told: JsonDict = {"noise": False, "robot": only((name for name in robot if name != "rate"), ToldRobotKeys)}
+    turning: JsonDict = {"properties": {"odometry": {"enum": list(ODOMETRY[system])}}} if system in ODOMETRY else {}
+    believed = only((name for name in robot if name != "rate"), ToldRobotKeys)
+    told: JsonDict = {"noise": False, "robot": {**believed, **turning}}
     return {
         "noise": False,
-        "robot": only(robot, RobotKeys),
+        "robot": {**only(robot, RobotKeys), **turning},
         "faults": only((*SYSTEMS[system].robot.faults, "sensors"), FaultKeys),
         "belief": {"properties": told},
     }
@@ -161,13 +163,14 @@ class BeliefKeys(Strict):
     )
     robot: ToldRobotKeys | None = Field(
         None,
-        description="What the filter is told of the robot; what is left out is as in `robot`. Not in the classroom.",
+        description="What the filter is told of the robot; what is left out is as in `robot`. Not in the classroom. "
+        "(`ekfsim check` also refuses skidSteer for one of the two alone, as no schema can.)",
         examples=[{"wheelSigma": 0.02}],
     )
     sensors: ToldSensorsKeys | None = Field(
         None,
         description="What the filter is told of the sensors, by their names; what is left out is as in `sensors`. Not "
-        "in the classroom.",
+        "in the classroom. (`ekfsim check` also refuses sensors that the robot does not carry, as no schema can.)",
         examples=[{"markers": {"azimuthSigma": 5}}],
     )
     missing: list[Name] | None = Field(

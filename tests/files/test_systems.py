@@ -220,6 +220,9 @@ def test_the_schema_says_which_keys_go_together():
             }
         },
     }
+    of_mower = next(other["then"] for other in others if other["if"]["properties"]["system"]["const"] == "mower")
+    for robot in (of_mower["properties"]["robot"], of_mower["properties"]["belief"]["properties"]["robot"]):
+        assert robot["properties"]["odometry"]["enum"] == ["gyro", "midpoint"]
     ways = [{"required": ["commands"]}, {"required": ["drive"]}, {"required": ["recording"]}]
     assert json_schema("commands")["oneOf"] == ways
 
