@@ -157,7 +157,7 @@ class Summary:
             "heading": self.heading.table(),
             "path_rmse": self.path.rmse,
             "nis": {
-                "mean": evidence.nis_sum / evidence.nis_readings if evidence.nis_readings else None,
+                "mean": evidence.nis_sum / evidence.nis_dof if evidence.nis_dof else None,
                 "sum": evidence.nis_sum,
                 "dof": evidence.nis_dof,
                 "low": low,

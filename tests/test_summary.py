@@ -163,7 +163,7 @@ def test_without_truth_there_are_no_errors_and_the_verdict_is_that_of_the_readin
     assert table["dead_reckoning"] == {"position": None, "heading": None}
     assert table["nees"] == {"last": None, "dof": None}
     assert table["nis"]["dof"] == 18
-    assert table["nis"]["mean"] == pytest.approx(table["nis"]["sum"] / 9)
+    assert table["nis"]["mean"] == pytest.approx(table["nis"]["sum"] / 18)
     assert table["verdict"] in ("consistent", "over-confident", "over-cautious")
 
 

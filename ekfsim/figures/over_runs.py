@@ -23,7 +23,7 @@ class EachRun:
     heading: Array  # rad
     reckoned_position: Array  # m, RMSE of what the motion inputs alone make of the first estimate
     reckoned_heading: Array  # rad
-    nis: Array  # mean of a reading
+    nis: Array  # mean per number read
     beyond: Array  # the share of instants whose NEES lies beyond its 99.9 % quantile
 
     @classmethod
@@ -41,7 +41,7 @@ class EachRun:
 
 
 def _instants(steps: Iterable[Step], nis: list[Array]) -> Iterator[tuple[Step, Array]]:
-    """The last step of each instant, and where the motion inputs alone would be; the NIS of each reading on the way."""
+    """The last step of each instant, and where the motion inputs alone would be; the NIS per number of each reading."""
     before: Step | None = None
     reckoned = np.empty(0)
     for step in steps:
@@ -53,7 +53,7 @@ def _instants(steps: Iterable[Step], nis: list[Array]) -> Iterator[tuple[Step, A
             case Control(motion, u):
                 reckoned = motion.f(reckoned, u)
             case Reading() if step.correction is not None:
-                nis.append(step.correction.nis)
+                nis.append(step.correction.nis / step.correction.innovation.shape[-1])
         before = step
     assert before is not None
     yield before, reckoned

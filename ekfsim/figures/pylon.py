@@ -208,7 +208,7 @@ def table_of_readings(runs: Runs, album: Album) -> None:
     ]
     if len(fix):
         rows.append(["GPS alone", *_numbers(path_error(fix, runs.ring)), "-", "-", "0.454782"])
-    header = ["estimate", "path RMSE (m)", "mean (m)", "largest (m)", "RMSE to the truth (m)", "mean NIS",
+    header = ["estimate", "path RMSE (m)", "mean (m)", "largest (m)", "RMSE to the truth (m)", "mean NIS per number",
               "the same of the authors' own program (m)"]  # fmt: skip
     published = runs.published
     album.table(
@@ -216,10 +216,10 @@ def table_of_readings(runs: Runs, album: Album) -> None:
         "What each reading costs",
         header if published else header[:-1],
         rows if published else [row[:-1] for row in rows],
-        f"Path RMSE by eqs 11 and 12. {COMPARED if published else ''}A NIS of 2 is what a filter that knows its own "
-        f"uncertainty has on average. {_cost(runs)} Eq. 8 to the letter, with θ where π/2 − θ belongs, puts the cart "
-        f"{apart:.2g} m away from where it is (RMS), at another place of the square; eq. 11, which asks for the "
-        "nearest side, hardly notices.",
+        f"Path RMSE by eqs 11 and 12. {COMPARED if published else ''}A NIS of 1 per number read is what a filter that "
+        f"knows its own uncertainty has on average. {_cost(runs)} Eq. 8 to the letter, with θ where π/2 − θ belongs, "
+        f"puts the cart {apart:.2g} m away from where it is (RMS), at another place of the square; eq. 11, "
+        "which asks for the nearest side, hardly notices.",
     )
 
 
@@ -229,9 +229,8 @@ def _near(track: Track, corner: Array) -> Integers:
 
 
 def _row(runs: Runs, name: str, track: Track, reference: str) -> list[str]:
-    nis = float(np.mean([reading.nis for reading in track.readings]))
     truth = f"{rmse(track.position_error):.4f}" if track.has_truth.any() else "-"
-    return [name, *_numbers(runs.off_path(track)), truth, f"{nis:.2f}", reference]
+    return [name, *_numbers(runs.off_path(track)), truth, f"{track.nis:.2f}", reference]
 
 
 def _numbers(error: Array) -> list[str]:
@@ -241,11 +240,11 @@ def _numbers(error: Array) -> list[str]:
 def _cost(runs: Runs) -> str:
     """What the difference between the readings costs."""
     path = {reading: rmse(runs.off_path(track)) for reading, track in runs.tracks.items()}
-    nis = {reading: float(np.mean([j.nis for j in track.readings])) for reading, track in runs.tracks.items()}
+    nis = {reading: track.nis for reading, track in runs.tracks.items()}
     return (
         f"Path RMSE {path['corrected']:.4f} m corrected, {path['coded']:.4f} m coded, {path['printed']:.4f} m printed; "
-        f"NIS on average {nis['corrected']:.1f}, {nis['coded']:.0f} and {nis['printed']:.0f}, where 2 is right: the "
-        "readings differ more in what they claim than in what they estimate."
+        f"NIS per number on average {nis['corrected']:.1f}, {nis['coded']:.0f} and {nis['printed']:.0f}, where 1 is "
+        "right: the readings differ more in what they claim than in what they estimate."
     )
 
 

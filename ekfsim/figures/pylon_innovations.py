@@ -21,7 +21,7 @@ RUNS = 40  # of a simulation, over which its NIS is taken
 FEW = 4  # readings, which a caption can name
 BEGINNING = 10  # readings: the log's inertial unit is dead in the first of them
 WORST = 0.05  # share of readings that count as the worst
-TRIMMED = (2 - WORST * (2 - 2 * math.log(WORST))) / (1 - WORST)  # mean of χ²₂ without them
+TRIMMED = (1 - WORST * (1 - math.log(WORST))) / (1 - WORST)  # mean of χ²₂ / 2 without them
 ROBUST = 1.4826  # σ of a normal variable over its median absolute deviation
 
 
@@ -65,13 +65,20 @@ def over_time(coded: Innovations, corrected: Innovations, album: Album) -> None:
     """NIS of every reading, with and without the yaw error in R."""
     low, high = band(INSIDE, 2)
     figure = album.figure(8.5, 4.6)
-    axes = labelled(figure.add_subplot(), "time (s)", "NIS")
-    axes.axhspan(low, high, color=SKY, alpha=0.25, lw=0, label=f"95 % band of χ²₂: {low:.2g} to {high:.3g}")
-    axes.plot(coded.t, coded.nis, ".", ms=4, color=VERMILLION, label=f"coded: mean {coded.nis.mean():.1f}")
-    axes.plot(corrected.t, corrected.nis, ".", ms=4, color=BLUE, label=f"corrected: mean {corrected.nis.mean():.2f}")
-    axes.axhline(2, color=BLACK, lw=0.8, ls="--", label="2: what is right on average")
+    axes = labelled(figure.add_subplot(), "time (s)", "NIS per number read")
+    axes.axhspan(low / 2, high / 2, color=SKY, alpha=0.25, lw=0, label=f"95 % band: {low / 2:.2g} to {high / 2:.3g}")
+    axes.plot(coded.t, coded.per_number, ".", ms=4, color=VERMILLION, label=f"coded: mean {coded.mean_nis:.1f}")
+    axes.plot(
+        corrected.t,
+        corrected.per_number,
+        ".",
+        ms=4,
+        color=BLUE,
+        label=f"corrected: mean {corrected.mean_nis:.2f}",
+    )
+    axes.axhline(1, color=BLACK, lw=0.8, ls="--", label="1: what is right on average")
     axes.set_yscale("log")
-    seen = np.concatenate([coded.nis, corrected.nis])
+    seen = np.concatenate([coded.per_number, corrected.per_number])
     axes.set_ylim(bottom=min(1e-2, 0.7 * float(seen[seen > 0].min(initial=1.0))))
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), fontsize=8, ncols=4)
     axes.set_title("NIS with and without the yaw error in R")
@@ -79,12 +86,12 @@ def over_time(coded: Innovations, corrected: Innovations, album: Album) -> None:
         figure,
         "fig8-nis",
         "NIS over time, with and without the yaw error times the lever arm in R",
-        f"On average {coded.nis.mean():.1f} with the authors' R, where 2 is right: an innovation is some "
-        f"{math.sqrt(coded.nis.mean() / 2):.0f} times as large as that filter thinks possible. The reading is turned "
+        f"Per number read {coded.mean_nis:.1f} on average with the authors' R, where 1 is right: an innovation is "
+        f"some {math.sqrt(coded.mean_nis):.0f} times as large as that filter thinks possible. The reading is turned "
         "by the yaw before it is used, and so R must hold σ_θ² J Jᵀ, J = (−h_y, h_x), besides eq. 10 (the authors "
-        f"suspect as much in their conclusion). With it the mean is {corrected.nis.mean():.2f}, the median "
-        f"{np.median(corrected.nis):.2f} (1.39 is right), and {_inside(corrected):.0f} % of the readings lie in the "
-        f"95 % band, against {_inside(coded):.0f} % without. Not in the document. What is left: the next figure.",
+        f"suspect as much in their conclusion). With it the mean is {corrected.mean_nis:.2f}, the median "
+        f"{np.median(corrected.per_number):.2f} (0.69 is right), and {_inside(corrected):.0f} % of the readings lie in "
+        f"the 95 % band, against {_inside(coded):.0f} % without. Not in the document. What is left: the next figure.",
     )
 
 
@@ -97,18 +104,20 @@ def what_is_left(coded: Innovations, tries: Tries, album: Album) -> None:
     _shares(shares, {"coded": coded, "corrected": corrected, "σ of the range as it scatters": tries.noisier})
     _turns(turns, corrected)
     _lags(lags, corrected)
-    figure.suptitle(f"What is left: the innovations of the corrected filter (mean NIS {corrected.nis.mean():.2f})")
+    figure.suptitle(
+        f"What is left: the innovations of the corrected filter (mean NIS per number {corrected.mean_nis:.2f})"
+    )
     along, across = np.mean(corrected.along**2), np.mean(corrected.across**2)
     slow, fast = (_mean(corrected.across[corrected.turning(k)] ** 2) for k in (0, len(TURNING) - 1))
     album.add(
         figure,
         "fig9-what-is-left",
         "What is left of the NIS once the yaw error is in R",
-        f"Above left: of the mean NIS of {corrected.nis.mean():.2f} the part along the line of sight makes "
+        f"Above left: of the mean NIS per number of {corrected.mean_nis:.2f} the part along the line of sight is "
         f"{along:.2f}, the part across it {across:.2f}; 1 each would be right. Above right: the tail. "
         f"{_share_above(corrected):.1f} % of the readings lie beyond the 99.9 % quantile. The ranges themselves "
         f"scatter from row to row by {1000 * np.std(corrected.scatter):.1f} mm, whatever a filter makes of them; told "
-        f"that σ in place of eq. 10's, the same filter has a mean NIS of {tries.noisier.nis.mean():.2f} (grey). Below "
+        f"that σ in place of eq. 10's, the same filter has a mean of {tries.noisier.mean_nis:.2f} (grey). Below "
         f"left: the part across is {slow} while the cart goes straight and {fast} in the fastest "
         f"turns{_worst(corrected)}. Were yaw and range not of the same instant, the yaw of another row would do "
         f"better in turns; the part across would be {tries.across_in_turns} with that of the row before, the same row "
@@ -122,22 +131,22 @@ def table(tries: Tries, album: Album) -> None:
     """The same in numbers."""
     told, found = tries.told, tries.found
     stated = 1000 * next(i.sigma for i in told.scene.world.told_instruments if isinstance(i, Pylon))
-    usual = np.sort(found.nis)[: round(len(found.nis) * (1 - WORST))]
+    usual = np.sort(found.per_number)[: round(len(found.nis) * (1 - WORST))]
     σ, robust = 1000 * np.std(found.scatter), 1000 * ROBUST * np.median(np.abs(found.scatter))
     rows = [
-        ["mean NIS", f"{found.nis.mean():.2f}", "2"],
+        ["mean NIS per number read", f"{found.mean_nis:.2f}", "1"],
         *_over_runs(told),
-        ["of it along the line of sight", f"{np.mean(found.along**2):.2f}", "1"],
-        ["of it across", f"{np.mean(found.across**2):.2f}", "1"],
+        ["the part along the line of sight", f"{np.mean(found.along**2):.2f}", "1"],
+        ["the part across", f"{np.mean(found.across**2):.2f}", "1"],
         *(_part(f"across, turning by {name} degrees/s", found.across[is_so] ** 2, "1")
           for name, is_so in _classes(found)),
-        _part(f"NIS of the first {BEGINNING} readings", found.nis[:BEGINNING], "2"),
-        _part(f"NIS of readings after a gap, {LONG} usual steps or longer", found.nis[found.late], "2"),
+        _part(f"NIS of the first {BEGINNING} readings", found.per_number[:BEGINNING], "1"),
+        _part(f"NIS of readings after a gap, {LONG} usual steps or longer", found.per_number[found.late], "1"),
         [f"mean NIS without the worst {100 * WORST:.0f} %", f"{usual.mean():.2f}", f"{TRIMMED:.2f}"],
         ["readings in the 95 % band", f"{_inside(found):.1f} %", "95 %"],
         ["σ of a range, from how it scatters between its neighbours", f"{σ:.1f} mm", f"{stated:.1f} mm"],
         ["the same from the median, which outliers do not move", f"{robust:.1f} mm", f"{stated:.1f} mm"],
-        ["mean NIS, were σ of the range what it scatters", f"{tries.noisier.nis.mean():.2f}", "2"],
+        ["mean NIS, were σ of the range what it scatters", f"{tries.noisier.mean_nis:.2f}", "1"],
         ["mean innovation along (a bias of range or acceleration)", f"{found.along.mean():.2f} σ", "0"],
         ["mean innovation across (a bias of the yaw)", f"{found.across.mean():.2f} σ", "0"],
         [f"across, turning by > {TURNING[-2]:.0f} degrees/s, by the yaw of the row before, its own, the row after",
@@ -170,7 +179,7 @@ def _over_runs(told: Told) -> list[list[str]]:
     if told.scene.log is not None:
         return []
     nis = [step.correction.nis for step in play(told.scene, np.arange(RUNS)) if step.correction is not None]
-    return [[f"mean NIS over {RUNS} simulated runs", f"{np.mean(nis):.2f}", "2"]]
+    return [[f"mean NIS over {RUNS} simulated runs", f"{np.mean(nis) / 2:.2f}", "1"]]
 
 
 def _parts(axes: Axes, found: Innovations) -> None:
@@ -187,13 +196,13 @@ def _parts(axes: Axes, found: Innovations) -> None:
 
 
 def _shares(axes: Axes, all_: dict[str, Innovations]) -> None:
-    labelled(axes, "NIS", "share of readings above it")
+    labelled(axes, "NIS per number read", "share of readings above it")
     for (name, found), color in zip(all_.items(), (VERMILLION, BLUE, GREY), strict=True):
-        values = np.sort(found.nis)
+        values = np.sort(found.per_number)
         share = 1 - np.arange(len(values)) / len(values)
-        axes.step(values, share, where="pre", color=color, lw=1.4, label=f"{name}: mean {found.nis.mean():.2f}")
-    values = np.geomspace(1e-2, -2 * np.log(0.5 / len(values)), 200)
-    axes.plot(values, np.exp(-values / 2), "--", color=BLACK, lw=1, label="χ²₂: mean 2")
+        axes.step(values, share, where="pre", color=color, lw=1.4, label=f"{name}: mean {found.mean_nis:.2f}")
+    values = np.geomspace(1e-2, -np.log(0.5 / len(values)), 200)
+    axes.plot(values, np.exp(-values), "--", color=BLACK, lw=1, label="of a right filter: mean 1")
     axes.set(xscale="log", yscale="log", xlim=(1e-2, None), ylim=(1e-5, None))
     axes.legend(loc="lower left", fontsize=8)
     axes.set_title("How many readings have a large NIS", fontsize=10)

@@ -59,6 +59,16 @@ class Innovations:
         """(K,)"""
         return self.along**2 + self.across**2
 
+    @property
+    def per_number(self) -> Array:
+        """NIS per number read, of which 1 is right on average : (K,)"""
+        return self.nis / 2
+
+    @property
+    def mean_nis(self) -> float:
+        """Per number read."""
+        return float(self.per_number.mean())
+
     def turning(self, number: int) -> Booleans:
         """Where the cart turns as fast as the number-th class of TURNING says : (K,)"""
         rate = np.degrees(np.abs(self.turn_rate))

@@ -33,7 +33,8 @@ def yaw_filter(scene: Scene, album: Album) -> None:
     album.table(
         "yaw-filter",
         f"The yaw filter that the conclusion asks for, over {RUNS} simulated runs",
-        ["reading", "RMSE position (m)", "RMSE heading (degrees)", "mean NIS", "NEES beyond its 99.9 % quantile (%)"],
+        ["reading", "RMSE position (m)", "RMSE heading (degrees)", "mean NIS per number",
+         "NEES beyond its 99.9 % quantile (%)"],
         rows,
         "The mean of the runs, and from the least to the most of them. The document turns the reading by the yaw "
         "before its filter sees it, and says in its conclusion that so the yaw is not filtered at all. Read in its own "

@@ -87,6 +87,13 @@ class Track:
         return wrap(self.pose[:, 2] - self.truth[:, 2])
 
     @property
+    def nis(self) -> float:
+        """The mean NIS per number read: 1 is right. nan where nothing was read"""
+        known = [reading for reading in self.readings if not np.isnan(reading.nis)]
+        numbers = sum(len(reading.z) for reading in known)
+        return sum(reading.nis for reading in known) / numbers if numbers else float("nan")
+
+    @property
     def seen(self) -> Integers:
         """(N,) how many readings were taken at each instant"""
         counted = np.zeros(len(self.t), np.int64)

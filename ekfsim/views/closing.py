@@ -118,9 +118,10 @@ def _nis(evidence: Evidence, side: str) -> str:
     low, high = evidence.nis_band
     refused = f" ({evidence.nis_refused} of them refused)" if evidence.nis_refused else ""
     readings = "1 reading is" if evidence.nis_readings == 1 else f"{evidence.nis_readings} readings{refused} sums to"
+    mean = "" if evidence.nis_dof == 1 else f" ({evidence.nis_sum / evidence.nis_dof:.3g} per number read)"
     freedom = "" if evidence.nis_dof == evidence.nis_readings else f" ({_count(evidence.nis_dof, 'degree')} of freedom)"
     return (
-        f"the NIS of {readings} {number(evidence.nis_sum)}, {side} the {100 * BAND:.0f} % band "
+        f"the NIS of {readings} {number(evidence.nis_sum)}{mean}, {side} the {100 * BAND:.0f} % band "
         f"{number(low)} to {number(high)}{freedom}"
     )
 

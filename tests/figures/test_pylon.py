@@ -71,7 +71,7 @@ def test_every_figure_has_its_units_and_its_caption(twin):
         ("fig4-tracking", "distance to the expected path (m)"),
         ("fig6-variances", "variance of x (m²)"),
         ("fig7-variances", "variance of θ̇ (rad²/s²)"),
-        ("fig8-nis", "NIS"),
+        ("fig8-nis", "NIS per number read"),
     ):
         assert twin.drawn[name].axes[0].get_ylabel() == label
     assert all("printed figure" in twin.captions[name] or "Not in the document" in twin.captions[name]
@@ -126,11 +126,11 @@ def test_figures_6_and_7_hold_every_correction_against_every_other(twin):
 
 def test_the_twin_is_consistent_only_where_R_knows_of_the_yaw_error(twin):
     rows, left = twin.rows("readings"), twin.rows("what-is-left")
-    assert float(row(rows, "corrected: ")["mean NIS"]) == pytest.approx(2, abs=0.4)
-    assert float(row(rows, "coded: ")["mean NIS"]) > 50
-    assert float(row(left, "mean NIS over 40")["measured"]) == pytest.approx(2.1, abs=0.1)
-    parts = [float(row(left, f"of it a{part}")["measured"]) for part in ("long", "cross")]
-    assert sum(parts) == pytest.approx(float(left["mean NIS"]["measured"]), abs=0.011)
+    assert float(row(rows, "corrected: ")["mean NIS per number"]) == pytest.approx(1, abs=0.2)
+    assert float(row(rows, "coded: ")["mean NIS per number"]) > 25
+    assert float(row(left, "mean NIS over 40")["measured"]) == pytest.approx(1.05, abs=0.05)
+    parts = [float(row(left, f"the part a{part}")["measured"]) for part in ("long", "cross")]
+    assert sum(parts) / 2 == pytest.approx(float(left["mean NIS per number read"]["measured"]), abs=0.011)
     assert float(row(left, "the same from the median")["measured"].split()[0]) == pytest.approx(7.5, rel=0.25)
 
 
@@ -197,8 +197,8 @@ def test_on_the_authors_log_the_coded_reading_is_their_filter(logged):
     coded = row(rows, "coded: ")
     assert (float(coded["mean (m)"]), float(coded["largest (m)"])) == pytest.approx((0.191488, 1.0976), abs=1e-4)
     assert logged.line("fig4-tracking", "RMSE").get_ydata()[-1] == pytest.approx(0.230198957, abs=1e-9)
-    assert float(coded["mean NIS"]) == pytest.approx(44, abs=1)
-    assert float(row(rows, "corrected: ")["mean NIS"]) == pytest.approx(6, abs=0.2)
+    assert float(coded["mean NIS per number"]) == pytest.approx(22, abs=0.5)
+    assert float(row(rows, "corrected: ")["mean NIS per number"]) == pytest.approx(3, abs=0.1)
     assert "meet" in logged.captions["fig6-variances"]
     assert logged.captions["fig6-variances"].endswith("So they do here.")
 
@@ -245,10 +245,10 @@ def test_the_recorded_log_is_read_in_either_frame():
 @LOGGED
 def test_what_is_left_on_the_authors_log_is_the_range(logged):
     left = logged.rows("what-is-left")
-    assert float(row(left, "of it along")["measured"]) > 5
-    assert float(row(left, "of it across")["measured"]) < 1
+    assert float(row(left, "the part along")["measured"]) > 5
+    assert float(row(left, "the part across")["measured"]) < 1
     assert float(row(left, "σ of a range")["measured"].split()[0]) == pytest.approx(20.3, abs=0.1)  # stated: 7.5 mm
-    assert float(row(left, "mean NIS, were")["measured"]) < 2.5
+    assert float(row(left, "mean NIS, were")["measured"]) < 1.25
 
 
 @LOGGED

@@ -21,19 +21,23 @@ def nees(value, dof=3, impossible=False):
         (Evidence(0.5, 1, nis_readings=1),
          "consistent: the NIS of 1 reading is 0.5, within the 99 % band 3.92704e-05 to 7.87944"),
         (Evidence(10, 10, None, nees(2.5), nis_readings=10),
-         "consistent: the NIS of 10 readings sums to 10, within the 99 % band 2.15586 to 25.1882; at the last step "
-         "NEES is 2.5, below its 99.9 % bound 16.2662 (3 degrees of freedom)"),
+         "consistent: the NIS of 10 readings sums to 10 (1 per number read), within "
+         "the 99 % band 2.15586 to 25.1882; at the last "
+         "step NEES is 2.5, below its 99.9 % bound 16.2662 (3 degrees of freedom)"),
         (Evidence(26, 10, nis_readings=10),
-         "over-confident: the NIS of 10 readings sums to 26, above the 99 % band 2.15586 to 25.1882: "
+         "over-confident: the NIS of 10 readings sums to 26 (2.6 per number read), above "
+         "the 99 % band 2.15586 to 25.1882: "
          "the filter trusts itself more than its readings allow"),
         (Evidence(26, 10, nis_refused=2, nis_readings=10),
-         "over-confident: the NIS of 10 readings (2 of them refused) sums to 26, above the 99 % band 2.15586 to "
-         "25.1882: the filter trusts itself more than its readings allow"),
+         "over-confident: the NIS of 10 readings (2 of them refused) sums to 26 (2.6 per number read), above the 99 % "
+         "band 2.15586 to 25.1882: the filter trusts itself more than its readings allow"),
         (Evidence(2, 10, nis_readings=10),
-         "over-cautious: the NIS of 10 readings sums to 2, below the 99 % band 2.15586 to 25.1882: "
+         "over-cautious: the NIS of 10 readings sums to 2 (0.2 per number read), below "
+         "the 99 % band 2.15586 to 25.1882: "
          "the filter trusts itself less than it could"),
         (Evidence(7.5, 10, nis_readings=5),
-         "consistent: the NIS of 5 readings sums to 7.5, within the 99 % band 2.15586 to 25.1882 "
+         "consistent: the NIS of 5 readings sums to 7.5 (0.75 per number read), within "
+         "the 99 % band 2.15586 to 25.1882 "
          "(10 degrees of freedom)"),
         (Evidence(10, 10, 7, nees(20.0, 1)),
          "lost from step 7 on: at the last step NEES is 20, beyond its 99.9 % bound 10.8276 (1 degree of freedom)"),
