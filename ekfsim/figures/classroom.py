@@ -26,6 +26,7 @@ from ekfsim.views.playback import View, views
 DOCUMENT = 0.954  # the document's probability
 RUNS = 1000
 MARGIN = 0.4  # m around a room
+ENLARGED = 1.8  # radii of the ellipse, to each side of an estimate that is drawn enlarged
 NEVER_IN_THESE = ("… is refused",)
 WRONG_WALL, THETA, STARTS, LOOP = "diverge-01-wrong-wall", "theta", "proof-unsure-start", "proof-coverage"
 
@@ -161,19 +162,22 @@ def theta_question(album: Album) -> None:
     shown = list(views(play(scene)))
     beam = next(view for view in shown if view.beam)
     figure = album.figure(12.5, 4.9)
-    for axes, view, when in zip(
-        figure.subplots(1, 2), (beam, shown[beam.number + 1]), ("before the beam", "after it"), strict=True
-    ):
-        handles, words = _room(axes, view, scene, Look(conditional=True))
-        axes.set_title(f"{when}: {_told(view)}", fontsize=10)
+    after = shown[beam.number + 1]
+    whole, close = figure.subplots(1, 2)
+    handles, words = _room(whole, beam, scene, Look(conditional=True))
+    whole.set_title(f"before the beam: {_told(beam)}", fontsize=10)
+    draw(after, scene, close, Look(conditional=True), _about(after))
+    _without_legend(close)
+    close.set_title(f"after it, enlarged: {_told(after)}", fontsize=10)
     figure.legend(handles, words, loc="outside lower center", ncols=5, frameon=False, fontsize=8, handler_map=HANDLERS)
     album.add(
         figure, "theta", "What do σ_xθ and σ_yθ mean?",
         "They tell that place and heading err together. The start is known, the heading only to 6°; after 6 m the "
         "ellipse is wide to the side. Were the heading known to be at an edge of its cone, the place would be known "
-        "much better, and elsewhere: the two dashed ellipses. Neither the ellipse nor the cone shows it; both are "
-        "shadows of P. And it is useful: the beam to the left measures y alone (∂h/∂θ = 0), yet the cone shrinks, for "
-        "who knows y knows the heading, K_θ = P_yθ/S. The assignment asks in words; it has no figure of it.",
+        "much better, and elsewhere: the dashed and the dotted ellipse. Neither the ellipse nor the cone shows it; "
+        "both are shadows of P. And it is useful: the beam to the left measures y alone (∂h/∂θ = 0), yet the cone "
+        "shrinks, for who knows y knows the heading, K_θ = P_yθ/S. The assignment asks in words; it has no figure of "
+        "it.",
         told_in_a_line(scene),
     )  # fmt: skip
 
@@ -181,9 +185,7 @@ def theta_question(album: Album) -> None:
 def _room(axes: Axes, view: View, scene: Scene, look: Look) -> tuple[list[Any], list[str]]:
     """Draw a view no wider than its room, and the legend's handles and words of what can be in it."""
     picture = draw(view, scene, axes, look)
-    legend = axes.get_legend()
-    assert legend is not None
-    legend.remove()
+    _without_legend(axes)
     assert scene.world.map.boundary is not None
     (left, bottom), (right, top) = scene.world.map.boundary.min(axis=0), scene.world.map.boundary.max(axis=0)
     axes.set(xlim=(left - MARGIN, right + MARGIN), ylim=(bottom - MARGIN, top + MARGIN))
@@ -193,6 +195,19 @@ def _room(axes: Axes, view: View, scene: Scene, look: Look) -> tuple[list[Any], 
     }
     kept = {word: handle for word, handle in named.items() if word not in NEVER_IN_THESE}
     return list(kept.values()), list(kept)
+
+
+def _without_legend(axes: Axes) -> None:
+    legend = axes.get_legend()
+    assert legend is not None
+    legend.remove()
+
+
+def _about(view: View) -> limits.Limits:
+    """The surroundings of the estimate, wide enough for its ellipse and small enough for those within to be seen."""
+    x, P = view.pose
+    reach = ENLARGED * outline(np.zeros(2), P[:2, :2], DOCUMENT).max()
+    return limits.Limits(x[0] - reach, x[1] - reach, x[0] + reach, x[1] + reach)
 
 
 def _told(view: View) -> str:

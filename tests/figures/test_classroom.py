@@ -96,6 +96,10 @@ def test_theta_shows_the_conditional_ellipses_far_apart_before_the_beam_and_toge
         apart.append(np.mean(plus.get_ydata()) - np.mean(minus.get_ydata()))
     assert apart[0] == pytest.approx(2 * 1.272, abs=0.005)
     assert apart[1] == pytest.approx(2 * 0.061, abs=0.005)
+    close = album.drawn["theta"].axes[1]  # where the robot's own symbol covered them all
+    body, ellipse = (next(patch for patch in close.patches if patch.get_gid() == gid) for gid in ("body", "ellipse"))
+    assert np.ptp(body.get_xy(), axis=0).max() < 0.5 * np.ptp(ellipse.get_xy(), axis=0).min()
+    assert "the dashed and the dotted ellipse" in " ".join(album.captions["theta"].split())
 
 
 def test_two_standard_deviations_hold_86_percent_of_an_ellipse(album):

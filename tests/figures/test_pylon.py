@@ -97,6 +97,18 @@ def test_figure_4_is_equations_11_and_12(twin):
     assert so_far == pytest.approx(np.sqrt(np.cumsum(error**2) / np.arange(1, len(error) + 1)))
 
 
+def test_no_legend_hides_and_no_axis_cuts_what_the_captions_speak_of(twin):
+    for name in ("fig4-tracking", "fig9-what-is-left"):
+        figure = twin.drawn[name]
+        figure.draw_without_rendering()
+        axes = figure.axes[0]
+        assert axes.get_legend().get_window_extent().y1 < axes.get_window_extent().y0  # it stands below
+    low, high = twin.drawn["fig8-nis"].axes[0].get_ylim()
+    for label in ("coded", "corrected"):
+        values = twin.line("fig8-nis", label).get_ydata()
+        assert low < values[values > 0].min() <= values.max() < high
+
+
 def test_figure_5_says_that_it_draws_the_authors_covariances_100_times_larger(twin):
     left, right = twin.drawn["fig5-ellipses"].axes
     assert "100 times larger" in left.get_title()
