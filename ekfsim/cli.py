@@ -12,6 +12,7 @@ from ekfsim.asked import engine_of, scene_of
 from ekfsim.errors import RunError, UsageError
 from ekfsim.options import (
     DOCUMENTS,
+    EXPLAIN,
     FORCE,
     READING,
     Result,
@@ -48,13 +49,16 @@ def ekfsim() -> None:
 @click.option("--out", "-o", type=Result(), default=Path("out"), show_default=True,
               help="Folder for the pictures of --show files and of the key s.")  # fmt: skip
 @click.option("--conditional", is_flag=True, help="Draw the ellipse for the heading at either edge of its cone, too.")
+@EXPLAIN
 @FORCE
-def play(show: str, out: Path, conditional: bool, force: bool, confidence: float, **chosen: Any) -> None:
+def play(
+    show: str, out: Path, conditional: bool, explain: bool, force: bool, confidence: float, **chosen: Any
+) -> None:  # fmt: skip
     """Step through COMMANDS with single keys: n next, p back, q quit, ? for all of them."""
     from ekfsim.views.interactive import play_interactively
     from ekfsim.views.look import Look
 
-    play_interactively(scene_of(**chosen), show, out, Look(confidence, conditional), force)
+    play_interactively(scene_of(**chosen), show, out, Look(confidence, conditional), force, explain)
 
 
 @ekfsim.command()
@@ -99,10 +103,11 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
 @click.option("--csv", type=Result(), help="Write a flat table.")
 @click.option("--summary", type=Result(), help="Write the closing summary as JSON.")
 @click.option("--quiet", "-q", is_flag=True, help="Only the closing summary, no narrative.")
+@EXPLAIN
 @FORCE
 def run(
-    trace: Path | None, tum: Path | None, csv: Path | None, summary: Path | None, quiet: bool, force: bool,
-    confidence: float, **chosen: Any,
+    trace: Path | None, tum: Path | None, csv: Path | None, summary: Path | None, quiet: bool, explain: bool,
+    force: bool, confidence: float, **chosen: Any,
 ) -> None:  # fmt: skip
     """Narrate COMMANDS from the first step to the last, and sum up."""
     from ekfsim.files.outputs import Outputs, kept
@@ -123,7 +128,7 @@ def run(
         for view in together(runs[0], runs[1:]):
             heed()
             if not quiet:
-                sys.stdout.write(narrate(view, scene, confidence))
+                sys.stdout.write(narrate(view, scene, confidence, explain))
     (sys.stderr if outputs.on_stdout() else sys.stdout).write(conclude_all(scene, results, quiet))
 
 

@@ -81,11 +81,15 @@ def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
         first_belief(scene), scene.world.layout.headings, scene.gate,
         lambda: particle_generators(scene.seed, numbers), scene.tuning, lambda: nominal_trajectory(scene),
     )  # fmt: skip
-    # the code of these two documents holds readings against the state of before the motion
-    if scene.filter == "ekf" and scene.world.system in ("mower", "gnss") and scene.reading == "coded":
+    if by_listing(scene):
         return ListingEKF.begin(beginning)
     filter = FILTERS[scene.filter].begin(beginning)
     return ShadowsAlone(filter) if scene.tuning.cross_covariances == "dropped" else filter
+
+
+def by_listing(scene: Scene) -> bool:
+    """Whether readings are held against the state of before the motion, as the code of two documents does."""
+    return scene.filter == "ekf" and scene.world.system in ("mower", "gnss") and scene.reading == "coded"
 
 
 def noise_by_reading(entry: Entry) -> Entry:

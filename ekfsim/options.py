@@ -19,6 +19,7 @@ SET = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
                    help="Overrule a number of the world, e.g. noise.rangeSigmaRatio=0.02, or of the filter, e.g. "
                    "filter.alpha=0.5; repeatable.")  # fmt: skip
 FAST = click.option("--fast", is_flag=True, help="Calculate with code that Numba compiles (the extra `fast`).")
+EXPLAIN = click.option("--explain", is_flag=True, help="Narrate in the long form: every matrix, every equation.")
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
 
 

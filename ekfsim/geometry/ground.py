@@ -1,5 +1,7 @@
 """Where a robot can stand: inside the room and outside every obstacle."""
 
+import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -44,18 +46,6 @@ class Ground:
         free: Booleans = (indoors & ~taken & np.isfinite(points).all(axis=-1)).reshape(places.shape[:-1])
         return free
 
-    def all_free(self, places: Sequence[tuple[float, ...]]) -> bool:
-        """Whether a robot can stand at every one of a few places, (x, y, …) in m each, without the cost of arrays."""
-        xs, ys = [place[0] for place in places], [place[1] for place in places]
-        indoors = self.room < 0
-        for number in self._near(np.array([min(xs), min(ys)]), np.array([max(xs), max(ys)])):
-            within = [_inside_one(self._edges[number], x, y) for x, y in zip(xs, ys, strict=True)]
-            if number == self.room:
-                indoors = all(within)
-            elif any(within):
-                return False
-        return indoors
-
     def reach(self, place: Array, ways: Array) -> Array:
         """How much of straight ways can be gone to where a robot can stand : (…), each in [0, 1]
 
@@ -87,6 +77,44 @@ class Ground:
             share[left[free]] = np.maximum(middle[free], far[free] - CLEARANCE / length[left[free]])
             left = left[~free]
         return share
+
+    def reach_of_each(self, x: float, y: float, ways: Sequence[tuple[float, ...]]) -> list[float]:
+        """`reach` from one place in plain floats: several times as fast for a few ways (dx, dy, …) m."""
+        xs, ys = [x + way[0] for way in ways], [y + way[1] for way in ways]
+        near = self._near(np.array([min(xs), min(ys)]), np.array([max(xs), max(ys)]))
+        stuck = [not self._free_one(near, *end) for end in zip(xs, ys, strict=True)]
+        if not any(stuck):
+            return [1.0] * len(ways)
+        near = self._near(np.array([min(x, *xs), min(y, *ys)]), np.array([max(x, *xs), max(y, *ys)]))
+        return [self._cut_back_one(near, x, y, *way[:2]) if cut else 1.0 for way, cut in zip(ways, stuck, strict=True)]
+
+    def _free_one(self, near: list[int], x: float, y: float) -> bool:
+        """Whether a robot can stand at a place. near : the polygons that may hold it"""
+        indoors = self.room < 0
+        for number in near:
+            if _inside_one(self._edges[number], x, y):
+                if number != self.room:
+                    return False
+                indoors = True
+        return indoors
+
+    def _cut_back_one(self, near: list[int], x: float, y: float, dx: float, dy: float) -> float:
+        """`_cut_back` of one way. near : the polygons that it may meet"""
+        cuts = [1.0, 0.0]
+        for number in near:
+            for ax, ay, bx, by in self._edges[number]:
+                east, north, across = bx - ax, by - ay, dx * (by - ay) - dy * (bx - ax)
+                if across:
+                    cut = ((ax - x) * north - (ay - y) * east) / across
+                    where = ((ax - x) * dy - (ay - y) * dx) / across
+                    if 0 < cut < 1 and -HAIR <= where <= 1 + HAIR:
+                        cuts.append(cut)
+        cuts.sort(reverse=True)
+        for far, close in itertools.pairwise(cuts):
+            middle = (far + close) / 2
+            if far > close and self._free_one(near, x + middle * dx, y + middle * dy):
+                return max(middle, far - CLEARANCE / math.hypot(dx, dy))
+        return 0.0
 
     def _cuts(self, place: Array, ways: Array) -> Array:
         """Where ways meet walls, as shares of them, from the last to the first : (n, k); the way's own ends are two."""

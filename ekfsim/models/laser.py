@@ -110,7 +110,9 @@ class Laser(Sensor):
             return self._sight_one(x, λ.tolist(), V.T.tolist())
         reach = REACH * np.sqrt(np.where(λ > FLAT * λ[..., -1:], λ, 0.0))
         arms = (V * reach[..., None, :]).mT  # (…, 3, 3): a row for each eigenvector
-        probes = self._drawn_back(x, np.concatenate([arms, -arms], axis=-2))
+        arms = np.concatenate([arms, -arms], axis=-2)
+        share = self.walls.ground.reach(x[..., None, :2], arms[..., :2])
+        probes = x[..., None, :] + share[..., None] * arms
         poses = np.concatenate([x[..., None, :], probes], axis=-2)
         direction = poses[..., 2] + self.bearing
         hit = self.walls.cast(poses[..., :2], direction)
@@ -131,9 +133,8 @@ class Laser(Sensor):
             for sign in (1.0, -1.0)
             for reach, (vx, vy, vθ) in zip([sign * reach for reach in reaches], V, strict=True)
         ]
-        probes = [(px + dx, py + dy, θ + dθ) for dx, dy, dθ in arms]
-        if not self.walls.ground.all_free(probes):
-            probes = [tuple(probe) for probe in self._drawn_back(x, np.array(arms)).tolist()]
+        shares = self.walls.ground.reach_of_each(px, py, arms)
+        probes = [(px + t * dx, py + t * dy, θ + t * dθ) for t, (dx, dy, dθ) in zip(shares, arms, strict=True)]
         wall = (here := first(px, py, θ + bearing))[1]
         hits = [
             first(x_i, y_i, θ_i + bearing) if any(arm) else here
@@ -153,12 +154,6 @@ class Laser(Sensor):
             np.array(walls),
             np.array(astray),
         )
-
-    def _drawn_back(self, x: Array, arms: Array) -> Array:
-        """The ends of arms about x, or the last places on them where the robot can stand : (…, 6, 3)"""
-        share = self.walls.ground.reach(x[..., None, :2], arms[..., :2])
-        probes: Array = x[..., None, :] + share[..., None] * arms
-        return probes
 
     def _line(self, wall: Integers) -> Integers:
         """The straight line that each wall lies on, −1 where there is no wall."""

@@ -6,7 +6,8 @@ from ekfsim.filters.belief import Correction, Refused
 from ekfsim.geometry import Array
 from ekfsim.models.protocols import Quantity
 from ekfsim.records import Control, Reading
-from ekfsim.views.numbers import MANY, fill, instant, matrix, number, pose, quantities, quantity, state
+from ekfsim.views.long_form import SHORT, Form
+from ekfsim.views.numbers import MANY, instant, matrix, number, point, pose, quantities, quantity, state
 from ekfsim.views.playback import View
 from ekfsim.views.told_beams import doubts, expected_wall
 from ekfsim.views.uncertainty import beside_band, crowd, judged, uncertainty
@@ -18,8 +19,7 @@ REFUSED = {
     Refused.GUARD: "Guard: this ambiguous reading is left out\n",
     Refused.GATE: "Gate: this reading is refused, its NIS is too large to be believed\n",
 }
-TRUTH = "True pose is (x, y, th) = (%.6g, %.6g, %.6g)\n"
-FIX = "A position was recorded that the filter is not given: (x, y) = (%.6g, %.6g)\n"
+FIX = "A position was recorded that the filter is not given: (x, y) ="
 
 
 def started(view: View, probability: float) -> str:
@@ -38,7 +38,7 @@ def started(view: View, probability: float) -> str:
     )
 
 
-def moved(view: View, probability: float) -> str:
+def moved(view: View, probability: float, form: Form) -> str:
     """A motion input, or several that follow each other: the belief before the first and after the last."""
     given, before = view.step.entry.given, view.step.prior if view.before is None else view.before
     assert isinstance(given, Control)
@@ -46,44 +46,51 @@ def moved(view: View, probability: float) -> str:
     return (
         f"==>{_span(view)}: {told}\n"
         f"State estimate before is {state(before.mean, view.layout)}\n"
-        f"New state estimate is {state(view.belief.mean, view.layout)}\n"
-        f"New state covariance matrix is:\n{matrix(view.belief.covariance)}\n"
+        f"{form.carried(view)}"
+        f"New state estimate is {state(view.belief.mean, view.layout)}{form.by('state')}\n"
+        f"New state covariance matrix is:{form.by('covariance')}\n{matrix(view.belief.covariance)}\n"
     ) + _beside_truth(view, probability)
 
 
-def read(view: View, guarded: bool) -> str:
+def read(view: View, guarded: bool, form: Form) -> str:
     """A reading as it came, before it is used."""
     given = view.step.entry.given
     assert isinstance(given, Reading)
     nothing = all(map(math.isnan, given.z.tolist()))
     told = "nothing came back" if nothing else quantities(given.sensor.outputs, given.z, directions=True)
     at = "" if view.span is None else f"At t = {instant(view.span[1])} s "
-    return f"==>{at}{given.name} was read: {told}\n{doubts(view.step, guarded)}"
+    doubted = form.doubted(view.step) if guarded else ""
+    return f"==>{at}{given.name} was read: {told}\n{doubts(view.step, guarded)}{doubted}"
 
 
-def revised(view: View, probability: float) -> str:
+def revised(view: View, probability: float, form: Form) -> str:
     """What was expected in place of the reading, and what the filter made of the difference."""
     given, c = view.step.entry.given, view.step.correction
     assert isinstance(given, Reading)
     assert c is not None
     x, P = view.belief
+    used = c.refused == Refused.NOT
+    by = (form if used else SHORT).by
     return (
-        _expected(view, given.sensor.outputs, c)
+        _expected(view, given.sensor.outputs, c, form)
         + _innovation(given.sensor.outputs, c)
         + REFUSED[Refused(int(c.refused))]
-        + (_gain(view, given.sensor.outputs, c.K) if c.refused == Refused.NOT else "")
-        + f"Revised state estimate: {state(x, view.layout)}\n"
-        + f"Revised covariance matrix is:\n{matrix(P)}"
+        + (_gain(view, given.sensor.outputs, c.K, by("gain")) if used else "")
+        + f"Revised state estimate: {state(x, view.layout)}{by('revised')}\n"
+        + f"Revised covariance matrix is:{by('revised_covariance')}\n{matrix(P)}"
         + _beside_truth(view, probability)
     )
 
 
-def _expected(view: View, outputs: tuple[Quantity, ...], c: Correction) -> str:
+def _expected(view: View, outputs: tuple[Quantity, ...], c: Correction, form: Form) -> str:
     if all(map(math.isnan, c.predicted.tolist())):
         return "No reading was predicted: nothing of the filter's map is within reach there\n"
+    rows = f"rows {_names(outputs)}; columns {', '.join(view.layout.names)}"
     return (
-        f"The predicted reading was {quantities(outputs, c.predicted, directions=True)}\n{expected_wall(view.step)}"
-        f"The derivatives are (rows {_names(outputs)}; columns {', '.join(view.layout.names)}):\n{matrix(c.H)}"
+        f"The predicted reading was {quantities(outputs, c.predicted, directions=True)}{form.by('predicted')}\n"
+        f"{expected_wall(view.step)}{form.expected(view.step)}"
+        f"The derivatives are ({rows}):{form.by('derivatives')}\n"
+        f"{matrix(c.H)}{form.noise(view.step, c)}"
     )
 
 
@@ -101,9 +108,9 @@ def _innovation(outputs: tuple[Quantity, ...], c: Correction) -> str:
     return f"{innovation}; its covariance is:\n{matrix(c.S)}NIS is {number(nis)} ({dof} degrees of freedom)\n{beside}"
 
 
-def _gain(view: View, outputs: tuple[Quantity, ...], K: Array) -> str:
+def _gain(view: View, outputs: tuple[Quantity, ...], K: Array, by: str) -> str:
     """The gain of a filter that has one; particles are weighed in its place."""
-    told = f"The Kalman gain is (rows {', '.join(view.layout.names)}; columns {_names(outputs)}):\n{matrix(K)}"
+    told = f"The Kalman gain is (rows {', '.join(view.layout.names)}; columns {_names(outputs)}):{by}\n{matrix(K)}"
     return crowd(view.step.posterior) or told
 
 
@@ -111,8 +118,8 @@ def _beside_truth(view: View, probability: float) -> str:
     """The truth where it is known, how uncertain the pose is, and how the two agree."""
     entry = view.step.entry
     return (
-        ("" if entry.truth is None else fill(TRUTH, *pose(entry.truth.tolist())))
-        + ("" if entry.fix is None else fill(FIX, *entry.fix.tolist()))
+        ("" if entry.truth is None else f"True pose is (x, y, th) = {pose(entry.truth.tolist())}\n")
+        + ("" if entry.fix is None else f"{FIX} {point(*entry.fix.tolist())}\n")
         + uncertainty(view.pose, probability)
         + judged(view.step, view.pose, probability)
     )

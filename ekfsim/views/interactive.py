@@ -31,8 +31,9 @@ MARGIN = 2  # rows of the terminal left free of the picture
 WIDEST, HIGHEST = 1000, 300  # columns and rows of a picture, whatever COLUMNS and LINES say
 
 
-def play_interactively(scene: Scene, show: str, out: Path, look: Look, force: bool) -> None:
-    """Step through a scene until a key quits. show : auto, window, text or files; out : folder of saved pictures
+def play_interactively(scene: Scene, show: str, out: Path, look: Look, force: bool, explain: bool) -> None:
+    """Step through a scene until a key quits. show : auto, window, text or files; out : folder of saved pictures;
+    explain : the narrative in its long form
 
     Raises UsageError where a window is asked for and there is none.
     """
@@ -52,7 +53,7 @@ def play_interactively(scene: Scene, show: str, out: Path, look: Look, force: bo
     else:
         screen = Text(scene, extent, look.probability, sys.stdout)
     with keys() as keyboard:
-        player = Player(scene, play(scene), screen, pictures.save, sys.stdout, look.probability)
+        player = Player(scene, play(scene), screen, pictures.save, sys.stdout, look.probability, explain)
         player.play(keyboard if window is None else _either(keyboard, window))
 
 

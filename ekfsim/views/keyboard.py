@@ -29,6 +29,7 @@ class Action(Enum):
     QUIT = "quit"
     RESTART = "restart"
     SAVE = "save"
+    EXPLAIN = "explain"
     HELP = "help"
     UNKNOWN = "unknown"
 
@@ -40,6 +41,7 @@ n  space  Enter  right  down  PageDown    next view
 p  Backspace  left  up  PageUp            previous view
 12n  12p                                  twelve of them
 r  restart      s  save the picture       ?  h  this help
+e  the narrative in its long form: every equation; e again for the short one
 q  Ctrl-D  quit"""
 
 CHARACTERS: dict[str, Key] = {
@@ -50,6 +52,7 @@ CHARACTERS: dict[str, Key] = {
     **dict.fromkeys("?h", Action.HELP),
     "r": Action.RESTART,
     "s": Action.SAVE,
+    "e": Action.EXPLAIN,
 }
 SEQUENCES: dict[str, Action] = {  # what follows "Esc [" or "Esc O", modifiers left out
     **dict.fromkeys(["C", "B", "6~"], Action.NEXT),  # → ↓ PageDown

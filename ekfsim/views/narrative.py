@@ -2,87 +2,56 @@
 
 import math
 
-from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Correction, Refused
-from ekfsim.filters.pf import PF
-from ekfsim.provenance import told_in_a_line
+from ekfsim.geometry import Array
 from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense, Step
 from ekfsim.scene import Scene
 from ekfsim.views import driven_narrative
 from ekfsim.views.driven_narrative import REFUSED
-from ekfsim.views.numbers import fill, number, pose, turn
+from ekfsim.views.long_form import SHORT, Form, LongForm
+from ekfsim.views.numbers import fill, fine, number, pose, turn
+from ekfsim.views.opening import opening, plain
 from ekfsim.views.playback import View
 from ekfsim.views.told_beams import doubts, expected_wall
 from ekfsim.views.uncertainty import beside_band, crowd, judged, uncertainty
 
-POSE = "(%.6g, %.6g, %.6g)"
 MATRIX = "[[%.6g %.6g %.6g]\n[%.6g %.6g %.6g]\n[%.6g %.6g %.6g]]\n"
-ODOMETRY = "The odometry measured: distance=%.6g, angle=%.6g\n"
-MOVED = f"""\
-Current state estimate is (x, y, th) = {POSE}
-New state estimate is (x, y, theta) = {POSE}
-New state covariance matrix is:
-{MATRIX}
-"""
-TRUTH = f"True state is (x, y, th) = {POSE}\n"
-PREDICTED = "The predicted range was %.6g\n"
-DERIVATIVES = """\
-The derivatives are:
-  dh/dx = %.6g, dh/dy = %.6g, dh/dth = %.6g
-"""
-INNOVATION = "The innovation is %.6g, its standard deviation %.6g; NIS is %.6g\n"
-CERTAIN = "The innovation is %.6g; nothing is uncertain, so NIS is undefined and the gain is 0\n"
-GAIN = "The Kalman gain is (x, y, th) = (%.6g, %.6g, %.6g)\n"
-REVISED = f"""\
-Revised state estimate: (x, y, theta) = {POSE}
-Revised covariance matrix is:
-{MATRIX}"""
+DERIVATIVES = "  dh/dx = %.6g, dh/dy = %.6g, dh/dth = %.6g\n"
+INNOVATION = "The innovation is %.6g, its standard deviation %.6g; NIS is %.6g"
+CERTAIN = "The innovation is %.6g; nothing is uncertain, so NIS is undefined and the gain is 0"
+GAIN = "The Kalman gain is (x, y, th) = (%.6g, %.6g, %.6g)"
 
 
-def narrate(view: View, scene: Scene, probability: float = 0.954) -> str:
-    """What is said at one press of `n`; every line ends in a newline.
+def narrate(view: View, scene: Scene, probability: float = 0.954, explain: bool = False) -> str:
+    """What is said at one press of `n`; every line ends in a newline. explain : in the long form
 
     A sense has two views: the beam, with the text down to the range, and the revised estimate, with the rest.
     """
-    step = view.step
+    step, form = view.step, LongForm.of(scene) if explain else SHORT
     match step.entry.command, step.entry.given:
         case Move() as move, _:
-            text = _move(view, move, scene, probability)
+            text = _move(view, move, scene, probability, form)
         case Sense(angle), _:
-            text = _beam(step, angle, scene) if view.beam else _update(view, probability)
+            text = _beam(step, angle, scene, form) if view.beam else _update(view, probability, form)
         case Kidnap(x, y, theta), _:
-            there = fill(POSE, *pose((x, y, theta)))
-            text = f"==>The robot was carried away to (x, y, th) = {there}; the filter was not told\n"
-            text += judged(step, view.pose, probability)
+            text = (
+                f"==>The robot was carried away to (x, y, th) = {pose((x, y, theta))}; the filter was not told\n"
+                + judged(step, view.pose, probability)
+            )
         case Say(said), _:
-            text = f"==>{_lines(said)}\n"
+            text = f"==>{plain(said)}\n"
         case _, Control():
-            text = driven_narrative.moved(view, probability)
+            text = driven_narrative.moved(view, probability, form)
         case _, Reading():
             guarded = scene.guard != "off"
-            text = driven_narrative.read(view, guarded) if view.beam else driven_narrative.revised(view, probability)
+            text = (
+                driven_narrative.read(view, guarded, form)
+                if view.beam
+                else driven_narrative.revised(view, probability, form)
+            )
         case _:
-            text = _opening(scene) + _start(view, scene, probability)
+            text = opening(scene) + form.words + _start(view, scene, probability)
     return f"{text}\n"
-
-
-def _opening(scene: Scene) -> str:
-    """What is run, and what should be known of the filter and of the reading of the document."""
-    told = f"{told_in_a_line(scene)}\n{_lines(scene.description)}\n\n"
-    if remark := FILTERS[scene.filter].remark:
-        told += f"The filter {scene.filter}: {remark}\n"
-    if FILTERS[scene.filter] is PF:
-        told += f"The filter {scene.filter}: {scene.tuning.particles} particles\n"
-    if scene.reading != "corrected":
-        told += f"{_followed(scene)}\n"
-    return told
-
-
-def _followed(scene: Scene) -> str:
-    """What a reading of the document changes in a run of this robot and its instruments."""
-    if scene.world.follows(scene.reading):
-        return f"The equations are those of the document as {scene.reading}, not the corrected ones"
-    return f"Of the equations that this run uses none is {scene.reading} otherwise: they are the corrected ones"
 
 
 def _start(view: View, scene: Scene, probability: float) -> str:
@@ -90,25 +59,28 @@ def _start(view: View, scene: Scene, probability: float) -> str:
         return driven_narrative.started(view, probability)
     x, P = view.belief
     return (
-        fill(f"First state estimate is (x, y, theta) = {POSE}\n", *pose(x.tolist()))
-        + fill(f"First state covariance matrix is:\n{MATRIX}\n", *P.ravel().tolist())
+        f"First state estimate is (x, y, theta) = {pose(x.tolist())}\n"
+        f"First state covariance matrix is:\n{_matrix(P)}\n"
         + _truth(view.step)
         + uncertainty(view.pose, probability)
         + judged(view.step, view.pose, probability)
     )
 
 
-def _move(view: View, move: Move, scene: Scene, probability: float) -> str:
+def _move(view: View, move: Move, scene: Scene, probability: float, form: Form) -> str:
     step = view.step
     assert isinstance(step.entry.given, Control)
     slip = f", slip={number(move.slip)}" if move.slip else ""
     d, a = step.entry.given.u.tolist()
-    before, (x, P) = step.prior.mean, step.posterior
+    x, P = step.posterior
     return (
-        f"==>The robot moved: distance={number(move.distance)}, angle={turn(move.angle)}{slip}\n"
+        f"==>The robot moved: distance={fine(move.distance)}, angle={turn(move.angle)}{slip}\n"
         + _bump(step, scene)
-        + fill(ODOMETRY, d, math.degrees(a))
-        + fill(MOVED, *pose(before.tolist()), *pose(x.tolist()), *P.ravel().tolist())
+        + f"The odometry measured: distance={fine(d)}, angle={turn(a)}\n"
+        + form.carried(view)
+        + f"Current state estimate is (x, y, th) = {pose(step.prior.mean.tolist())}\n"
+        + f"New state estimate is (x, y, theta) = {pose(x.tolist())}{form.by('state')}\n"
+        + f"New state covariance matrix is:{form.by('covariance')}\n{_matrix(P)}\n"
         + _truth(step)
         + uncertainty(view.pose, probability)
         + judged(step, view.pose, probability)
@@ -123,48 +95,62 @@ def _bump(step: Step, scene: Scene) -> str:
     return f"It bumped into edge {edge + 1} of {name} and stopped short of it; the filter was not told\n"
 
 
-def _beam(step: Step, angle: float, scene: Scene) -> str:
+def _beam(step: Step, angle: float, scene: Scene, form: Form) -> str:
     assert isinstance(step.entry.given, Reading)
-    z = float(step.entry.given.z[0])
-    told = "There is no echo: the beam met no wall\n" if math.isnan(z) else f"The range is {number(z)}\n"
-    return f"==>Commanding the robot to sense at an angle of {turn(angle)}\n{doubts(step, scene.guard != 'off')}{told}"
+    z, guarded = float(step.entry.given.z[0]), scene.guard != "off"
+    return (
+        f"==>Commanding the robot to sense at an angle of {turn(angle)}\n"
+        + doubts(step, guarded)
+        + (form.doubted(step) if guarded else "")
+        + ("There is no echo: the beam met no wall\n" if math.isnan(z) else f"The range is {fine(z)}\n")
+    )
 
 
-def _update(view: View, probability: float) -> str:
+def _update(view: View, probability: float, form: Form) -> str:
     step = view.step
     c, (x, P) = step.correction, step.posterior
     assert c is not None
+    used = c.refused == Refused.NOT
+    by = (form if used else SHORT).by
     return (
-        _expected(step, c)
-        + _innovation(c)
+        _expected(step, c, form)
+        + _innovation(c, form)
         + REFUSED[Refused(int(c.refused))]
-        + (crowd(step.posterior) or fill(GAIN, *c.K[:, 0].tolist()) if c.refused == Refused.NOT else "")
-        + fill(REVISED, *pose(x.tolist()), *P.ravel().tolist())
+        + (crowd(step.posterior) or f"{fill(GAIN, *c.K[:, 0].tolist())}{by('gain')}\n" if used else "")
+        + f"Revised state estimate: (x, y, theta) = {pose(x.tolist())}{by('revised')}\n"
+        + f"Revised covariance matrix is:{by('revised_covariance')}\n{_matrix(P)}"
         + uncertainty(view.pose, probability)
         + judged(step, view.pose, probability)
     )
 
 
-def _expected(step: Step, c: Correction) -> str:
+def _expected(step: Step, c: Correction, form: Form) -> str:
     h = float(c.predicted[0])
     if math.isnan(h) or step.sighting is None:
         return "No range was predicted: no wall of the filter's map lies that way\n"
-    return fill(PREDICTED, h) + expected_wall(step) + fill(DERIVATIVES, *c.H[0].tolist())
+    return (
+        f"The predicted range was {fine(h)}{form.by('predicted')}\n"
+        + expected_wall(step)
+        + form.expected(step)
+        + f"The derivatives are:{form.by('derivatives')}\n"
+        + fill(DERIVATIVES, *c.H[0].tolist())
+        + form.noise(step, c)
+    )
 
 
-def _innovation(c: Correction) -> str:
+def _innovation(c: Correction, form: Form) -> str:
     ν, S, nis = float(c.innovation[0]), float(c.S[0, 0]), float(c.nis)
     if math.isnan(ν):
         return ""
     if math.isnan(nis):
-        return fill(CERTAIN, ν)
-    return fill(INNOVATION, ν, math.sqrt(S), nis) + beside_band("NIS", nis, len(c.innovation))
+        return f"{fill(CERTAIN, ν)}{form.by('innovation')}\n"
+    told = f"{fill(INNOVATION, ν, math.sqrt(S), nis)}{form.by('innovation')}\n"
+    return told + beside_band("NIS", nis, len(c.innovation))
 
 
-def _lines(text: str) -> str:
-    """A text in plain lines: whatever else breaks a line or moves a cursor has no place in a narrative."""
-    return "\n".join(text.strip().splitlines())
+def _matrix(P: Array) -> str:
+    return fill(MATRIX, *P.ravel().tolist())
 
 
 def _truth(step: Step) -> str:
-    return "" if step.entry.truth is None else fill(TRUTH, *pose(step.entry.truth.tolist()))
+    return "" if step.entry.truth is None else f"True state is (x, y, th) = {pose(step.entry.truth.tolist())}\n"

@@ -1,4 +1,4 @@
-"""Numbers as a person reads them: six digits, degrees, no noise of the last bit."""
+"""Numbers as a person reads them: six digits, lengths to 0.1 mm, degrees to 0.0001, no noise of the last bit."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -12,6 +12,8 @@ from ekfsim.models.protocols import Quantity
 NOISE = 1e-15  # what is smaller is a rounding error of metres, radians or their squares
 GRAIN = 1e-11  # m, degrees: of a pose, what is smaller is what sums of many steps make of 0
 ROUNDING = 1e-14  # of the largest number of a matrix: the same of its others
+LARGE = 100.0  # m, degrees: of less, six digits are fine enough
+HUGE = 1e12  # m, degrees: beyond, a float itself is coarser
 MANY = 8  # numbers of a reading, rows and columns of a matrix; of more only so many are told
 UNITS = {"rad": "degrees", "rad/s": "degrees/s"}  # what a person reads in place of it
 
@@ -31,7 +33,18 @@ def number(value: float) -> str:
     >>> number(1 / 3), number(6.1e-17)
     ('0.333333', '0')
     """
-    return fill("%.6g", value)
+    return f"{0.0 if -NOISE < value < NOISE else value:.6g}"
+
+
+def fine(value: float) -> str:
+    """A length in m or an angle in degrees: six digits, and more where they would be coarser than 0.0001.
+
+    >>> fine(1 / 3), fine(5_000_000.123456), fine(-178.25), fine(6.1e-17)
+    ('0.333333', '5000000.1235', '-178.25', '0')
+    """
+    if LARGE <= abs(value) < HUGE:
+        return f"{value:.4f}".rstrip("0").rstrip(".")
+    return f"{0.0 if -NOISE < value < NOISE else value:.6g}"
 
 
 def turn(angle: float) -> str:
@@ -40,27 +53,36 @@ def turn(angle: float) -> str:
     >>> turn(-math.pi), turn(4 * math.pi)
     ('-180', '720')
     """
-    return number(math.degrees(angle))
+    return fine(math.degrees(angle))
 
 
-def heading(angle: float) -> float:
-    """A heading in degrees, in (−180, 180] also when six digits of it are read.
+def heading(angle: float) -> str:
+    """A heading in degrees, in (−180, 180] also as it is written.
 
-    >>> number(heading(math.pi / 2)), number(heading(-math.pi + 1e-9))
+    >>> heading(math.pi / 2), heading(-math.pi + 1e-9)
     ('90', '180')
     """
     degrees = math.degrees(angle)
-    return degrees + 360 if degrees <= -179.9995 else _grained(degrees)
+    return fine(degrees + 360 if degrees <= -179.99995 else _grained(degrees))
 
 
-def pose(state: Iterable[float]) -> tuple[float, float, float]:
+def point(x: float, y: float) -> str:
+    """A place, in m.
+
+    >>> point(1e-14, -0.5)
+    '(0, -0.5)'
+    """
+    return f"({fine(_grained(x))}, {fine(_grained(y))})"
+
+
+def pose(state: Iterable[float]) -> str:
     """x and y in m, θ in degrees.
 
     >>> pose([1.0, 2.5, math.pi]), pose([1e-14, -0.5, -1e-14])
-    ((1.0, 2.5, 180.0), (0.0, -0.5, 0.0))
+    ('(1, 2.5, 180)', '(0, -0.5, 0)')
     """
     x, y, θ = state
-    return _grained(x), _grained(y), heading(θ)
+    return f"({fine(_grained(x))}, {fine(_grained(y))}, {heading(θ)})"
 
 
 def _grained(value: float) -> float:
@@ -84,7 +106,7 @@ def quantity(what: Quantity, value: float) -> str:
     """
     if math.isnan(value):
         return f"{what.name} = nothing"
-    told = number(math.degrees(value) if what.unit in UNITS else value)
+    told = fine(math.degrees(value) if what.unit in UNITS else value)
     return f"{what.name} = {told} {UNITS.get(what.unit, what.unit)}".rstrip()
 
 
@@ -96,7 +118,7 @@ def quantities(what: Sequence[Quantity], values: Array, directions: bool = False
     'range = 2 m, bearing = 180 degrees'
     """
     told = [
-        f"{q.name} = {number(heading(value))} degrees" if directions and q.unit == "rad" else quantity(q, value)
+        f"{q.name} = {heading(value)} degrees" if directions and q.unit == "rad" else quantity(q, value)
         for q, value in zip(what[:MANY], values[:MANY].tolist(), strict=True)
     ]
     return ", ".join([*told, f"… ({len(what)} numbers)"] if len(what) > MANY else told)
@@ -110,7 +132,7 @@ def state(x: Array, layout: Layout) -> str:
     >>> state(np.array([1.0, math.pi / 2, 3.0, 4.0]), SPEED_POSE)
     '(v, phi, x, y) = (1, 90, 3, 4)'
     """
-    told = [number(heading(value) if i in layout.headings else value) for i, value in enumerate(x.tolist())]
+    told = [heading(value) if i in layout.headings else fine(value) for i, value in enumerate(x.tolist())]
     return f"({', '.join(layout.names)}) = ({', '.join(told)})"
 
 

@@ -11,6 +11,7 @@ from ekfsim.scene import Scene
 from ekfsim.summary import Summary
 from ekfsim.views.closing import conclude_all
 from ekfsim.views.keyboard import HELP, Action, Counted, Key
+from ekfsim.views.long_form import WORDS
 from ekfsim.views.narrative import narrate
 from ekfsim.views.playback import Playback, View
 
@@ -32,6 +33,7 @@ class Player:
     save: Callable[[View], str]  # saves the picture of a view and says where
     out: TextIO
     probability: float
+    explain: bool = False  # whether the narrative is in its long form
     number: int = 0  # of the view on the screen
     told_to_stay: bool = False  # that there is no view further on, while the key that asks for one is held
     playback: Playback = field(init=False)
@@ -72,8 +74,12 @@ class Player:
                 self._jump(0)
             case Action.SAVE:
                 self.out.write(f"{self.save(self._view(self.number))}\n")
+            case Action.EXPLAIN:
+                self.explain = not self.explain
+                self.out.write(f"The narrative in its {'long' if self.explain else 'short'} form, from this view on:\n")
+                self.out.write(self._narrated(self._view(self.number)))
             case Action.HELP:
-                self.out.write(f"{HELP}\n")
+                self.out.write(f"{HELP}\n\n{WORDS}\n")
             case _:
                 self.out.write("That key does nothing here; ? shows those that do\n")
 
@@ -105,9 +111,12 @@ class Player:
 
     def _tell(self, view: View) -> None:
         """The narrative of a view, and after the last one the closing summary."""
-        self.out.write(narrate(view, self.scene, self.probability))
+        self.out.write(self._narrated(view))
         if self.playback.view(view.number + 1) is None:
             self.out.write(conclude_all(self.scene, self._summaries))
+
+    def _narrated(self, view: View) -> str:
+        return narrate(view, self.scene, self.probability, self.explain)
 
     def _view(self, number: int) -> View:
         view = self.playback.view(number)

@@ -11,7 +11,7 @@ from ekfsim.geometry import Array
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.laser import GRAZING, Sighting
 from ekfsim.records import Reading, Step
-from ekfsim.views.numbers import number, turn
+from ekfsim.views.numbers import number, point, turn
 
 SLIGHT = 0.1  # of the longer part of an offset: a part that is shorter is not told
 UNTURNED = math.radians(0.05)  # nor is a smaller turn
@@ -33,7 +33,7 @@ def doubts(step: Step, guarded: bool) -> str:
         return ""
     told = ""
     if sighting.ambiguous and guarded:
-        x, walls = posed(step.prior, step.layout).mean, _walls(step)
+        x, walls = posed(step.prior, step.layout).mean, walls_of(step)
         others = [
             f"({elsewhere(x, sighting.probes[i])}) it would meet {wall_name(step, int(sighting.probe_walls[i]))}"
             for i in others_met(walls, sighting)
@@ -94,11 +94,18 @@ def wall_name(step: Step, wall: int) -> str:
     """A wall by the number of its edge, counted from 1 in the file's order, and its polygon's name."""
     if wall < 0:
         return "no wall"
-    name, edge = _walls(step).name(wall)
+    name, edge = walls_of(step).name(wall)
     return f"edge {edge + 1} of {name}"
 
 
-def _walls(step: Step) -> Walls:
+def corners(step: Step, wall: int) -> str:
+    """From which corner to which a wall goes."""
+    a, b = walls_of(step).segments[wall].tolist()
+    return f"from {point(*a)} to {point(*b)}"
+
+
+def walls_of(step: Step) -> Walls:
+    """The walls that the beam of a step may meet, as the filter is told."""
     assert isinstance(step.entry.given, Reading)
     assert isinstance(step.entry.given.sensor, Beam)
     return step.entry.given.sensor.walls

@@ -1,7 +1,5 @@
 """What is said of a belief: how uncertain it is, and how it stands beside the truth."""
 
-import math
-
 import numpy as np
 
 from ekfsim.consistency import BAND, inside_cone, inside_ellipse
@@ -9,27 +7,19 @@ from ekfsim.filters.belief import Belief, Gaussian, Particles
 from ekfsim.filters.chi_square import band
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse
 from ekfsim.records import Nees, Step
-from ekfsim.views.numbers import fill, number
-
-ELLIPSE = """\
-Uncertainty ellipse is:
-  minor radius is %.6g
-  major radius is %.6g
-  orientation is %.6g degrees
-  {:.4g}*sigma_theta is %.6g degrees
-"""
+from ekfsim.views.numbers import fine, number, turn
 
 
 def uncertainty(pose: Gaussian, probability: float) -> str:
     """The ellipse of the position and the cone of the heading."""
     drawn, factor = ellipse(pose.covariance, probability), cone_factor(probability)
     halfwidth = cone_halfwidth(float(pose.covariance[2, 2]), probability)
-    return fill(
-        ELLIPSE.format(factor),
-        float(drawn.minor),
-        float(drawn.major),
-        math.degrees(drawn.orientation),
-        math.degrees(halfwidth),
+    return (
+        "Uncertainty ellipse is:\n"
+        f"  minor radius is {fine(float(drawn.minor))}\n"
+        f"  major radius is {fine(float(drawn.major))}\n"
+        f"  orientation is {turn(float(drawn.orientation))} degrees\n"
+        f"  {factor:.4g}*sigma_theta is {turn(halfwidth)} degrees\n"
     )
 
 

@@ -47,11 +47,14 @@ def test_it_is_free_where_shapely_says_so(name):
     assert (Walls.of(rings).ground.free(points) == free(rings, points)).all()
 
 
-@pytest.mark.parametrize("name", ["room", "no boundary", "far away", "empty"])
+@pytest.mark.parametrize("name", ["room", "no boundary", "far away", "empty", "in a room", "a tangle"])
 def test_one_robot_is_told_the_same_as_many(name):
     ground = Walls.of(PLACES[name]).ground
-    for points in thrown(PLACES[name], 600).reshape(-1, 3, 2):
-        assert ground.all_free(points.tolist()) == ground.free(points).all()
+    places = thrown(PLACES[name], 100)
+    for place, ways in zip(places, thrown(PLACES[name], 600, seed=2).reshape(-1, 6, 2) - places[:, None], strict=True):
+        assert ground.reach_of_each(*place.tolist(), ways.tolist()) == pytest.approx(
+            ground.reach(place, ways), abs=1e-12
+        )
 
 
 @pytest.mark.parametrize("name", ["room", "no boundary", "far away"])

@@ -16,7 +16,7 @@ from ekfsim.models.echo import Echo
 from ekfsim.records import Entry, Reading, Step
 from ekfsim.version import VERSION
 from ekfsim.views.narrative import narrate
-from ekfsim.views.numbers import matrix, pose
+from ekfsim.views.numbers import matrix, pose, state
 from ekfsim.views.playback import View, views
 
 GOLDEN = Path(__file__).with_name("recorded_narrative.txt")
@@ -103,7 +103,7 @@ def test_zeros_that_are_sums_of_many_steps_are_told_as_zeros():
     numbers = np.array([[0.5, 3e-15], [-3e-15, 0.0]])
     assert matrix(numbers) == "[[0.5 0]\n[0 0]]\n"
     assert matrix(np.array([[2e-13, 0.0], [0.0, 1e-13]])) == "[[2e-13 0]\n[0 1e-13]]\n"
-    assert pose([1e-13, -1e-13, -1e-14]) == (0.0, 0.0, 0.0)
+    assert pose([1e-13, -1e-13, -1e-14]) == "(0, 0, 0)"
 
 
 def test_a_direction_is_told_above_minus_180_and_a_difference_as_it_is():
@@ -177,3 +177,57 @@ def test_a_reading_of_very_many_numbers_is_shortened():
     assert "its covariance is:\n[[1 0 0 0 0 0 0 0 …]\n" in after
     assert "[[1 1 1 1 1 1 1 1 …]\n[1 1 1 1 1 1 1 1 …]\n[1 1 1 1 1 1 1 1 …]]\nRevised" in after
     assert "NIS is 12 (12 degrees of freedom)" in after
+
+
+@pytest.mark.parametrize("made", [recording(), speeds(9, 3)])
+@pytest.mark.parametrize("filter", sorted(FILTERS.keys() - {"kf-nominal"}))
+def test_the_long_form_adds_lines_and_changes_none(made, filter):
+    made = replace(made, filter=filter)
+    for view in views(play(made)):
+        short, long = narrate(view, made), narrate(view, made, explain=True)
+        kept = iter(re.sub(r"   \(.*\)$", "", long, flags=re.MULTILINE).splitlines())
+        assert all(line in kept for line in short.splitlines())  # in the same order
+        assert "nan" not in long
+        assert "eq " not in long  # no document of theirs has the assignment's numbers
+
+
+def test_the_long_form_of_a_drive_has_every_matrix():
+    made = recording()
+    for view in views(play(made)):
+        told, step = narrate(view, made, explain=True), view.step
+        if step.prediction is not None:
+            F, G, M = step.prediction.F, step.prediction.G, step.entry.given.motion.M(step.entry.given.u)
+            P = step.prior.covariance
+            for name, A in (("F", F), ("G", G), ("M", M), ("F P F'", F @ P @ F.T), ("G M G'", G @ M @ G.T)):
+                assert re.search(rf"^{re.escape(name)} is:.*\n{re.escape(matrix(A))}", told, re.MULTILINE), name
+        elif step.correction is not None and not view.beam and not np.isnan(step.correction.S).any():
+            for name in ("R", "S"):
+                found = re.escape(matrix(getattr(step.correction, name)))
+                assert re.search(rf"^{name} is:.*\n{found}", told, re.MULTILINE), name
+
+
+def test_the_listing_that_looks_back_is_told_so():
+    for reading, before in (("coded", True), ("corrected", False)):
+        made = recording(reading=reading)
+        text = "".join(narrate(view, made, explain=True) for view in views(play(made)))
+        assert ("(h(x), x where the robot stood before the last motion)" in text) == before
+
+
+def test_the_last_of_many_inputs_is_told_with_what_it_found():
+    made = speeds(9, 3)
+    view = next(view for view in views(play(made)) if view.inputs > 1)
+    x, P = view.step.prior
+    assert f"The last input found {state(x, view.layout)} and P:\n{matrix(P)}" in narrate(view, made, explain=True)
+
+
+def test_the_head_tells_the_numbers_of_robot_and_sensors_and_what_the_filter_is_told_otherwise():
+    mower = load_scene("mower")
+    first = narrate(next(views(play(mower))), mower)
+    assert "\nThe robot, a mower: rate=100, width=" in first
+    assert "\nSensor markers: rate=0.5, height=0.226, azimuth_sigma=0.048" in first
+    told = replace(mower.world.told, robot=replace(mower.world.robot, width=1.5))
+    wrong = replace(mower, world=replace(mower.world, told=told))
+    assert "\nThe robot, a mower, as the filter is told: width=1.5\n" in narrate(next(views(play(wrong))), wrong)
+    recorded = narrate(next(views(play(recording()))), recording())
+    assert "sensors, in m, s, rad and V, as the filter is told them\n" in recorded
+    assert "starts at" not in recorded  # no one knows where

@@ -109,7 +109,7 @@ def pressed(text: bytes) -> list:
         (b"n \r\nN", [NEXT] * 5),
         (b"p\b\x7f", [BACK] * 3),
         (b"q\x04", [QUIT] * 2),
-        (b"rs?h", [Action.RESTART, Action.SAVE, Action.HELP, Action.HELP]),
+        (b"rs?he", [Action.RESTART, Action.SAVE, Action.HELP, Action.HELP, Action.EXPLAIN]),
         (b"0123456789", list(range(10))),
         (b"x\t/", [UNKNOWN] * 3),
         (b"\x1b[C\x1b[B\x1b[6~\x1bOC\x1bOB", [NEXT] * 5),

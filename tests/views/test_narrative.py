@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scenes import DESK, rich, scene, told, unbounded
+from scenes import DESK, NOISE, ROOM, rich, scene, told, unbounded
 
+from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Correction, Gaussian, Prediction, Refused
 from ekfsim.localization import play
 from ekfsim.models.laser import Laser, Sighting
@@ -13,6 +14,7 @@ from ekfsim.models.move_turn import MoveTurn
 from ekfsim.provenance import VERSION
 from ekfsim.records import Control, Entry, Kidnap, Move, Nees, Reading, Say, Sense, Step
 from ekfsim.views.narrative import narrate
+from ekfsim.views.numbers import heading
 from ekfsim.views.playback import View, views
 
 TURN = math.pi / 2
@@ -267,6 +269,91 @@ def test_no_rounding_error_and_no_minus_zero_is_printed():
     assert re.findall(r"(?<![\w*])-?0(?![\w.*])", told).count("-0") == 0
     assert "e-1" not in told
     assert "[[0 0 0]\n[0 0 0]\n[0 0 0]]" in told
+
+
+def test_at_map_coordinates_tenths_of_a_millimetre_are_told():
+    """Northing 5 000 000 m: estimate and truth are told apart, and so are two headings."""
+    here = np.array([4e5, 5e6, 0.0])
+    desk = replace(DESK, points=DESK.points + here[:2])
+    made = scene(
+        Move(0.01, 0.0), Sense(0.0), start=np.add(here, (1, 3.5, 0)), boundary=ROOM + here[:2], obstacles=(desk,),
+        sigma=(1e-3, 1e-3, 1e-5),
+    )  # fmt: skip
+    for view in views(play(made)):
+        text = narrate(view, made, explain=True)
+        for name, x in (("True state is .*", view.step.entry.truth), ("state estimate(?: is|:) .*", view.pose.mean)):
+            for found in re.findall(rf"(?:{name}) = \((.*?)\)", text)[-1:]:
+                told = [float(number) for number in found.split(", ")]
+                assert told == pytest.approx([*x[:2], math.degrees(x[2])], rel=0, abs=0.51e-4)
+        if "That edge" in text:
+            assert "goes from (400004, 5000004) to (400004, 5000003)\n" in text
+    assert heading(math.radians(123.45678)) == "123.4568"
+
+
+def test_the_head_tells_the_ratios_and_the_start_and_what_the_filter_is_told_otherwise():
+    plain = narrate(next(views(play(PLACE))), PLACE)
+    ratios = "executionDstSigmaRatio=0.05, executionAngSigmaRatio=0.04, odometryDstSigmaRatio=0.02, "
+    assert f"\nThe noise ratios: {ratios}odometryAngSigmaRatio=0.03, rangeSigmaRatio=0.01\n" in plain
+    assert "\nThe robot starts at (x, y, th) = (1, 1, 30)\n" in plain
+    assert "as the filter is told" not in plain
+    wrong = told(scene(sigma=(0.1, 0.2, math.radians(5))), noise=replace(NOISE, range=0.5, odometry_angle=0.0))
+    text = narrate(next(views(play(wrong))), wrong)
+    assert "\nThe noise ratios, as the filter is told: odometryAngSigmaRatio=0, rangeSigmaRatio=0.5\n" in text
+    assert "(1, 1, 30), each run about it with the standard deviations (0.1, 0.2, 5)\n" in text
+
+
+LONG_MOVE = """\
+P_u is:   (eq 1: (odometryDstSigmaRatio * distance)^2 and (odometryAngSigmaRatio * angle)^2, uncorrelated)
+[[0.00123891 0]
+[0 0.00251991]]
+J_x is:   (eqs 5, 6)
+[[1 0 0]
+[0 1 0]
+[0 0 1]]
+"""
+
+
+def test_the_long_form_has_the_assignments_names_and_numbers():
+    text = said(moved(), explain=True)
+    assert LONG_MOVE in text
+    assert "\nNew state estimate is (x, y, theta) = (1.25, 0.5, -178.25)   (eq 4: f(x, u))\n" in text
+    assert "\nNew state covariance matrix is:   (eq 7: J_x P J_x' + J_u P_u J_u')\n" in text
+    text = said(sensed(), explain=True)
+    for line in ("That edge, counted from 1 in the file's order, goes from (10, 8) to (0, 8)",
+                 "C_v is 0.00442225   ((rangeSigmaRatio * predicted range)^2)",
+                 "S is 0.00442225   (eq 11: J_H P J_H' + C_v)",
+                 "Revised covariance matrix is:   (eq 12: (I - K J_H) P)"):  # fmt: skip
+        assert line in lines(text)
+    ambiguous = said(sensed(probes=(1, 2, 2, 2, 2, 2)), beam=True, explain=True)
+    assert "it would meet edge 2 of boundary, from (10, 0) to (10, 8), after 1\n" in ambiguous
+    assert "eq 12" not in said(sensed(refused=Refused.GATE), explain=True)
+
+
+@pytest.mark.parametrize("filter", FILTERS)
+def test_no_filter_is_given_the_equations_of_another(filter):
+    made = replace(rich(), filter=filter)
+    text = "".join(narrate(view, made, explain=True) for view in views(play(made)))
+    tangents, own = filter in ("kf", "kf-nominal"), {"ukf": "sigma points", "pf": "the mean of the particles"}
+    assert ("J_x P J_x' is:" in text) == (tangents or filter in ("ekf", "iekf"))
+    assert ("(eq 4: f(x, u))" in text) == ("(eq 8: h(x))" in text) == (filter in ("ekf", "iekf"))
+    assert ("(eq 10: x + K r)" in text) == (tangents or filter in ("ekf", "ukf"))
+    assert ("(eq 12: (I - K J_H) P)" in text) == (tangents or filter in ("ekf", "iekf"))
+    assert ("x0 the first state estimate" in text) == (filter == "kf")
+    assert ("x0 on the nominal trajectory" in text) == (filter == "kf-nominal")
+    for name, words in own.items():
+        assert (words in text) == (filter == name)
+
+
+def test_a_pose_that_was_drawn_back_is_told_so():
+    made = scene(Sense(0.0), start=(3.0, 7.5, 0.0), sigma=(0.01, 0.4, 0.01), obstacles=(replace(
+        DESK, points=np.array([[5, 7.8], [6, 7.8], [6, 8], [5, 8.0]])),))  # fmt: skip
+    view = list(views(play(made)))[1]
+    text = narrate(view, made, explain=True)
+    share, y = re.search(r"\(3, (\S+), 0\), drawn back to (\S+) of its arm, where the robot can stand", text).group(
+        2, 1
+    )
+    assert float(y) == pytest.approx(7.999)
+    assert float(share) == pytest.approx(0.499 / 1.2, rel=1e-5)
 
 
 @pytest.mark.parametrize("degrees", [-180, -179.9999, -179.9996, -179.99951, -179.9995, -179.99949, 180, 179.99999])

@@ -9,6 +9,7 @@ from ekfsim.records import Move, Sense
 from ekfsim.summary import Summary
 from ekfsim.views.closing import conclude
 from ekfsim.views.keyboard import HELP, Action
+from ekfsim.views.long_form import WORDS
 from ekfsim.views.narrative import narrate
 from ekfsim.views.playback import views
 from ekfsim.views.player import Player
@@ -99,6 +100,17 @@ def test_a_number_repeats_and_shows_only_where_it_ends():
     assert played(NEXT, 9, BACK)[0] == [0, 1, 0]
 
 
+def test_the_long_form_is_told_from_this_view_on_until_the_key_is_pressed_again():
+    def long(*numbers):
+        every = list(views(play(PLACE)))
+        return "".join(narrate(every[number], PLACE, explain=True) for number in numbers)
+
+    begun, ended = (f"The narrative in its {form} form, from this view on:\n" for form in ("long", "short"))
+    shown, told = played(NEXT, Action.EXPLAIN, NEXT, Action.EXPLAIN, NEXT)
+    assert shown == [0, 1, 2, 3]
+    assert told == story(0, 1) + begun + long(1, 2) + ended + story(2, 3)
+
+
 def test_restart_goes_back_to_the_start():
     shown, told = played(2, NEXT, RESTART, NEXT)
     assert shown == [0, 2, 0, 1]
@@ -112,7 +124,8 @@ def test_save_says_where():
 
 
 @pytest.mark.parametrize(
-    ("key", "line"), [(Action.HELP, HELP), (Action.UNKNOWN, "That key does nothing here; ? shows those that do")]
+    ("key", "line"),
+    [(Action.HELP, f"{HELP}\n\n{WORDS}"), (Action.UNKNOWN, "That key does nothing here; ? shows those that do")],
 )
 def test_other_keys(key, line):
     assert played(key) == ([0], f"{story(0)}{line}\n")

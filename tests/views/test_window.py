@@ -34,7 +34,7 @@ def test_a_backend_without_windows_opens_none(monkeypatch, name):
     assert not window.available()
     told = f"MPLBACKEND names '{name}', which opens no window here; unset it, or --show text draws in the terminal"
     with pytest.raises(UsageError, match=f"^{told}$"):
-        play_interactively(load_scene("square"), "window", Path("out"), STANDARD, force=False)
+        play_interactively(load_scene("square"), "window", Path("out"), STANDARD, force=False, explain=False)
 
 
 def test_a_notebook_keeps_its_backend(tmp_path):
