@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any, Literal
 
 from ekfsim.errors import UsageError
-from ekfsim.process import say
+from ekfsim.process import say, warn
 
 if TYPE_CHECKING:
     from ekfsim.scene import Scene
@@ -29,8 +29,7 @@ def scene_of(
     world_file = None if world is None else resolve(world, "worlds")
     overruling = [*(setting(text) for text in settings), *particles_of(particles)]
     found = read_scene(resolve(commands, "commands"), world_file, log, cast("DocumentReading", reading), overruling)
-    for warning in found.warnings:
-        say(warning)
+    warn(found.warnings)
     scene = found.get()
     refuse_unread(overruling, names or (scene.filter,))
     if gate == "off":

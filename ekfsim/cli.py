@@ -9,7 +9,7 @@ import click
 
 from ekfsim import process
 from ekfsim.asked import engine_of, scene_of
-from ekfsim.errors import RunError, UsageError
+from ekfsim.errors import Mistake, RunError, UsageError, told
 from ekfsim.options import (
     DOCUMENTS,
     EXPLAIN,
@@ -23,7 +23,8 @@ from ekfsim.options import (
     scene_options,
     study_options,
 )
-from ekfsim.process import Program, heed, part_with, say, shown, width
+from ekfsim.printable import in_a_line
+from ekfsim.process import Program, heed, part_with, say, shown, warn, width
 from ekfsim.progress import blocks_bar, study_into
 from ekfsim.version import VERSION
 
@@ -154,7 +155,7 @@ def check(files: tuple[str, ...]) -> None:
     from ekfsim.files.check_study import check as mistakes_in
     from ekfsim.files.packaged import packaged, resolve
 
-    wrong = False
+    wrong, before, warned = False, set[Mistake](), set[str]()  # of a world that other files name, too, told once
     for file in files:
         try:
             found = mistakes_in(resolve(file, "worlds" if file in packaged("worlds") else "commands"))
@@ -162,9 +163,12 @@ def check(files: tuple[str, ...]) -> None:
             say(str(missing))
             wrong = True
             continue
-        for warning in found.warnings:
-            say(warning)
-        click.echo(shown("\n".join(map(str, found.mistakes)) or f"{file}: ok"))
+        warn(warning for warning in found.warnings if warning not in warned)
+        warned.update(found.warnings)
+        new = [mistake for mistake in found.mistakes if mistake.placed_alike not in before]
+        before.update(mistake.placed_alike for mistake in new)
+        all_told = in_a_line(f"{file}: {'what is wrong with it is told above' if found.mistakes else 'ok'}")
+        click.echo("\n".join(told(new)) or all_told)
         wrong = wrong or bool(found.mistakes)
     if wrong:
         sys.exit(UsageError.status)
@@ -258,8 +262,7 @@ def study(
         raise click.MissingParameter(param_hint="'--out' / '-o'", param_type="option")
     plan = Plan.of(load_study.asked(**asked))
     refuse_unread(plan.settings, plan.filters)
-    for warning in plan.warnings:
-        say(warning)
+    warn(plan.warnings)
     plan, engine = promised(plan, asked["runs"]) if expect else plan, engine_of(workers, cluster)
     if out is None:
         with blocks_bar(plan.blocks * len(plan.cases)) as done:
@@ -291,8 +294,7 @@ def compare(
     from ekfsim.views.compare_words import conclude
 
     comparison = Comparison.of(with_sides(load_study.asked(**asked, sweeps=()), a, b))
-    for warning in comparison.warnings:
-        say(warning)
+    warn(comparison.warnings)
     if out is not None:
         from ekfsim.views.look import get_ready
 

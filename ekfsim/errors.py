@@ -1,6 +1,12 @@
 """The two ways a run of the program can fail, each with the exit status it ends in."""
 
+import os
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+
+from ekfsim.printable import in_a_line
+
+MOST_TOLD = 50  # lines of one kind at once: nobody reads more
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,9 +22,12 @@ class Place:
 
 
 class EkfsimError(Exception):
-    """An error that is told to the user in a sentence, without a traceback."""
+    """An error that is told to the user in a sentence, without a traceback; or in several, each a line of its own."""
 
     status = 1
+
+    def __init__(self, *lines: str) -> None:
+        super().__init__("\n".join(map(in_a_line, lines)))
 
 
 class RunError(EkfsimError):
@@ -38,7 +47,7 @@ class InputError(UsageError):
     """
 
     def __init__(self, mistakes: list["Mistake"]) -> None:
-        super().__init__("\n".join(map(str, mistakes)))
+        super().__init__(*told(mistakes))
         self.mistakes = mistakes
 
 
@@ -51,7 +60,30 @@ class Mistake:
     wrong: str
     right: str = ""
 
+    @property
+    def placed_alike(self) -> "Mistake":
+        """The same mistake, however the way to its file is spelled."""
+        place = Place(os.path.realpath(self.place.file), self.place.line, self.place.column)
+        return Mistake(place, self.field, self.wrong, self.right)
+
     def __str__(self) -> str:
         field = f"{self.field}: " if self.field else ""
         right = f"; {self.right}" if self.right else ""
-        return f"{self.place}: {field}{self.wrong}{right}"
+        return in_a_line(f"{self.place}: {field}{self.wrong}{right}")
+
+
+def told(mistakes: Sequence[Mistake]) -> list[str]:
+    """A line for each mistake; of very many the last line says how many more there are."""
+    if len(mistakes) <= MOST_TOLD:
+        return [str(mistake) for mistake in mistakes]
+    lines = [str(mistake) for mistake in mistakes[: MOST_TOLD - 1]]
+    more = f"{len(mistakes) - len(lines):,}".replace(",", " ")
+    return [*lines, in_a_line(f"{mistakes[len(lines)].place}: and {more} more mistakes from here on")]
+
+
+def first_of(warnings: Iterable[str]) -> list[str]:
+    """The same for warnings, whose lines there are already."""
+    lines = list(warnings)
+    if len(lines) <= MOST_TOLD:
+        return lines
+    return [*lines[: MOST_TOLD - 1], f"and {len(lines) - MOST_TOLD + 1:,} more warnings".replace(",", " ")]

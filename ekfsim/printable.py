@@ -1,6 +1,7 @@
 """Any text that a file or a name may hold, made harmless for a terminal, and for a line."""
 
 import re
+from collections.abc import Sequence
 
 # Controls, bytes of a name that are no text, and signs without a shape that turn or hide what stands around them.
 UNSHOWN = re.compile(
@@ -25,6 +26,29 @@ def in_a_line(text: object) -> str:
     a\x0ab
     """
     return shown(text).replace("\n", "\\x0a")
+
+
+def short(text: str, most: int = 40) -> str:
+    """At most so many characters of a text."""
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def quoted(text: str) -> str:
+    r"""Text in quotes, on one line, and short.
+
+    >>> print(quoted("a\nb"), quoted("a" * 99))
+    'a b' 'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...'
+    """
+    return f"'{shown(short(' '.join(text[:1000].split())))}'"
+
+
+def some(names: Sequence[str], most: int = 12) -> str:
+    """Names with commas between, the first ones of many.
+
+    >>> some(["desk", "shelf"]), some(["a", "b", "c"], most=2)
+    ('desk, shelf', 'a, b, …')
+    """
+    return ", ".join([*(shown(short(name)) for name in names[:most]), *(["…"] if len(names) > most else [])])
 
 
 def _escape(code: int) -> str:

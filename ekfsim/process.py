@@ -4,13 +4,15 @@ import os
 import shutil
 import signal
 import sys
+from collections.abc import Iterable
 from contextlib import suppress
 from types import FrameType
 from typing import Any, NoReturn
 
 import click
 
-from ekfsim.errors import EkfsimError
+from ekfsim.errors import EkfsimError, first_of
+from ekfsim.printable import in_a_line
 from ekfsim.printable import shown as shown
 
 INTERRUPTED = 130
@@ -54,7 +56,7 @@ def _status(program: click.Group) -> int:
             mistake.show()
         return mistake.exit_code
     except EkfsimError as error:
-        say(str(error))
+        say(*str(error).split("\n"))
         return error.status
     except (KeyboardInterrupt, click.Abort, _InterruptedError):
         return INTERRUPTED
@@ -103,11 +105,17 @@ def part_with(words: str = "") -> None:
     _parting.append(words)
 
 
-def say(text: str) -> None:
+def say(*lines: str) -> None:
     """Tell the user something on standard error: a mistake with its place as it is, all else in our name."""
     with suppress(OSError):
-        lines = (line if _placed(line) else f"ekfsim: {line}" for line in shown(text).split("\n"))
-        click.echo("\n".join(lines), err=True)
+        told = map(in_a_line, lines)
+        click.echo("\n".join(line if _placed(line) else f"ekfsim: {line}" for line in told), err=True)
+
+
+def warn(warnings: Iterable[str]) -> None:
+    """Tell the user what is odd, a line each, and of very much only the first."""
+    for line in first_of(warnings):
+        say(line)
 
 
 def width() -> int | None:

@@ -110,7 +110,9 @@ def is_compiled(module):
     return module.endswith(".compiled")
 
 
-@pytest.mark.parametrize("module", [module for module in MODULES if room_of(module) in CORE | {"errors", "version"}])
+@pytest.mark.parametrize(
+    "module", [module for module in MODULES if room_of(module) in CORE | {"errors", "printable", "version"}]
+)
 def test_the_core_needs_numpy_alone(module):
     allowed = {"numpy", "numba"} if is_compiled(module) else {"numpy"}
     assert {name.partition(".")[0] for name in at_module_level(MODULES[module])} & set(HEAVY) <= allowed

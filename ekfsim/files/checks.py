@@ -4,15 +4,16 @@ The checks read the raw tree and skip whatever a model has found wrong, so that 
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
-from ekfsim.errors import Mistake
+from ekfsim.errors import MOST_TOLD, Mistake
 from ekfsim.files import polygons
 from ekfsim.files.commands_file import MAX_COMMANDS, CommandKeys
 from ekfsim.files.marked import Node, Path
-from ekfsim.files.polygons import Points
+from ekfsim.files.polygons import FloorPlan, Points
 from ekfsim.files.telling import at, nearest
+from ekfsim.printable import quoted, short, some
 from ekfsim.world import BOUNDARY, Map
 
 COMMANDS = list(CommandKeys.model_fields)
@@ -60,7 +61,7 @@ def check_world(file: Sound) -> Iterator[Mistake]:
     yield from check_missing(file)
     x, y = file.value("start", "x"), file.value("start", "y")
     if x is not None and y is not None:
-        for wrong in in_the_way(file.value("boundary"), sound_obstacles(file), x, y):
+        for wrong in FloorPlan(file.value("boundary"), sound_obstacles(file)).in_the_way(x, y):
             yield file.mistake(("start",), f"the robot starts at {wrong}", "start it where it can move")
 
 
@@ -102,7 +103,7 @@ def check_names(file: Sound, owner: Path) -> Iterator[Mistake]:
         elif name in seen:
             line = file.root.nearest((*owner, "obstacles", seen[name], "name")).mark[0]
             yield file.mistake(
-                path, f"'{name}' is already the name of the obstacle on line {line}", "choose another name"
+                path, f"{quoted(name)} is already the name of the obstacle on line {line}", "choose another name"
             )
         elif name is not None:
             seen[name] = index
@@ -130,25 +131,17 @@ def check_missing(file: Sound) -> Iterator[Mistake]:
         return
     count = file.count("obstacles")
     names = [file.value("obstacles", index, "name") for index in range(count)]
-    if None in names or ("obstacles",) in file.wrong:
+    known, told = set(names), 0
+    if None in known or ("obstacles",) in file.wrong:
         return
     for index in range(file.count("belief", "missing")):
         path = ("belief", "missing", index)
         name = file.value(*path)
-        if name is not None and name not in names:
-            near = nearest(name, names)
-            right = f"did you mean '{near}'?" if near else f"the obstacles are: {', '.join(names) or 'none'}"
-            yield file.mistake(path, f"no obstacle is named '{name}'", right)
-
-
-def in_the_way(boundary: Points | None, obstacles: Iterable[tuple[str, Points]], x: float, y: float) -> Iterator[str]:
-    """Why a robot cannot stand at a point, as the ends of sentences."""
-    where = f"{polygons.pair([x, y])},"
-    if boundary is not None and not polygons.stands_inside(boundary, x, y):
-        yield f"{where} outside the boundary or on its wall"
-    for name, points in obstacles:
-        if not polygons.is_clear_of(points, x, y):
-            yield f"{where} inside the obstacle '{name}' or on its wall"
+        if name is not None and name not in known:
+            near = nearest(name, names) if told < MOST_TOLD else ""
+            right = f"did you mean {quoted(near)}?" if near else f"the obstacles are: {some(names) or 'none'}"
+            yield file.mistake(path, f"no obstacle is named {quoted(name)}", right)
+            told += 1
 
 
 def check_commands(file: Sound) -> Iterator[Mistake]:
@@ -198,7 +191,10 @@ def angle_warnings(file: Sound) -> Iterator[Mistake]:
         if not isinstance(number, int | float):
             continue
         if abs(number) > 360 and is_angle:
-            wrong, right = f"{node.written} is more than a full turn", "angles are in degrees: 90 is a quarter turn"
+            wrong, right = (
+                f"{short(node.written)} is more than a full turn",
+                "angles are in degrees: 90 is a quarter turn",
+            )
         elif is_radians(number, node.written):
             what = "angles are in degrees" if is_angle else "turn rates are in degrees per second"
             wrong, right = f"{node.written} looks like radians", f"{what}: write {math.degrees(number):.0f}"
@@ -210,9 +206,10 @@ def angle_warnings(file: Sound) -> Iterator[Mistake]:
 def kidnap_warnings(file: Sound, floor_plan: Map) -> Iterator[str]:
     """Kidnaps to where no robot can stand."""
     rings = [(obstacle.name, obstacle.points) for obstacle in floor_plan.obstacles]
+    plan = FloorPlan(floor_plan.boundary, rings)
     for path, node in file.root.walk():
         if path[-1:] == ("kidnap",) and (target := file.value(*path)) is not None:
-            for wrong in in_the_way(floor_plan.boundary, rings, target["x"], target["y"]):
+            for wrong in plan.in_the_way(target["x"], target["y"]):
                 yield str(at(file.file, node.mark, path, f"the robot is carried to {wrong}", "it cannot move there"))
 
 

@@ -56,4 +56,4 @@ def refuse_unread(settings: Iterable[Setting], names: Sequence[str]) -> None:
         wrong = f"no filter here ({', '.join(names)}) reads it"
         lines.append(f"{one.told}: {wrong}; name one that does: --filter {who_reads(key)}")
     if lines:
-        raise UsageError("\n".join(lines))
+        raise UsageError(*lines)

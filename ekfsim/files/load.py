@@ -14,7 +14,7 @@ from ekfsim.files.checks import Sound, angle_warnings, check_commands, check_wor
 from ekfsim.files.commands_file import WAYS, WITH_LANDMARKS, CommandsKeys, RecordingKeys
 from ekfsim.files.fields import aliases
 from ekfsim.files.filter_checks import check_filter_settings, filter_warnings
-from ekfsim.files.marked import Mark, Node, parse
+from ekfsim.files.marked import Mark, Node, parse, without_collection
 from ekfsim.files.marked import Path as Route
 from ekfsim.files.packaged import resolve, source_name
 from ekfsim.files.schema import MODELS, Kind
@@ -235,6 +235,7 @@ class File:
     warnings: list[str] = field(default_factory=list)
 
 
+@without_collection()
 def read(path: Path, shown: str, kind: Kind | None, settings: Sequence[Setting] = ()) -> File:
     """Read a file as one of a kind, or as whatever it is. Raises UsageError where there is no such file."""
     try:

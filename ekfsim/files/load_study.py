@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from ekfsim.errors import InputError, Mistake, Place, UsageError
+from ekfsim.errors import MOST_TOLD, InputError, Mistake, Place, UsageError
 from ekfsim.files.looking import is_file
 from ekfsim.files.marked import Node, field_of, parse
 from ekfsim.files.marked import Path as Route
@@ -17,6 +17,7 @@ from ekfsim.files.source import text_of
 from ekfsim.files.study_file import StudyKeys
 from ekfsim.files.telling import at, tell
 from ekfsim.filters import FILTERS
+from ekfsim.printable import quoted, short
 from ekfsim.systems.document import DocumentReading
 
 SIDES = ("a", "b")  # of a comparison
@@ -171,16 +172,17 @@ def setting_at(root: Node, path: tuple[str | int, ...], key: str, file: str) -> 
 
 def setting_mistakes(root: Node, file: str) -> Iterator[Mistake]:
     """Keys that no file has, keys that are told twice, and values that stand twice, each at its place."""
-    told: dict[str, str] = {}
+    told, faults = dict[str, str](), 0
     for route, values in told_in(root, file):
         key, mark = str(route[-1]), root.nearest(route[:-1]).keys[str(route[-1])]
-        if values and (fault := fault_of(values[0])):
+        if values and (fault := fault_of(values[0], is_told=faults < MOST_TOLD)):
+            faults += 1
             yield at(file, mark, route[:-1], *fault)
         if key in told:
-            yield at(file, mark, route, f"'{key}' is told already by '{told[key]}'", "keep one of them")
+            yield at(file, mark, route, f"{quoted(key)} is told already by '{told[key]}'", "keep one of them")
         if (second := repeated(values)) is not None and second.place is not None:
             mark = second.place.line, second.place.column
-            yield at(file, mark, (*route, values.index(second)), f"{second.value} stands twice", "delete one")
+            yield at(file, mark, (*route, values.index(second)), f"{short(second.value)} stands twice", "delete one")
         told[key] = field_of(route)
 
 
@@ -190,6 +192,8 @@ def side_mistakes(root: Node, file: str) -> Iterator[Mistake]:
         for one in side_of(root, side, file):
             if one.key == FILTER and one.value not in FILTERS:
                 right = f"known: {', '.join(FILTERS)}"
-                yield at(file, root.nearest((side, FILTER)).mark, (side, FILTER), f"'{one.value}' is no filter", right)
+                yield at(
+                    file, root.nearest((side, FILTER)).mark, (side, FILTER), f"{quoted(one.value)} is no filter", right
+                )
             elif one.key != FILTER and (fault := fault_of(one)):
                 yield at(file, root.nearest((side,)).keys[one.key], (side,), *fault)

@@ -35,6 +35,29 @@ def _mode(path: Path) -> int | None:
         return None
 
 
+_taken: dict[tuple[int, int, int], bytes] = {}  # what came out of pipes, by device, number and last change of each
+
+
+def contents(path: Path, most: int) -> bytes:
+    """At most so many bytes and one of a file; of a pipe, which can be read once only, also when asked again.
+
+    Raises OSError where it cannot be read.
+    """
+    found = os.stat(path)
+    if stat.S_ISREG(found.st_mode):
+        with open(path, "rb") as file:
+            return file.read(most + 1)
+    if (taken := _taken.get(_key(found))) is None:
+        with open(path, "rb") as file:
+            taken = file.read(most + 1)
+            _taken[_key(os.fstat(file.fileno()))] = taken
+    return taken
+
+
+def _key(found: os.stat_result) -> tuple[int, int, int]:
+    return found.st_dev, found.st_ino, found.st_mtime_ns
+
+
 @contextmanager
 def read_from(path: str | Path) -> Iterator[None]:
     """Tell in a sentence why something cannot be read. Raises UsageError."""

@@ -4,10 +4,13 @@ PyYAML only cuts the text into events. What they mean is decided here: scalars a
 `no` is text), no tags, no merge keys, no key twice, aliases that cannot explode, nesting that ends.
 """
 
+import gc
 import re
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from functools import lru_cache
+from itertools import islice
 from typing import Any
 
 import yaml
@@ -15,9 +18,13 @@ import yaml
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.source import UNPRINTABLE, character
 from ekfsim.files.syntax import syntax_mistake
+from ekfsim.printable import quoted, short
 
 MAX_VALUES = 1_000_000
 MAX_DEPTH = 64
+LONG = 2_000_000  # characters, which can be as many values
+TOO_MANY = "the file holds more than 1 000 000 values, aliases written out"
+VALUES = (yaml.ScalarEvent, yaml.CollectionStartEvent)
 TOO_DEEP = "maximum nesting depth"
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
@@ -96,7 +103,7 @@ def field_of(path: Sequence[str | int]) -> str:
     >>> field_of(("obstacles", 1, "points"))
     'obstacles[1].points'
     """
-    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path).removeprefix(".")
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{short(part)}" for part in path).removeprefix(".")
 
 
 INTEGER = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
@@ -137,9 +144,17 @@ def parse(text: str, file: str) -> tuple[Node, list[Mistake]]:
 
     Raises InputError where none is left: the text is not YAML, or explodes, or nests without end.
     """
+    root, mistakes = _parsed(text, file)
+    return root, list(mistakes)
+
+
+@lru_cache(maxsize=4)
+def _parsed(text: str, file: str) -> tuple[Node, tuple[Mistake, ...]]:
+    """The same, remembered: a study reads its files for each of its cells. Nobody changes a tree."""
     tree = Tree(file)
     try:
-        tree.grow(text, LOADER)
+        with without_collection():
+            tree.grow(text, LOADER)
     except yaml.YAMLError as error:
         if TOO_DEEP in str(error):  # libyaml's own limit, met before it tells of the level that is too deep here
             tree = Tree(file)
@@ -148,7 +163,19 @@ def parse(text: str, file: str) -> tuple[Node, list[Mistake]]:
         raise InputError([*tree.mistakes, syntax_mistake(error, text, file)]) from None
     if tree.root is None:
         raise InputError([Mistake(Place(file), "", "the file is empty", "see `ekfsim new` for one to start from")])
-    return tree.root, tree.mistakes
+    return tree.root, tuple(tree.mistakes)
+
+
+@contextmanager
+def without_collection() -> Iterator[None]:
+    """No search for cycles while a tree grows, which has none: among a million new values it takes longer than they."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
 
 class Tree:
@@ -163,38 +190,46 @@ class Tree:
 
     def grow(self, text: str, loader: Any) -> None:
         """Grow by the first document of a text. Raises YAMLError where it is none."""
+        if len(text) > LONG:
+            self.count(text, loader)
         for event in yaml.parse(text, Loader=loader):
-            if self.is_second_document(event):
+            if self.root is not None and isinstance(event, yaml.DocumentStartEvent):
+                right = "keep one per file: delete from '---' on"
+                self.refuse(mark_of(event), "a second document begins here", right)
                 break
             self.take(event)
 
-    def is_second_document(self, event: yaml.Event) -> bool:
-        """Whether another document begins, which is a mistake."""
-        if not isinstance(event, yaml.DocumentStartEvent) or self.root is None:
-            return False
-        self.refuse(mark_of(event), "a second document begins here", "keep one per file: delete from '---' on")
-        return True
+    def count(self, text: str, loader: Any) -> None:
+        """Raises InputError where a text holds too many values, sooner than a tree of them would be made."""
+        values = (event for event in yaml.parse(text, Loader=loader) if isinstance(event, VALUES))
+        if (first_too_many := next(islice(values, MAX_VALUES, None), None)) is not None:
+            self.give_up(mark_of(first_too_many), TOO_MANY, "write fewer")
 
     def take(self, event: yaml.Event) -> None:
-        """Grow by one event."""
+        """Grow by one event. A long file has a million: what is rare is seen in a word before it is looked into."""
         if isinstance(event, yaml.ScalarEvent):
-            quoted = not event.implicit[0]
-            node = Node(mark_of(event), event.value if quoted else scalar(event.value), event.value, quoted)
-            self.check_tag(event, node)
-            self.check_characters(node)
-            self.name(event.anchor, node)
+            text, quoted = event.value, not event.implicit[0]
+            node = Node(mark_of(event), text if quoted else scalar(text), text, quoted)
+            if event.tag is not None:
+                self.check_tag(event, node)
+            if quoted:  # text can escape there what no file may hold
+                self.check_characters(node)
+            if event.anchor is not None:
+                self.anchors[event.anchor] = node
             self.attach(node)
-        elif isinstance(event, yaml.AliasEvent):
-            self.attach(self.alias(event))
         elif isinstance(event, yaml.CollectionStartEvent):
             node = Node(mark_of(event), {} if isinstance(event, yaml.MappingStartEvent) else [])
-            self.check_tag(event, node)
+            if event.tag is not None:
+                self.check_tag(event, node)
             self.open.append(Open(node, event.anchor))
             self.check_levels(node)
         elif isinstance(event, yaml.CollectionEndEvent):
             done = self.open.pop()
-            self.name(done.anchor, done.node)
+            if done.anchor is not None:
+                self.anchors[done.anchor] = done.node
             self.attach(done.node)
+        elif isinstance(event, yaml.AliasEvent):
+            self.attach(self.alias(event))
 
     def attach(self, node: Node) -> None:
         """Put a finished value where it belongs: at the top, into a list, or into a mapping as a key or under one."""
@@ -202,21 +237,23 @@ class Tree:
             self.root = node
             return
         above = self.open[-1]
-        above.node.values += node.values
-        if node.levels >= above.node.levels:
-            above.node.levels = 1 + node.levels
-        if above.node.values > MAX_VALUES:
-            self.give_up(node.mark, "the file holds more than 1 000 000 values, aliases written out", "write fewer")
-        if isinstance(above.node.value, list):
-            above.node.value.append(node)
-        elif isinstance(above.node.value, dict):
+        holder = above.node
+        holder.values += node.values
+        if node.levels >= holder.levels:
+            holder.levels = 1 + node.levels
+        if holder.values > MAX_VALUES:
+            self.give_up(node.mark, TOO_MANY, "write fewer")
+        held = holder.value
+        if type(held) is list:
+            held.append(node)
+        elif type(held) is dict:
             if above.key is None:
-                above.key = self.key(above.node, node)
+                above.key = self.key(holder, node)
             else:
                 key, mark = above.key
                 if not above.unusable:
-                    above.node.value[key] = node
-                    above.node.keys[key] = mark
+                    held[key] = node
+                    holder.keys[key] = mark
                 above.key, above.unusable = None, False
 
     def key(self, mapping: Node, node: Node) -> tuple[str, Mark]:
@@ -230,23 +267,20 @@ class Tree:
             self.refuse(node.mark, "merge keys ('<<') are not read", "write the keys out")
         elif node.written in mapping.keys:
             line = mapping.keys[node.written][0]
-            self.refuse(node.mark, f"the key '{node.written}' is given twice, first on line {line}", "delete one")
+            wrong = f"the key {quoted(node.written)} is given twice, first on line {line}"
+            self.refuse(node.mark, wrong, "delete one")
         else:
             above.unusable = node.faulty
         return node.written, node.mark
 
-    def name(self, anchor: str | None, node: Node) -> None:
-        """Remember a value under its anchor (`&name`)."""
-        if anchor is not None:
-            self.anchors[anchor] = node
-
     def alias(self, event: yaml.AliasEvent) -> Node:
         """The value that an alias (`*name`) stands for."""
-        name = event.anchor
+        name, alias = event.anchor, quoted(f"*{event.anchor}")
         if any(above.anchor == name for above in self.open):
-            self.refuse(mark_of(event), f"'*{name}' stands inside the value it refers to", "write the value out")
+            self.refuse(mark_of(event), f"{alias} stands inside the value it refers to", "write the value out")
         elif name not in self.anchors:
-            self.refuse(mark_of(event), f"'*{name}' refers to nothing", f"mark a value above it with '&{name}'")
+            right = f"mark a value above it with {quoted(f'&{name}')}"
+            self.refuse(mark_of(event), f"{alias} refers to nothing", right)
         else:
             self.check_levels(self.anchors[name])
             return self.anchors[name]
@@ -256,7 +290,7 @@ class Tree:
         """Tags (`!!python/…`) are refused, all of them."""
         if event.tag is not None:
             tag = event.tag.replace("tag:yaml.org,2002:", "!!")
-            self.refuse(node.mark, f"the tag '{tag}' is not read", "write the value without it")
+            self.refuse(node.mark, f"the tag {quoted(tag)} is not read", "write the value without it")
             node.faulty = True
 
     def check_characters(self, node: Node) -> None:

@@ -1,12 +1,14 @@
 """What makes points a polygon, and where a robot can stand."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 import shapely
 
 from ekfsim.geometry import Array
+from ekfsim.printable import quoted
 
 Points = Sequence[Sequence[float]] | Array
 Fault = tuple[int | None, str, str]  # the point it is about, what is wrong, what would be right
@@ -34,9 +36,12 @@ def fault_of(points: Sequence[Sequence[float]]) -> Fault | None:
 
 def without_area(corners: Array) -> bool:
     """Whether all points lie on one line, to rounding. corners : (n, 2) m"""
-    hull = shapely.MultiPoint(corners).convex_hull
-    extent = float(np.ptp(corners, axis=0).max())
-    return bool(hull.area <= 1e-12 * extent**2)
+    corners = corners - corners[0]  # far from the origin, products of coordinates have no digit left for an area
+    least = 1e-12 * float(np.ptp(corners, axis=0).max()) ** 2
+    x, y = corners.T
+    if abs(float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))) / 2 > least:
+        return False  # the area that it encloses is at most that of its hull
+    return bool(shapely.MultiPoint(corners).convex_hull.area <= least)
 
 
 def crossing(polygon: shapely.Polygon) -> str:
@@ -50,11 +55,30 @@ def pair(point: Sequence[float]) -> str:
     return f"[{point[0]:.6g}, {point[1]:.6g}]"
 
 
-def stands_inside(points: Points, x: float, y: float) -> bool:
-    """Whether a point lies inside a polygon, and not on its outline."""
-    return bool(shapely.Polygon(points).contains(shapely.Point(x, y)))
+MOST_IN_THE_WAY = 5  # obstacles that are told of one place
 
 
-def is_clear_of(points: Points, x: float, y: float) -> bool:
-    """Whether a point lies outside a polygon, and not on its outline."""
-    return not shapely.Polygon(points).intersects(shapely.Point(x, y))
+class FloorPlan:
+    """Where a robot cannot stand: outside a boundary, inside an obstacle, on the wall of either."""
+
+    def __init__(self, boundary: Points | None, obstacles: Iterable[tuple[str, Points]]) -> None:
+        self._boundary = None if boundary is None else shapely.Polygon(boundary)
+        self._named = list(obstacles)
+        self._tree = shapely.STRtree(_shapes([np.asarray(points, dtype=float) for _, points in self._named]))
+
+    def in_the_way(self, x: float, y: float) -> Iterator[str]:
+        """Why a robot cannot stand at a point, as the ends of sentences."""
+        where, point = f"{pair([x, y])},", shapely.Point(x, y)
+        if self._boundary is not None and not self._boundary.contains(point):
+            yield f"{where} outside the boundary or on its wall"
+        for index in sorted(self._tree.query(point, predicate="intersects").tolist())[:MOST_IN_THE_WAY]:
+            yield f"{where} inside the obstacle {quoted(self._named[index][0])} or on its wall"
+
+
+def _shapes(outlines: list[Array]) -> list[Any]:
+    """The polygons of Shapely, made all at once: one by one they take the longest of all that a file is asked."""
+    if not outlines:
+        return []
+    owners = np.repeat(np.arange(len(outlines)), [len(corners) for corners in outlines])
+    made: Any = shapely.polygons(shapely.linearrings(np.concatenate(outlines), indices=owners))
+    return list(made)

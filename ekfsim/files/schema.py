@@ -1,6 +1,6 @@
 """The JSON Schema of each kind of file: editors complete and check with it, and messages read it."""
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, Literal
 
 from pydantic import BaseModel
@@ -50,6 +50,11 @@ def json_schema(kind: Kind) -> Schema:
 
 def schema_at(kind: Kind, path: tuple[str | int, ...]) -> Schema:
     """What the schema says of one value of a file; {} where it knows nothing."""
+    return _schema_at(kind, tuple(0 if isinstance(part, int) else part for part in path))
+
+
+@lru_cache(maxsize=4096)
+def _schema_at(kind: Kind, path: tuple[str | int, ...]) -> Schema:
     whole = json_schema(kind)
     found = whole
     for part in path:

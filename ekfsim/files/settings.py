@@ -5,9 +5,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ekfsim.errors import InputError, Mistake, Place, UsageError
-from ekfsim.files.marked import Node, Path, field_of, scalar
+from ekfsim.files.marked import Node, Path, Scalar, field_of, scalar
 from ekfsim.files.schema import Kind, keys_at, schema_at
-from ekfsim.files.telling import nearest, quoted
+from ekfsim.files.telling import nearest, quoted, short
+from ekfsim.printable import some
 
 OF_COMMANDS = ("gate", "guard")  # the rest belongs to the world
 OF_FILTERS, FILTER_SETTINGS = "filter", "filterSettings"  # filter.particles=… is a commands file's filterSettings
@@ -70,8 +71,13 @@ def distinct(settings: Iterable[Setting]) -> tuple[Setting, ...]:
 
 def repeated(settings: Sequence[Setting]) -> Setting | None:
     """The first of some settings of one key that gives it a value which another gave before; None where none does."""
-    values = [scalar(one.value) for one in settings]
-    return next((one for n, one in enumerate(settings) if values[n] in values[:n]), None)
+    seen = set[Scalar]()
+    for one in settings:
+        value = scalar(one.value)
+        if value in seen:
+            return one
+        seen.add(value)
+    return None
 
 
 def filters_in(text: str, option: str = "--filter") -> tuple[str, ...]:
@@ -100,18 +106,18 @@ def path_of(one: Setting) -> Path:
     return FILTER_SETTINGS if first == OF_FILTERS else first, *rest
 
 
-def fault_of(one: Setting) -> tuple[str, str] | None:
-    """Why the key of a setting is none, and what would be right; None where a file has it."""
+def fault_of(one: Setting, is_told: bool = True) -> tuple[str, str] | None:
+    """Why the key of a setting is none, and, where it is told, what was meant; None where a file has it."""
     parts, kind = one.key.split("."), kind_of(one)
     path: Path = ()
     for n, part in enumerate(parts):
         known = _known(kind, path)
         if not known:
-            return f"'{field_of(path)}' is one value and holds no '{part}'", f"write {field_of(path)}"
+            return f"'{field_of(path)}' is one value and holds no {quoted(part)}", f"write {field_of(path)}"
         if part not in known:
             if n == 0 and part in keys_at("commands", (FILTER_SETTINGS,)):
                 return f"unknown key {quoted(part)}", f"did you mean '{OF_FILTERS}.{part}'?"
-            near = nearest(part, known)
+            near = nearest(part, known) if is_told else ""
             if not near:
                 return f"unknown key {quoted(part)}", f"known: {', '.join(known)}"
             whole = ".".join([*parts[:n], near, *parts[n + 1 :]])
@@ -142,7 +148,7 @@ def pinned(root: Node, settings: Sequence[Setting]) -> Iterator[str]:
         start = next((start for start in BELIEVED if one.key.startswith(start)), None)
         belief = "" if start is None else BELIEVED[start] + one.key.removeprefix(start)
         if belief and belief not in keys and (held := root.at(tuple(belief.split(".")))) is not None:
-            wrong = f"only the truth changes, the filter goes on believing {held.written}"
+            wrong = f"only the truth changes, the filter goes on believing {short(held.written)}"
             yield f"{one.key}: {wrong}: the world file has '{belief}'; set that as well"
 
 
@@ -193,7 +199,7 @@ def _with_sensor(root: Node, kind: str, one: Setting) -> tuple[Node, int]:
     items = sensors.value if sensors and isinstance(sensors.value, list) else []
     kinds = [key for item in items for key in item.keys]
     if kind not in kinds:
-        raise UsageError(f"{one.told}: the world has no sensor '{kind}'; it has: {', '.join(kinds) or 'none'}")
+        raise UsageError(f"{one.told}: the world has no sensor '{kind}'; it has: {some(kinds) or 'none'}")
     if kinds.count(kind) > 1:
         raise UsageError(f"{one.told}: the world has more than one sensor '{kind}'; write the number into its file")
     return root, kinds.index(kind)
@@ -234,7 +240,7 @@ def refusal(mistakes: Iterable[Mistake], settings: Sequence[Setting]) -> UsageEr
         if first.place is not None:
             field = first.told.removeprefix(f"{first.place}: ")
             placed[Mistake(first.place, field, mistake.wrong, mistake.right)] = None
-    return InputError(list(placed)) if len(placed) == len(lines) else UsageError("\n".join(lines))
+    return InputError(list(placed)) if len(placed) == len(lines) else UsageError(*lines)
 
 
 def remark(warning: Mistake, settings: Sequence[Setting]) -> str:

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from ekfsim.errors import InputError, Mistake, Place, UsageError
-from ekfsim.files.looking import current_folder, read_from
+from ekfsim.files.looking import contents, current_folder, read_from
 
 MAX_BYTES = 10_000_000
 
@@ -42,8 +42,7 @@ def bytes_of(path: Path, shown: str) -> bytes:
     """At most MAX_BYTES + 1 bytes of a file. Raises UsageError where it cannot be read."""
     with read_from(shown):
         try:
-            with open(path, "rb") as file:
-                return file.read(MAX_BYTES + 1)
+            return contents(path, MAX_BYTES)
         except FileNotFoundError:
             if current_folder() is None and not path.is_absolute():
                 raise UsageError(f"{shown}: cannot be read: the current folder was deleted; go to another") from None

@@ -7,6 +7,7 @@ from pydantic_core import PydanticCustomError
 
 from ekfsim.files.commands_file import filter_names
 from ekfsim.files.fields import Name, Seed, Strict, Text
+from ekfsim.printable import quoted
 
 MAX_RUNS = 1_000_000_000
 SWEEP: dict[str, Any] = {"noise.rangeSigmaRatio": [0.005, 0.01, 0.02], "guard": ["warn", "skip"]}
@@ -86,7 +87,9 @@ class StudyKeys(Strict):
         for n, name in enumerate(names or []):
             if name not in filter_names():
                 right = f"known: {', '.join(filter_names())}"
-                raise PydanticCustomError("order", "'{name}' is no filter; {right}", {"name": name, "right": right})
+                raise PydanticCustomError(
+                    "order", "{name} is no filter; {right}", {"name": quoted(name), "right": right}
+                )
             if name in (names or [])[:n]:
-                raise PydanticCustomError("order", "'{name}' stands twice; delete one", {"name": name})
+                raise PydanticCustomError("order", "{name} stands twice; delete one", {"name": quoted(name)})
         return names

@@ -8,9 +8,11 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from ekfsim.errors import Mistake, Place
+from ekfsim.errors import MOST_TOLD, Mistake, Place
 from ekfsim.files.marked import Mark, Node, Path, field_of
 from ekfsim.files.schema import Kind, Schema, keys_at, schema_at
+from ekfsim.printable import quoted as quoted
+from ekfsim.printable import short as short
 
 NOUNS = {
     "number": "a number",
@@ -26,37 +28,46 @@ def tell(error: ValidationError, kind: Kind, root: Node, file: str) -> list[Mist
     """Every mistake that a model found, each at its place.
 
     Nothing more is told of a value that a mistake was told of already, nor of a missing key that was only misspelt.
+    To find what was meant takes time: it is looked for where it will be told.
     """
-    details = details_of(error)
+    details = sorted(details_of(error), key=lambda detail: mark_of(detail, root))
     unknown = [detail["loc"] for detail in details if detail["type"] == "extra_forbidden"]
-    misspelt = {(*path[:-1], meant(str(path[-1]), kind, path[:-1])) for path in unknown}
-    return [
-        tell_one(detail, kind, root, file)
+    misspelt = {(*path[:-1], meant(str(path[-1]), kind, path[:-1])) for path in unknown[:MOST_TOLD]}
+    wrong = [
+        detail
         for detail in details
         if not root.nearest(detail["loc"]).faulty and not (detail["type"] == "missing" and detail["loc"] in misspelt)
     ]
+    return [tell_one(detail, kind, root, file, is_told=n < MOST_TOLD) for n, detail in enumerate(wrong)]
+
+
+def mark_of(detail: ErrorDetails, root: Node) -> Mark:
+    """Where it is told: an unknown key at the key."""
+    *above, last = detail["loc"] or ("",)
+    if detail["type"] == "extra_forbidden":
+        return root.nearest(above).keys[str(last)]
+    return root.nearest(detail["loc"]).mark
 
 
 def details_of(error: ValidationError) -> list[ErrorDetails]:
     """All that a model found, each at the path of the file: a drive's way begins with which of the two kinds it is."""
-    details = error.errors(include_url=False)
+    details = error.errors(include_url=False, include_input=False, include_context=False)
     for detail in details:
         if detail["loc"][:1] == ("drive",):
             detail["loc"] = (*detail["loc"][:1], *detail["loc"][2:])
     return details
 
 
-def tell_one(detail: ErrorDetails, kind: Kind, root: Node, file: str) -> Mistake:
-    """One mistake."""
+def tell_one(detail: ErrorDetails, kind: Kind, root: Node, file: str, is_told: bool = True) -> Mistake:
+    """One mistake; of an unknown key that is only counted, no more than what it is."""
     path: Path = detail["loc"]
-    node, schema = root.nearest(path), schema_at(kind, path)
-    mark = node.mark
+    node, schema, mark = root.nearest(path), schema_at(kind, path), mark_of(detail, root)
     match detail["type"]:
         case "missing":
             wrong, right = "the key is missing", f"write {path[-1]}: {example(schema)}"
         case "extra_forbidden":
-            mark, path = root.nearest(path[:-1]).keys[str(path[-1])], path[:-1]
-            wrong, right = unknown_key(str(detail["loc"][-1]), root.nearest(path), kind, path)
+            key, path = str(path[-1]), path[:-1]
+            wrong, right = unknown_key(key, root.nearest(path), kind, path) if is_told else (f"unknown key {key}", "")
         case "order":
             wrong, _, right = detail["msg"].partition("; ")
         case "literal_error":
@@ -82,8 +93,8 @@ def unknown_key(key: str, mapping: Node, kind: Kind, path: Path) -> tuple[str, s
     schema = schema_at(kind, path)
     what = {"a command": "command", "a sensor": "sensor"}.get(schema.get("title", ""))
     wrong = f"{quoted(key)} is not a {what}" if what else f"unknown key {quoted(key)}"
-    for other in mapping.keys:
-        if key in keys_at(kind, (*path, other)):
+    for other in keys_at(kind, path):
+        if other in mapping.keys and key in keys_at(kind, (*path, other)):
             return wrong, f"indent it further than '{other}' to put it under it"
     if known := meant(key, kind, path):
         name, colon, value = key.partition(":")
@@ -146,7 +157,7 @@ def wrong_kind(node: Node, schema: Schema) -> tuple[str, str]:
     if wanted in ("number", "integer") and isinstance(value, str) and (number := number_in(value)):
         right = f"write {number}"
     if wanted == "string" and node.written:
-        right = f"write it in quotes: '{node.written}'"
+        right = f"write it in quotes: {quoted(node.written)}"
     return f"{what_stands(node)} where {noun(schema)} belongs", right
 
 
@@ -232,16 +243,6 @@ def flow(value: Any) -> str:
 def shown(node: Node) -> str:
     """A scalar as it was written: numbers bare, text in quotes, both short."""
     return quoted(node.written) if isinstance(node.value, str) else short(node.written)
-
-
-def quoted(text: str) -> str:
-    """Text in quotes, on one line, and short."""
-    return f"'{short(' '.join(text.split()))}'"
-
-
-def short(text: str) -> str:
-    """At most 40 characters of a text."""
-    return text if len(text) <= 40 else text[:37] + "..."
 
 
 def nearest(word: str, known: list[str]) -> str:

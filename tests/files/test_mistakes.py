@@ -445,7 +445,7 @@ def test_files_that_cannot_be_read(tmp_path, monkeypatch):
         "no/where.yaml": "no/where.yaml: no such file",
         ".": ".: is a folder; name a file in it",
         "room.yaml/x": "room.yaml/x: cannot be read: Not a directory",
-        "a\0b": "a\0b: cannot be read: embedded null byte",
+        "a\0b": "a\\x00b: cannot be read: embedded null byte",
     }.items():
         for load in (load_world, load_scene, check):
             with pytest.raises(UsageError) as told:

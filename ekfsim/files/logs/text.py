@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ekfsim.errors import UsageError
-from ekfsim.files.looking import read_from
+from ekfsim.files.looking import contents, read_from
 from ekfsim.files.source import mistake, position
 
 MAX_BYTES = 400_000_000
@@ -35,8 +35,7 @@ def lines_of(path: Path) -> Lines:
     shown = str(path)
     with read_from(path):
         try:
-            with open(path, "rb") as file:
-                raw = file.read(MAX_BYTES + 1)
+            raw = contents(path, MAX_BYTES)
         except FileNotFoundError:
             raise UsageError(f"{shown}: no such file") from None
         except IsADirectoryError:

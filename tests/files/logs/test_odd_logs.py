@@ -340,7 +340,7 @@ def test_twenty_mistakes_are_told_and_the_others_counted(log):
     [
         (b"t,vr,vl\n0,1,1\n0.1,\xff,1\n", "3:5: the byte 0xff is not UTF-8; a log is plain text in UTF-8"),
         ("t,vr,vl\n".encode("utf-16"), "1:1: the file is UTF-16, not UTF-8; save it as UTF-8"),
-        (b"t,vr,vl\n0,1,1\n0.1,\x00,1\n0.2,1,1\n", "3:5: vr: '\x00' is not a number; write e.g. 1.5"),
+        (b"t,vr,vl\n0,1,1\n0.1,\x00,1\n0.2,1,1\n", "3:5: vr: '\\x00' is not a number; write e.g. 1.5"),
     ],
 )
 def test_bytes_that_are_no_text_are_refused(log, raw, told):
