@@ -8,11 +8,15 @@ import numpy as np
 from ekfsim.consistency import LOST
 from ekfsim.filters.belief import Refused
 from ekfsim.filters.chi_square import quantile
-from ekfsim.geometry import Array
+from ekfsim.filters.protocol import Filter
+from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap
-from ekfsim.localization import play
+from ekfsim.localization import first_belief, localize, play
 from ekfsim.records import Control, Nees
 from ekfsim.scene import Scene
+from ekfsim.simulation import simulate
+
+UNSEEN = (Refused.NO_WALL, Refused.GUARD)  # nothing was predicted; the pioneer's guard never skips
 
 
 @dataclass(frozen=True)
@@ -37,17 +41,27 @@ class Crowd:
         return self.error[..., 2]
 
     @property
+    def is_lost(self) -> Booleans:
+        """Whether the last NEES of each run lies beyond its χ² quantile : (N,)"""
+        lost: Booleans = self.nees > quantile(LOST, 3)
+        return lost
+
+    @property
     def lost(self) -> float:
-        """The share of runs whose last NEES lies beyond its χ² quantile."""
-        return float(np.mean(self.nees > quantile(LOST, 3)))
+        """The share of such runs."""
+        return float(np.mean(self.is_lost))
 
 
-def crowd_of(scene: Scene, n: int) -> Crowd:
-    """Runs 0 … n − 1 of a scene, simulated."""
+def crowd_of(scene: Scene, n: int, filter: Filter | None = None) -> Crowd:
+    """Runs 0 … n − 1 of a scene, simulated; watched by another filter than the scene's where one is given."""
     layout, reckoned, blind = scene.world.layout, np.zeros(0), 0
     at: dict[float, tuple[Array, Array]] = {}  # the last of each instant
     last: Nees | None = None
-    for step in play(scene, runs=np.arange(n)):
+    runs = np.arange(n)
+    watched = play(scene, runs)
+    if filter is not None:
+        watched = localize(simulate(scene, runs), filter, first_belief(scene, (n,)), scene.guard, layout)
+    for step in watched:
         entry = step.entry
         assert entry.t is not None
         assert entry.truth is not None
@@ -56,7 +70,7 @@ def crowd_of(scene: Scene, n: int) -> Crowd:
         if isinstance(entry.given, Control):
             reckoned = entry.given.motion.f(reckoned, entry.given.u)
         if step.correction is not None:
-            blind += int(np.sum(step.correction.refused == Refused.NO_WALL))
+            blind += int(np.sum(np.isin(step.correction.refused, UNSEEN)))
         estimated, alone = layout.pose(step.posterior.mean), layout.pose(reckoned)
         at[entry.t] = _difference(estimated, entry.truth), _difference(alone, entry.truth)
         last = step.nees

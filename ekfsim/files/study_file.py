@@ -31,7 +31,13 @@ Values = Annotated[list[Value], Field(title="a list of values", min_length=1, ex
 Side = dict[str, Value]
 FilterName = Annotated[
     str,
-    WithJsonSchema({"type": "string", "enum": ["kf", "kf-nominal", "ekf", "iekf", "ukf", "pf"], "examples": ["ekf"]}),
+    WithJsonSchema(
+        {
+            "type": "string",
+            "enum": ["kf", "kf-nominal", "ekf", "iekf", "ukf", "ukf-augmented", "pf"],
+            "examples": ["ekf"],
+        }
+    ),
 ]
 
 

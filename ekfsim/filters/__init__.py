@@ -5,8 +5,8 @@
     algebra.py     inverse, wrapping, refusals           ekf.py     extended: read this one first
     conditioning.py  what a reading leaves of P          iekf.py    iterated, by the search of descent.py
     correcting.py  the end that the updates share        ukf.py     unscented, by the transform of unscented.py
-    chi_square.py  quantiles of χ²                       pf.py      particles
-    tuning.py      numbers that a person may set
+    chi_square.py  quantiles of χ²                       ukf_augmented.py  the same, with noise in its sigma points
+    tuning.py      numbers that a person may set         pf.py      particles
     shadows.py     a counter-example: P without σ_xθ, σ_yθ
                                                          listing.py the EKF that two of the documents' listings are
 
@@ -26,5 +26,14 @@ from ekfsim.filters.nominal import NominalKF
 from ekfsim.filters.pf import PF
 from ekfsim.filters.protocol import Filter
 from ekfsim.filters.ukf import UKF
+from ekfsim.filters.ukf_augmented import AugmentedUKF
 
-FILTERS: dict[str, type[Filter]] = {"kf": KF, "kf-nominal": NominalKF, "ekf": EKF, "iekf": IEKF, "ukf": UKF, "pf": PF}
+FILTERS: dict[str, type[Filter]] = {
+    "kf": KF,
+    "kf-nominal": NominalKF,
+    "ekf": EKF,
+    "iekf": IEKF,
+    "ukf": UKF,
+    "ukf-augmented": AugmentedUKF,
+    "pf": PF,
+}

@@ -6,7 +6,10 @@ from typing import Literal
 RangeVariance = Literal["prediction", "reading"]
 CrossCovariances = Literal["kept", "dropped"]
 MOST_PARTICLES = 1_000_000
-OF_ONE = {"particles": "pf", "alpha": "ukf", "beta": "ukf", "kappa": "ukf", "iterations": "iekf"}  # whose number it is
+UNSCENTED = "ukf", "ukf-augmented"
+OF_SOME = {  # whose number it is
+    "particles": ("pf",), "alpha": UNSCENTED, "beta": UNSCENTED, "kappa": UNSCENTED, "iterations": ("iekf",),
+}  # fmt: skip
 HAS_NO_P = "pf"  # which has nothing to drop from
 
 
@@ -32,6 +35,6 @@ def reads(filter_name: str, number: str) -> bool:
     >>> reads("pf", "particles"), reads("ekf", "particles"), reads("ekf", "range_variance")
     (True, False, True)
     """
-    if number in OF_ONE:
-        return filter_name == OF_ONE[number]
+    if number in OF_SOME:
+        return filter_name in OF_SOME[number]
     return number != "cross_covariances" or filter_name != HAS_NO_P

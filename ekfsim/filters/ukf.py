@@ -29,9 +29,9 @@ _weights = lru_cache(maxsize=64)(weights)
 class UKF:
     """Unscented Kalman filter: Tamás et al., section II.C (document 001); Wan & van der Merwe, 2001, table 7.3.2.
 
-    Noise is added (eqs 21, 24), not drawn into the sigma points. Headings, and readings that are angles, are averaged
-    as turns from where the mean goes, so that a heading may be as uncertain as one likes. As they come, α, β and κ give
-    Julier's points, and no weight is negative.
+    Noise is added (eqs 21, 24); eq. 22 draws it into the sigma points, as ukf_augmented.py does. Headings, and readings
+    that are angles, are averaged as turns from where the mean goes, so that a heading may be as uncertain as one likes.
+    As they come, α, β and κ give Julier's points, and no weight is negative.
     """
 
     remark: ClassVar[str] = ""

@@ -9,10 +9,15 @@ import pytest
 from numerics import jacobian
 
 import ekfsim
-from ekfsim.figures import beams, echo, pioneer, polar, square
+from ekfsim.figures import beams, echo, pioneer, pioneer_filters, polar, square
 from ekfsim.figures.album import Album, filled
 from ekfsim.figures.crowd import crowd_of, over_runs, set_down
+from ekfsim.filters.belief import Gaussian, Refused
+from ekfsim.filters.ekf import EKF
+from ekfsim.filters.ukf import UKF
+from ekfsim.geometry.walls import Walls
 from ekfsim.models.infrared import COLOURS
+from ekfsim.models.laser import Laser
 from ekfsim.models.polar import cartesian, cartesian_jacobian, cartesian_moments
 from ekfsim.records import Log
 from ekfsim.simulation.bench import gaussian, readings
@@ -196,21 +201,35 @@ def test_figure_7_shows_that_odometry_drifts_and_the_filter_does_not(scene, albu
 @pytest.fixture(scope="module")
 def crowds(scene):
     start = set_down(scene, 0.02, 2.0)
-    return {name: crowd_of(replace(start, filter=name), 20) for name in pioneer.NAMES}
+    found = {name: crowd_of(replace(start, filter=name), 20) for name in pioneer_filters.NAMES}
+    return found | {pioneer_filters.CAUTIOUS: crowd_of(start, 20, pioneer_filters.CautiousEKF())}
 
 
-def test_the_lkf_is_lost_after_the_first_corner_and_the_others_are_not(scene, crowds):
+def test_the_lkf_is_lost_after_the_first_corner_unless_it_knows_the_plan(scene, crowds):
     t, turning = square.corners(scene)
     first = crowds["ekf"].t < t[np.argmax(turning)]
     assert t[np.argmax(turning)] == pytest.approx(8.0)
     assert np.sqrt(np.mean(crowds["kf"].position[first] ** 2)) < 0.02
     assert over_runs(crowds["kf"].position)[~first].max() > 1
     assert crowds["kf"].lost == 1
-    for name in ("ekf", "ukf"):
+    for name in crowds.keys() - {"kf"}:
         assert over_runs(crowds[name].position).max() < 0.04
         assert crowds[name].lost == 0
         assert 1 < np.mean(crowds[name].nees) < 6
-    np.testing.assert_array_equal(crowds["kf"].reckoned, crowds["ukf"].reckoned)  # driven and read alike
+        np.testing.assert_array_equal(crowds["kf"].reckoned, crowds[name].reckoned)  # driven and read alike
+    ekf, about_the_plan = (crowds[name].position for name in ("ekf", "kf-nominal"))
+    assert np.sqrt(np.mean(about_the_plan**2)) == pytest.approx(np.sqrt(np.mean(ekf**2)), rel=0.05)
+
+
+def test_the_cautious_ekf_refuses_what_the_ukf_would(scene):
+    """A point of its belief looks past the post; the mean does not."""
+    post = Walls.of({"post": np.array([[5, -0.2], [5.4, -0.2], [5.4, 0.2], [5, 0.2]])})
+    prior, laser = Gaussian(np.zeros(3), np.diag([0.01, 0.01, 0.04])), Laser(post, 0.0, 0.01)
+    for filter, refused in ((EKF(), 0), (pioneer_filters.CautiousEKF(), Refused.GUARD), (UKF(), Refused.NO_WALL)):
+        assert filter.update(prior, laser, np.array([5.0]))[1].refused == refused
+    sure = Gaussian(np.zeros(3), np.diag([1e-4, 1e-4, 1e-6]))
+    told, plain = (f.update(sure, laser, np.array([5.1]))[0] for f in (pioneer_filters.CautiousEKF(), EKF()))
+    np.testing.assert_array_equal(told.mean, plain.mean)
 
 
 def test_a_crowd_is_its_runs(scene, crowds):
@@ -220,21 +239,45 @@ def test_a_crowd_is_its_runs(scene, crowds):
     assert crowds["ekf"].nees[7] == pytest.approx(float(last.nees.value))
 
 
-def test_the_three_filters_are_drawn_and_told(scene, album, crowds):
-    pioneer._draw_filters(scene, album, crowds)
+def test_the_filters_are_drawn_and_told(scene, album, crowds):
+    pioneer_filters._draw_over_time(scene, album, crowds)
     position, heading = album.figures["fig8-filters"].axes
-    assert list(lines(position)) == ["odometry alone", "LKF", "EKF", "UKF"]
-    assert lines(position)["LKF"].get_ydata() == pytest.approx(1e3 * over_runs(crowds["kf"].position))
+    assert list(lines(position)) == ["odometry alone", *pioneer_filters.NAMES.values()]
+    for name, label in pioneer_filters.NAMES.items():
+        assert lines(position)[label].get_ydata() == pytest.approx(1e3 * over_runs(crowds[name].position))
     assert [text.get_text() for text in position.get_legend().get_texts()] == list(lines(position))
     assert heading.get_xlabel() == "time (s)"
 
 
-def test_the_table_tells_every_start_and_filter(scene, album, crowds):
-    pioneer._tabulate(scene, album, [crowds] * 3)
+def test_the_table_tells_every_start_and_filter_with_its_spread(scene, album, crowds):
+    pioneer_filters._tabulate(scene, album, [crowds] * 3)
     table = rows(album, "filters")
-    assert [row["filter"] for row in table] == ["odometry alone", "LKF", "EKF", "UKF"] * 3
-    assert [row["set down to"] for row in table[::4]] == ["2 cm, 2°", "20 cm, 20°", "30 cm, 30°"]
-    assert [row["lost"] for row in table[:4]] == ["–", "100 %", "0 %", "0 %"]
+    names = ["odometry alone", *pioneer_filters.NAMES.values(), "cautious EKF"]
+    assert [row["filter"] for row in table] == names * 3
+    assert [row["set down to"] for row in table[:: len(names)]] == ["2 cm, 2°", "20 cm, 20°", "30 cm, 30°"]
+    assert [row["lost (%)"] for row in table[: len(names)]] == ["–", "100.0", *["0.0"] * 5]
+    assert table[1]["95 % of them"] == "[83.9, 100.0]"  # Wilson's, of 20 of 20
+    for row in table[: len(names)]:
+        low, high = map(float, row["95 % of it"][1:-1].split(", "))
+        assert low < float(row["position RMSE (mm)"]) < high
+    told = " ".join(album.pages[0].split())
+    assert "what is unscented +0.0 [" in told
+    assert told.count("The EKF errs by") == 6
+
+
+def test_an_interval_of_a_ratio_holds_the_right_one(crowds):
+    """Of runs that err twice as much it is 2; of the same runs in another order it holds 1."""
+    crowd = crowds["ekf"]
+    twice, shuffled = replace(crowd, error=2 * crowd.error), replace(crowd, error=crowd.error[:, ::-1])
+    low, ratio, high = pioneer_filters._ratio("ukf", "ekf", {"ekf": crowd, "ukf": twice})
+    assert (low, ratio, high) == pytest.approx((2, 2, 2))
+    low, ratio, high = pioneer_filters._ratio("ukf", "ekf", {"ekf": crowd, "ukf": shuffled})
+    assert ratio == pytest.approx(1)
+    assert 0.8 < low < 1 < high < 1.25
+    assert "the EKF is better, 2.00 times" in pioneer_filters._compared("ekf", "ukf", {"ekf": crowd, "ukf": twice})
+    assert "no difference that 20 runs can tell" in pioneer_filters._compared(
+        "ekf", "ukf", {"ekf": crowd, "ukf": shuffled}
+    )
 
 
 def test_what_eq_33_s_arctangent_makes_of_the_corners_is_told(scene):
