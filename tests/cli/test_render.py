@@ -144,36 +144,36 @@ def test_settings_that_matplotlib_refuses_are_told(place):
 
 EACH = """\
 import os, sys
+import ekfsim
 from ekfsim import cli
+from ekfsim.study import block, plan
+ekfsim.load_scene("short.yaml")
+assert "matplotlib" not in sys.modules
 for line in sys.stdin.read().splitlines():
     if os.fork() == 0:  # matplotlib reads its settings once a process
-        sys.argv = ["ekfsim", *line.split()]
+        backend, settings, *arguments = line.split()
+        os.environ.update(MPLBACKEND=backend.strip("-"), MATPLOTLIBRC=settings)
+        sys.argv = ["ekfsim", *arguments]
         cli.main()
     print(os.waitstatus_to_exitcode(os.wait()[1]), flush=True)
 """
-RENDERING = "render short.yaml -o frames --every 9\n"
-DRAWING = f"""\
-{RENDERING}render short.yaml -o frames.gif --every 9
-study short.yaml --runs 2 -o study
-compare short.yaml --b guard=skip --runs 2 -o sides
-play short.yaml --show files
-figures gnss -o world.yaml
+DRAWING = """\
+nonsense none render short.yaml -o frames --every 9
+module://matplotlib_inline.backend_inline none render short.yaml -o frames.gif --every 9
+- odd render short.yaml -o again --every 9
+nonsense none study short.yaml --runs 2 -o world.yaml
+nonsense none compare short.yaml --b guard=skip --runs 2 -o world.yaml
+nonsense none play short.yaml --show files
+nonsense none figures gnss -o world.yaml
 """
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="a process cannot be doubled here")
-@pytest.mark.parametrize(
-    ("name", "settings", "commands", "ended"),
-    [
-        ("nonsense", "", DRAWING, [0, 0, 0, 0, 0, 2]),  # the last is drawn, if there were a folder to put it in
-        ("module://matplotlib_inline.backend_inline", "", RENDERING, [0]),
-        ("", "backend: nonsense", RENDERING, [0]),
-    ],
-)
-def test_files_are_drawn_whatever_backend_of_windows_the_settings_name(place, name, settings, commands, ended):
-    (place / "settings").mkdir()
-    (place / "settings/matplotlibrc").write_text(settings)
-    drawn = process(keys=commands.encode(), program=EACH, MPLBACKEND=name, MPLCONFIGDIR="settings")
-    assert [int(line) for line in drawn.out.splitlines() if line.isdigit()] == ended
-    assert drawn.err == ("ekfsim: world.yaml: this is a file; name a folder\n" if 2 in ended else "")
-    assert (place / "frames/frame-0000.png").exists()
+def test_files_are_drawn_whatever_backend_of_windows_the_settings_name(place):
+    for name, settings in (("none", ""), ("odd", "backend: nonsense")):
+        (place / name).write_text(settings)
+    drawn = process(keys=DRAWING.encode(), program=EACH)
+    assert [int(line) for line in drawn.out.splitlines() if line.isdigit()] == [0, 0, 0, 2, 2, 0, 2]
+    assert drawn.err == 3 * "ekfsim: world.yaml: this is a file; name a folder\n"  # what is asked when all can be drawn
+    for result in ("frames/frame-0000.png", "frames.gif", "again/frame-0000.png", "out/current.png"):
+        assert (place / result).exists()

@@ -73,7 +73,7 @@ def test_a_study_leaves_a_folder_and_says_what_is_to_be_thought_of_it(place):
 
 
 def test_a_first_look_needs_no_folder(place):
-    arguments = ("study", "short.yaml", "--runs", 1100, "--filter", "ekf,ukf", "--sweep", "gate=0.9,0.99")
+    arguments = ("study", "short.yaml", "--runs", 1100, "--sweep", "gate=0.9,0.99")
     before = left_in(place)
     looked = ekfsim(*arguments, "--workers", 2)
     assert (looked.status, looked.err[:33]) == (0, "ekfsim: nothing of this is kept; ")
