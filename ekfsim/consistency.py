@@ -21,6 +21,7 @@ MANY = 64  # runs from which on they are told apart by rank
 OUTSIDE = 1e-6  # m, rad; a longer part of the error outside the range of P makes the belief impossible
 LOST = 0.999  # NEES beyond this χ² quantile: lost
 BAND = 0.99  # the two-sided band that ΣNIS is held against
+SURPRISING = 0.99  # a single NIS or NEES beyond this χ² quantile is called so; below no quantile is it surprising
 
 
 def error(belief: Belief, truth: Array) -> Array:

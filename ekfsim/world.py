@@ -111,6 +111,13 @@ class World:
         return reading in own or any(reading in instrument.readings for instrument in self.instruments)
 
     @property
+    def perfect_beam(self) -> bool:
+        """Whether the filter is told of a laser without noise while its own place is in doubt."""
+        noise = self.told.noise
+        unsure = bool(self.told.sigma.any()) or noise.odometry_distance > 0 or noise.odometry_angle > 0
+        return self.robot is None and noise.range == 0 and unsure
+
+    @property
     def told_robot(self) -> Robot | None:
         """The robot as the filter is told."""
         return self.told.robot or self.robot

@@ -14,7 +14,7 @@ from ekfsim.files.marked import Node, Path
 from ekfsim.files.polygons import FloorPlan, Points
 from ekfsim.files.telling import at, nearest
 from ekfsim.printable import quoted, short, some
-from ekfsim.world import BOUNDARY, Map
+from ekfsim.world import BOUNDARY, Map, World
 
 COMMANDS = list(CommandKeys.model_fields)
 
@@ -211,6 +211,17 @@ def kidnap_warnings(file: Sound, floor_plan: Map) -> Iterator[str]:
         if path[-1:] == ("kidnap",) and (target := file.value(*path)) is not None:
             for wrong in plan.in_the_way(target["x"], target["y"]):
                 yield str(at(file.file, node.mark, path, f"the robot is carried to {wrong}", "it cannot move there"))
+
+
+def perfect_beam_warnings(file: Sound, world: World) -> Iterator[str]:
+    """A laser that is believed without noise, by a robot that is not sure of its place."""
+    if not world.perfect_beam:
+        return
+    for path in (("belief", "noise", "rangeSigmaRatio"), ("noise", "rangeSigmaRatio")):
+        if (node := file.root.at(path)) is not None:
+            wrong = "a linearised filter takes a beam without noise for certain, and soon claims a place it is not at"
+            yield str(at(file.file, node.mark, path, wrong, "a small ratio, such as 0.001, leaves room for the bend"))
+            return
 
 
 def is_radians(angle: float, written: str) -> bool:

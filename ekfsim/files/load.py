@@ -10,7 +10,14 @@ from pydantic import BaseModel, ValidationError
 
 from ekfsim.errors import InputError, Mistake, UsageError
 from ekfsim.files.building import scene_of, world_of
-from ekfsim.files.checks import Sound, angle_warnings, check_commands, check_world, kidnap_warnings
+from ekfsim.files.checks import (
+    Sound,
+    angle_warnings,
+    check_commands,
+    check_world,
+    kidnap_warnings,
+    perfect_beam_warnings,
+)
 from ekfsim.files.commands_file import WAYS, WITH_LANDMARKS, CommandsKeys, RecordingKeys
 from ekfsim.files.fields import aliases
 from ekfsim.files.filter_checks import check_filter_settings, filter_warnings
@@ -88,6 +95,7 @@ def world_in(file: "File", logged: bool = False) -> Loaded[World]:
     if isinstance(file.keys, WorldKeys) and file.sound is not None and not file.mistakes:
         loaded.value = world_of(file.keys)
         loaded.warnings += system_warnings(file.sound, loaded.value, logged)
+        loaded.warnings += perfect_beam_warnings(file.sound, loaded.value)
     return loaded
 
 

@@ -90,6 +90,7 @@ def _update(step: Step, reading: Reading, scene: Scene) -> dict[str, Any]:
         "nis": _number(c.nis),
         "updated": bool(c.refused == Refused.NOT),
         "refused": Refused(int(c.refused)).word,
+        **({} if c.settled else {"settled": False}),
         **_believed(step, scene),
     }
 
@@ -141,7 +142,11 @@ def _sense(step: Step, angle: float, confidence: float) -> dict[str, Any]:
         "command": {"angle": angle},
         "range": _number(step.entry.given.z[0]),
         **_corrected(step.correction),
-        **_sighted(step.entry.given.sensor, step.sighting, not np.isnan(step.correction.predicted[0])),
+        **_sighted(
+            step.entry.given.sensor,
+            step.sighting,
+            not np.isnan(step.correction.predicted[0]) and not step.correction.tangent,
+        ),
         "prior": _belief(step.prior),
         "posterior": _belief(step.posterior),
         "truth": _numbers(step.entry.truth),
@@ -161,13 +166,14 @@ def _corrected(c: Correction) -> dict[str, Any]:
         "nis": _number(c.nis),
         "updated": bool(c.refused == Refused.NOT),
         "refused": Refused(int(c.refused)).word,
+        **({} if c.settled else {"settled": False}),
     }
 
 
 def _sighted(sensor: Any, sighting: Sighting | None, predicted: bool) -> dict[str, Any]:
     """The wall that is expected to be met; none where the beam meets none, or runs along it."""
     wall = incidence = None
-    if predicted and isinstance(sensor, Laser) and sighting is not None:
+    if predicted and isinstance(sensor, Laser) and sighting is not None and sighting.wall >= 0:
         name, edge = sensor.walls.name(int(sighting.wall))
         wall, incidence = {"name": name, "edge": edge}, _number(sighting.incidence)
     return {

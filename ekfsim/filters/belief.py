@@ -86,3 +86,4 @@ class Correction:
     nis: Array  # νᵀ S⁻¹ ν : (…), refused readings included; nan where S = 0
     refused: Integers  # (…) one of Refused
     settled: Booleans | bool = True  # (…) whether the search of an iterated filter came to rest
+    tangent: bool = False  # `predicted` is that of a tangent drawn elsewhere than at x⁻: it meets nothing of the map

@@ -1,6 +1,6 @@
 """The linear Kalman filter, on models that are linearised once."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 import numpy as np
@@ -55,7 +55,8 @@ class KF:
         h, H, R = sensor.linearize(self.about)
         predicted = wrapped(h + np.matvec(H, self._way(x)), angles(sensor.outputs))
         reading = Linearized(z, predicted, sensor.residual(z, predicted), H, R)
-        return corrected(Gaussian(x, P), reading, skip, self.gate, self.headings)
+        posterior, correction = corrected(Gaussian(x, P), reading, skip, self.gate, self.headings)
+        return posterior, replace(correction, tangent=True)
 
     def _way(self, x: Array) -> Array:
         """x − x₀ : (…, n), headings wrapped"""

@@ -100,7 +100,7 @@ class Watch:
         self._rows: list[tuple[float, ...]] = []
         self._lost_from = np.full(numbers.shape, -1)
         self._nis, self._nis_dof = np.zeros(numbers.shape), np.zeros(numbers.shape, np.int64)
-        self._readings = 0
+        self._readings = self._unsettled = 0
         self._last: Judged | None = None
         self._ended: Step | None = None
 
@@ -110,6 +110,7 @@ class Watch:
         self._nis += np.where(known, correction.nis, 0.0)
         self._nis_dof += known * correction.innovation.shape[-1]
         self._readings += int(np.count_nonzero(known))
+        self._unsettled += int(np.count_nonzero(~np.asarray(correction.settled)))
 
     def judge(self, step: Step) -> None:
         """Hold the beliefs after a step against the truth."""
@@ -164,6 +165,7 @@ class Watch:
             nis_sum=float(np.sum(self._nis)),
             nees_above=int(np.count_nonzero(last.above(high))),
             nees_below=int(np.count_nonzero(last.below(low))),
+            unsettled=self._unsettled,
         )
 
     def _worst(self, last: Judged) -> Extreme:

@@ -45,6 +45,7 @@ class OfRuns(NamedTuple):
     nis_sum: float = 0.0
     nees_above: int = 0  # the last NEES above its two-sided 95 % bounds, or impossible
     nees_below: int = 0
+    unsettled: int = 0  # readings at which the search of an iterated filter was cut off
 
 
 class Extreme(NamedTuple):

@@ -59,7 +59,8 @@ def beam(step: Step, scene: Scene) -> Beam | None:
     if not math.isnan(measured):
         end = pose[:2] + measured * np.array([math.cos(pose[2]), math.sin(pose[2])])
         name = sensor.walls.name(wall)[0] if wall >= 0 else ""
-        solid, ending = landing(scene.world.told.map, end, measured - predicted, name, TOUCHING * measured)
+        gap = measured - predicted if wall >= 0 and not correction.tangent else math.nan
+        solid, ending = landing(scene.world.told.map, end, gap, name, TOUCHING * measured)
     return Beam(
         pose,
         measured,

@@ -10,7 +10,7 @@ from ekfsim.views.long_form import SHORT, Form
 from ekfsim.views.numbers import MANY, instant, matrix, number, point, pose, quantities, quantity, state
 from ekfsim.views.playback import View
 from ekfsim.views.told_beams import doubts, expected_wall
-from ekfsim.views.uncertainty import beside_band, crowd, judged, uncertainty
+from ekfsim.views.uncertainty import crowd, judged, rest, surprise, uncertainty
 
 REFUSED = {
     Refused.NOT: "",
@@ -76,6 +76,7 @@ def revised(view: View, probability: float, form: Form) -> str:
         + _innovation(given.sensor.outputs, c)
         + REFUSED[Refused(int(c.refused))]
         + (_gain(view, given.sensor.outputs, c.K, by("gain")) if used else "")
+        + rest(c)
         + f"Revised state estimate: {state(x, view.layout)}{by('revised')}\n"
         + f"Revised covariance matrix is:{by('revised_covariance')}\n{matrix(P)}"
         + _beside_truth(view, probability)
@@ -101,7 +102,7 @@ def _innovation(outputs: tuple[Quantity, ...], c: Correction) -> str:
     if math.isnan(nis):
         return f"{innovation}; nothing is uncertain, so NIS is undefined and the gain is 0\n"
     dof = len(outputs)
-    beside = beside_band("NIS", nis, dof)
+    beside = surprise("NIS", nis, dof)
     if dof == 1:
         deviation = quantity(Quantity("deviation", outputs[0].unit), math.sqrt(float(c.S[0, 0])))
         return f"{innovation}, its standard {deviation.replace(' =', '')}; NIS is {number(nis)}\n{beside}"

@@ -115,7 +115,8 @@ class LongForm(Form):
 
     def expected(self, step: Step) -> str:
         """The corners of the wall that a beam was expected to meet; nothing of a sensor that sends none."""
-        if step.sighting is None or (wall := int(step.sighting.wall)) < 0:
+        tangent = step.correction is not None and step.correction.tangent
+        if tangent or step.sighting is None or (wall := int(step.sighting.wall)) < 0:
             return ""
         return f"That edge, counted from 1 in the file's order, goes {corners(step, wall)}\n"
 

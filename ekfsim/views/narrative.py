@@ -13,7 +13,7 @@ from ekfsim.views.numbers import fill, fine, number, pose, turn
 from ekfsim.views.opening import opening, plain
 from ekfsim.views.playback import View
 from ekfsim.views.told_beams import doubts, expected_wall
-from ekfsim.views.uncertainty import beside_band, crowd, judged, uncertainty
+from ekfsim.views.uncertainty import crowd, judged, rest, surprise, uncertainty
 
 MATRIX = "[[%.6g %.6g %.6g]\n[%.6g %.6g %.6g]\n[%.6g %.6g %.6g]]\n"
 DERIVATIVES = "  dh/dx = %.6g, dh/dy = %.6g, dh/dth = %.6g\n"
@@ -117,6 +117,7 @@ def _update(view: View, probability: float, form: Form) -> str:
         + _innovation(c, form)
         + REFUSED[Refused(int(c.refused))]
         + (crowd(step.posterior) or f"{fill(GAIN, *c.K[:, 0].tolist())}{by('gain')}\n" if used else "")
+        + rest(c)
         + f"Revised state estimate: (x, y, theta) = {pose(x.tolist())}{by('revised')}\n"
         + f"Revised covariance matrix is:{by('revised_covariance')}\n{_matrix(P)}"
         + uncertainty(view.pose, probability)
@@ -145,7 +146,7 @@ def _innovation(c: Correction, form: Form) -> str:
     if math.isnan(nis):
         return f"{fill(CERTAIN, ν)}{form.by('innovation')}\n"
     told = f"{fill(INNOVATION, ν, math.sqrt(S), nis)}{form.by('innovation')}\n"
-    return told + beside_band("NIS", nis, len(c.innovation))
+    return told + surprise("NIS", nis, len(c.innovation))
 
 
 def _matrix(P: Array) -> str:

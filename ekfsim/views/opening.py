@@ -18,6 +18,11 @@ RATIOS = {  # as the files call them
     "odometry_angle": "odometryAngSigmaRatio",
     "range": "rangeSigmaRatio",
 }
+LINEARISED = ("kf", "kf-nominal", "ekf", "iekf")
+PERFECT = (
+    "The filter is told that the range has no noise: each beam leaves no doubt along its derivatives, which hold for "
+    "the estimate alone, so that it may soon claim certainty where it errs"
+)
 
 
 def opening(scene: Scene) -> str:
@@ -27,6 +32,8 @@ def opening(scene: Scene) -> str:
         told.append(f"The filter {scene.filter}: {remark}")
     if FILTERS[scene.filter] is PF:
         told.append(f"The filter {scene.filter}: {scene.tuning.particles} particles")
+    if scene.world.perfect_beam and scene.filter in LINEARISED:
+        told.append(PERFECT)
     if scene.reading != "corrected":
         told.append(_followed(scene))
     return "".join(f"{line}\n" for line in told)

@@ -147,6 +147,9 @@ def evidence(found: Verdict) -> list[str]:
         share, steps = way.worst.above_999, len(way.steps)
         many = "" if steps == 1 else f", the most of {steps} steps with more than {100 * MOST_LOST:.0f} %"
         told.append(f"{shared(share)} lie beyond the χ² 99.9 % quantile at {when(way.worst)}{many}")
+    if unsettled := found.result.tally.of.unsettled:
+        readings = found.result.tally.of.nis_readings
+        told.append(f"at {unsettled} of {readings} readings the search for the most probable state did not settle")
     return told
 
 

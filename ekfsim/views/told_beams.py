@@ -15,6 +15,9 @@ from ekfsim.views.numbers import number, point, turn
 
 SLIGHT = 0.1  # of the longer part of an offset: a part that is shorter is not told
 UNTURNED = math.radians(0.05)  # nor is a smaller turn
+TANGENT = "It comes from the tangent that the filter keeps, not from a beam: no wall of the map was looked for\n"
+NEGATIVE = "A range cannot be negative: the robot is believed far from where that tangent holds\n"
+MISSED = "The beam of the estimate itself meets no wall of the filter's map; those of some particles do\n"
 
 
 @runtime_checkable
@@ -38,8 +41,11 @@ def doubts(step: Step, guarded: bool) -> str:
             f"({elsewhere(x, sighting.probes[i])}) it would meet {wall_name(step, int(sighting.probe_walls[i]))}"
             for i in others_met(walls, sighting)
         ]
+        c = step.correction
+        other = c is not None and (c.tangent or (sighting.wall < 0 and not np.isnan(c.predicted).any()))
+        expected = "from the estimate it would meet" if other else "expected to meet"
         told += (
-            f"This beam is ambiguous: expected to meet {wall_name(step, int(sighting.wall))}, but from a pose within "
+            f"This beam is ambiguous: {expected} {wall_name(step, int(sighting.wall))}, but from a pose within "
             f"3 sigma {', and from another '.join(others)}\n"
         )
     if sighting.grazing:
@@ -52,8 +58,12 @@ def doubts(step: Step, guarded: bool) -> str:
 
 def expected_wall(step: Step) -> str:
     """Which wall the beam was expected to meet, and at which angle; nothing of a sensor that sends none."""
-    if step.sighting is None:
+    if step.sighting is None or step.correction is None:
         return ""
+    if step.correction.tangent:
+        return TANGENT + (NEGATIVE if np.any(step.correction.predicted < 0) else "")
+    if step.sighting.wall < 0:
+        return MISSED
     incidence = number(math.degrees(float(step.sighting.incidence)))
     wall = wall_name(step, int(step.sighting.wall))
     return f"It was expected to meet {wall}; the angle between beam and wall is {incidence} degrees\n"

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ekfsim.consistency import BAND, inside_cone, inside_ellipse
-from ekfsim.filters.belief import Belief, Gaussian, Particles
-from ekfsim.filters.chi_square import band
+from ekfsim.consistency import SURPRISING, inside_cone, inside_ellipse
+from ekfsim.filters.belief import Belief, Correction, Gaussian, Particles
+from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse
 from ekfsim.records import Nees, Step
 from ekfsim.views.numbers import fine, number, turn
@@ -38,16 +38,22 @@ def _nees(measured: Nees) -> str:
         return "the belief is impossible: the error has a part where the covariance claims certainty\n"
     value, dof = float(measured.value), int(measured.dof)
     told = f"NEES is {number(value)} ({dof} {'degree' if dof == 1 else 'degrees'} of freedom)\n"
-    return told + (beside_band("NEES", value, dof) if dof else "")
+    return told + (surprise("NEES", value, dof) if dof else "")
 
 
-def beside_band(name: str, value: float, dof: int) -> str:
-    """A line of its own for a value outside its two-sided 99 % band, on either side."""
-    low, high = band(BAND, dof)
-    if low <= value <= high:
+def surprise(name: str, value: float, dof: int) -> str:
+    """A line of its own for a single value above its 99 % quantile. A small one is none: 0 is the mode of χ²₁."""
+    limit = quantile(SURPRISING, dof)
+    if value <= limit:
         return ""
-    side = "above" if value > high else "below"
-    return f"{name} lies {side} its two-sided {100 * BAND:.0f} % band, {number(low)} to {number(high)}\n"
+    return f"{name} lies above its {100 * SURPRISING:.0f} % quantile, {number(limit)}\n"
+
+
+def rest(c: Correction) -> str:
+    """A line of its own where the search of an iterated filter was cut off; all others need none."""
+    if c.settled:
+        return ""
+    return "The search for the most probable state did not settle: where it was cut off stands for the end of it\n"
 
 
 def crowd(belief: Belief) -> str:

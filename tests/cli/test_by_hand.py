@@ -234,7 +234,7 @@ class ByHand(Narrative):
         assert agrees([r, σ], lambda z, h, S: [z - h, math.sqrt(S)], z, h, S)
         assert agrees([nis], lambda r, S: r * r / S, r, S)
         self.nis.append(nis)
-        self.beside_band("NIS", nis, 1)
+        self.surprise("NIS", nis, 1)
         K = self.take(r"The Kalman gain is \(x, y, th\) = (\(.*\))   \(eq 11: P J_H' / S\)")
         assert agrees(K, lambda P, H, S: P @ H / S, self.P, H, S)
         x = self.take(r"Revised state estimate: \(x, y, theta\) = (\(.*\))   \(eq 10: x \+ K r\)")
@@ -300,13 +300,13 @@ class ByHand(Narrative):
         assert ("heading inside" in line) == (abs(e[2]) <= 2 * math.sqrt(P[2, 2]))
         self.last_nees, self.last_dof = value, int(dof)
         if dof:
-            self.beside_band("NEES", value, int(dof))
+            self.surprise("NEES", value, int(dof))
 
-    def beside_band(self, name, value, dof):
-        if self.comes(rf"{name} lies .*"):
-            _, *bounds = self.take(rf"{name} lies \w+ its (?:two-sided )?([\d.]+ )%.*, (.*)")
-            assert bounds[:2] == pytest.approx(chi2.ppf([0.005, 0.995], dof)[-len(bounds) :], rel=1e-5)
-            assert not bounds[0] <= value <= bounds[-1]
+    def surprise(self, name, value, dof):
+        limit = chi2.ppf(0.99, dof)
+        assert self.comes(rf"{name} lies .*") == (value > limit)
+        if value > limit:
+            assert self.take(rf"{name} lies above its 99 % quantile, (.*)") == pytest.approx([limit], rel=1e-5)
 
     def count(self):
         x, truth = np.array(self.x, float), np.array(self.truth, float)
@@ -326,12 +326,14 @@ class ByHand(Narrative):
         assert told == pytest.approx([*of(np.hypot(*here[:, :2].T)), *of(np.hypot(*reckoned[:, :2].T))], rel=2e-5)
         told = self.take(r"Heading error: (.*)")
         assert told == pytest.approx([*of(np.degrees(here[:, 2])), *of(np.degrees(reckoned[:, 2]))], rel=2e-5)
-        readings, total, low, high, last, bound, dof = self.take(
-            r"Verdict: consistent: the NIS of (\d+) readings sums to (.*), within the 99 % band (.*); at the last step "
+        readings, total, each, low, high, last, bound, dof = self.take(
+            r"Verdict: consistent: the NIS of (\d+) readings sums to (.*) \((.*) per number read\), "
+            r"within the 99 % band (.*); at the last step "
             r"NEES is (.*), below its 99\.9 % bound (.*)"
         )
         assert readings == self.readings
         assert total == pytest.approx(sum(self.nis), rel=1e-5)
+        assert each == pytest.approx(total / readings, rel=1e-2)
         assert [low, high] == pytest.approx(chi2.ppf([0.005, 0.995], self.readings), rel=1e-5)
         assert (last, dof) == (self.last_nees, self.last_dof)
         assert bound == pytest.approx(chi2.ppf(0.999, self.last_dof), rel=1e-5)

@@ -7,6 +7,7 @@ import pytest
 
 from ekfsim.errors import InputError
 from ekfsim.files.load import check, kind_of, load_scene, load_world, read_scene, read_world
+from ekfsim.files.packaged import resolve
 from ekfsim.records import Kidnap, Move, Repeat, Say, Sense, expanded_length
 from ekfsim.scene import Expect
 from ekfsim.world import Faults, Landmark, Noise
@@ -236,3 +237,15 @@ def test_warnings(tmp_path):
     assert read_scene(scene).warnings == [*of_scene, *of_world]
     assert check(scene).get().world.name == "a"
     assert load_scene(scene).world.start[2] == pytest.approx(np.radians(1))
+
+
+def test_a_beam_without_noise_is_warned_of_where_the_place_is_in_doubt(tmp_path):
+    world = tmp_path / "w.yaml"
+    text = resolve("room", "worlds").read_text().replace("rangeSigmaRatio: 0.02", "rangeSigmaRatio: 0")
+    world.write_text(text)
+    (warning,) = check(world).warnings
+    assert str(warning) == (
+        f"{world}:13:20: noise.rangeSigmaRatio: a linearised filter takes a beam without noise for certain, and soon "
+        "claims a place it is not at; a small ratio, such as 0.001, leaves room for the bend"
+    )
+    assert check(resolve("room", "worlds")).warnings == check(resolve("no-noise", "worlds")).warnings == []
