@@ -128,7 +128,7 @@ def _told_of_divergence(guilty: Step, wrong: Scene, cured: Scene, tour: Scene) -
         f"that it predicts, takes the difference for an error of its pose (NIS {float(correction.nis):.0f}, where "
         f"99.9 % lie below {quantile(LOST, 1):.1f}), moves away from the truth, and shrinks P. From then on NEES stays "
         f"beyond its 99.9 % bound. Of {RUNS} runs {_lost(wrong):.1f} % end lost; with ambiguous beams left out "
-        f"(`--guard skip`) {_lost(cured):.1f} %; of the tour, whose beams keep away from corners, {_lost(tour):.1f} %."
+        f"(`--guard skip`) {_lost(cured):.1f} %; of the tour, whose beams go to broad walls, {_lost(tour):.1f} %."
     )
 
 

@@ -39,7 +39,7 @@ class Beam:
     ambiguous: bool
     grazing: float | None  # rad between beam and wall, where that is little
     probes: tuple[Probe, ...]
-    doubt: str  # where the first of them starts and what it meets: "from 0.3 m to the left it would meet desk, edge 3"
+    doubt: str  # where the first of them starts and what it meets: "from 0.3 m to the left it would meet …"
     solid: bool  # whether the measured end lies in, on or behind a wall rather than in the air before it
     ending: str  # the same in words: "in the air, 4 cm short of desk"
     reaching: bool = True  # whether the sensor meets a wall however far; an ultrasonic one does not
@@ -104,12 +104,16 @@ def astray(sensor: BeamSensor, sighting: Sighting) -> Iterator[Probe]:
 def doubt(sensor: BeamSensor, sighting: Sighting, x: Array) -> str:
     """Why a beam from x (3,) is ambiguous: a pose that disagrees, and what the beam would meet from there."""
     i = next(others_met(sensor.walls, sighting))
-    met = "no wall"
-    if (wall := int(sighting.probe_walls[i])) >= 0:
-        name, edge = sensor.walls.name(wall)
-        met = f"{called(name)}, edge {edge + 1}"
     place = elsewhere(x, sighting.probes[i]).replace(" degrees", "°")
-    return f"from {place} it would meet {met}"
+    met, expected = (_edge_of(sensor, int(wall)) for wall in (sighting.probe_walls[i], sighting.wall))
+    return f"from {place} it would meet {met}, not {expected}"
+
+
+def _edge_of(sensor: BeamSensor, wall: int) -> str:
+    if wall < 0:
+        return "no wall"
+    name, edge = sensor.walls.name(wall)
+    return f"{called(name)}, edge {edge + 1}"
 
 
 def called(name: str) -> str:

@@ -50,9 +50,8 @@ def _numbers(scene: Scene) -> Iterator[str]:
     if world.robot is None:
         yield from _both("The noise ratios", world.noise, world.told.noise, simulated)
     else:
-        whose = "" if simulated else ", as the filter is told them"
-        yield f"Numbers of robot and sensors, in m, s, rad and V{whose}"
-        yield from _both(f"The robot, a {world.system}", world.robot, world.told_robot, simulated)
+        yield "The numbers of robot and sensors are in m, s, rad and V"
+        yield from _both(f"The robot ({world.system})", world.robot, world.told_robot, simulated)
         for true, told in zip(world.instruments, world.told_instruments, strict=True):
             yield from _both(f"Sensor {true.name}", true, told, simulated)
     if simulated:
@@ -64,11 +63,11 @@ def _numbers(scene: Scene) -> Iterator[str]:
 
 def _both(what: str, true: Any, told: Any, known: bool) -> Iterator[str]:
     """Numbers of a record as they are, and those of them that the filter is told otherwise."""
-    if not known:
-        yield f"{what}: {_listed(_values(told))}"
-        return
-    yield f"{what}: {_listed(_values(true))}"
-    if other := {name: value for name, value in _values(told).items() if value != _values(true).get(name)}:
+    other = _values(told)
+    if known:
+        yield f"{what}: {_listed(_values(true))}"
+        other = {name: value for name, value in other.items() if value != _values(true).get(name)}
+    if other:
         yield f"{what}, as the filter is told: {_listed(other)}"
 
 

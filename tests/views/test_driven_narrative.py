@@ -223,11 +223,12 @@ def test_the_last_of_many_inputs_is_told_with_what_it_found():
 def test_the_head_tells_the_numbers_of_robot_and_sensors_and_what_the_filter_is_told_otherwise():
     mower = load_scene("mower")
     first = narrate(next(views(play(mower))), mower)
-    assert "\nThe robot, a mower: rate=100, width=" in first
+    assert "\nThe robot (mower): rate=100, width=" in first
     assert "\nSensor markers: rate=0.5, height=0.226, azimuth_sigma=0.048" in first
     told = replace(mower.world.told, robot=replace(mower.world.robot, width=1.5))
     wrong = replace(mower, world=replace(mower.world, told=told))
-    assert "\nThe robot, a mower, as the filter is told: width=1.5\n" in narrate(next(views(play(wrong))), wrong)
+    assert "\nThe robot (mower), as the filter is told: width=1.5\n" in narrate(next(views(play(wrong))), wrong)
     recorded = narrate(next(views(play(recording()))), recording())
-    assert "sensors, in m, s, rad and V, as the filter is told them\n" in recorded
+    assert "\nThe robot (mower), as the filter is told: rate=100, " in recorded
+    assert "\nThe robot (mower): " not in recorded
     assert "starts at" not in recorded  # no one knows where
