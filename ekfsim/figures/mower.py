@@ -8,7 +8,7 @@ import numpy as np
 from ekfsim.figures.album import Album
 from ekfsim.figures.mower_pictures import blind_stretches, close_up, errors, markers_and_trace, paths
 from ekfsim.figures.mower_runs import ALONE, RUNS, Outcome, Way, as_shaken_as_told, outcomes
-from ekfsim.figures.mower_tables import readings_of_log, readings_of_runs, table_1
+from ekfsim.figures.mower_tables import differences, readings_of_log, readings_of_runs, table_1
 from ekfsim.figures.mower_told import as_told_by, with_angles_of
 from ekfsim.figures.track import Track
 from ekfsim.geometry import Array
@@ -31,6 +31,7 @@ def draw_mower(scene: Scene, album: Album) -> None:
     markers_and_trace(real, blind, album)
     errors(real, blind, album)
     close_up(scene, ideal, blind, album)
+    differences(entries, album)
     if scene.log is None:
         _tables_of_runs(scene, album)
     else:

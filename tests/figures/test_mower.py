@@ -13,7 +13,7 @@ from ekfsim.figures.album import Album
 from ekfsim.figures.mower import WAYS, as_read, draw_mower, filtered, with_ideal_angles
 from ekfsim.figures.mower_pictures import blind_stretches
 from ekfsim.figures.mower_runs import ALONE, Outcome, Way, as_shaken_as_told, outcomes
-from ekfsim.figures.mower_tables import costs
+from ekfsim.figures.mower_tables import costs, differences
 from ekfsim.files.load import read_scene
 from ekfsim.files.packaged import packaged
 from ekfsim.filters.belief import Gaussian
@@ -83,7 +83,11 @@ def line(axes, label):
 
 def test_every_figure_and_table_is_there(album):
     assert list(album.drawn) == ["fig4-paths", "fig5-markers-and-trace", "fig6-errors", "fig7-close-up"]
-    assert sorted(path.name for path in album.folder.iterdir()) == ["readings.csv", "table1-errors.csv"]
+    assert sorted(path.name for path in album.folder.iterdir()) == [
+        "differences.csv",
+        "readings.csv",
+        "table1-errors.csv",
+    ]
     assert all(len(page) > 150 for page in album.pages)
 
 
@@ -220,6 +224,21 @@ def test_ideal_angles_are_those_of_the_truth(entries):
         if isinstance(entry.given, Reading):
             assert_allclose(entry.given.z, entry.given.sensor.h(entry.truth), rtol=0, atol=0)
             assert_allclose(entry.given.sensor.linearize(entry.truth)[2], np.eye(2) * 1e-12)
+
+
+def test_R_is_found_in_the_differences_and_a_bias_with_it(entries, album):
+    (_, *azimuth), (_, *elevation) = rows(album, "differences")
+    assert float(azimuth[1]) == pytest.approx(2.75, rel=0.1)
+    assert float(elevation[1]) == pytest.approx(0.344, rel=0.1)
+    assert (azimuth[2], elevation[2]) == ("2.750", "0.344")
+    assert abs(float(azimuth[0])) < 0.4
+    shifted = [
+        replace(entry, given=replace(entry.given, z=entry.given.z + np.radians([0, 2.0])))
+        for entry in entries
+        if isinstance(entry.given, Reading)
+    ]
+    differences(shifted, album)
+    assert float(rows(album, "differences")[1][1]) == pytest.approx(float(elevation[0]) + 2, abs=2e-3)
 
 
 def test_a_log_is_read_with_the_derivatives_that_are_asked_for(entries):
