@@ -190,7 +190,10 @@ def test_escape_alone_does_nothing_and_takes_no_key_away(terminal: Terminal, mon
 
 
 @pytest.mark.parametrize("key", ["\x1b[C", "\x1bOC", "\x1b[6~", "\x1b[1;5C"])
-def test_the_bytes_of_a_key_may_come_one_by_one(terminal: Terminal, key: str) -> None:
+def test_the_bytes_of_a_key_may_come_one_by_one(terminal: Terminal, key: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    for delay in ("ALONE", "PATIENCE"):
+        monkeypatch.setattr(keyboard, delay, 5.0)  # however busy the machine is
+
     def press_slowly() -> None:
         for byte in key:
             terminal.press(byte)
