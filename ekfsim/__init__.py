@@ -10,10 +10,11 @@ A notebook needs no more than this module:
 ==>The robot moved: distance=3, angle=90
 
 and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes. `dataclasses.replace(scene, filter="ukf")`
-is the same scene for another of FILTERS; seed, gate, guard and the rest are fields of Scene, too. One level deeper, the
-two halves of `play`: `ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter,
-belief)` the Steps (what a filter made of them); for a filter of your own, see `ekfsim.filters.protocol`. Where only
-the beliefs matter, `ekfsim.stretch(belief, motion, U)` predicts thousands of inputs of planar odometry at once.
+is the same scene for another of FILTERS; seed, gate, guard and the rest are fields of Scene, too, and so is
+`tuning=ekfsim.Tuning(particles=20_000)`, the numbers that a filter alone has. One level deeper, the two halves of
+`play`: `ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter, belief)` the Steps
+(what a filter made of them); for a filter of your own, see `ekfsim.filters.protocol`. Where only the beliefs matter,
+`ekfsim.stretch(belief, motion, U)` predicts thousands of inputs of planar odometry at once.
 
 Notation, letter for letter as in the code (Bar-Shalom, Särkkä, Barfoot; Thrun's book swaps Q and R):
 
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
     from ekfsim.filters.belief import Gaussian as Gaussian
     from ekfsim.filters.ekf import EKF as EKF
     from ekfsim.filters.stretch import stretch as stretch
+    from ekfsim.filters.tuning import Tuning as Tuning
     from ekfsim.geometry.ellipse import ellipse as ellipse
     from ekfsim.localization import first_belief as first_belief
     from ekfsim.localization import localize as localize
@@ -81,6 +83,7 @@ _HOMES = {
     "filters.belief": ("Gaussian",),
     "filters.ekf": ("EKF",),
     "filters.stretch": ("stretch",),
+    "filters.tuning": ("Tuning",),
     "geometry.ellipse": ("ellipse",),
     "localization": ("first_belief", "localize", "play"),
     "models.laser": ("Laser",),

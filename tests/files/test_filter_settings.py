@@ -84,8 +84,8 @@ def test_as_it_comes_every_filter_is_its_own_default():
         ("ekf", "filter.rangeVariance=raeding",
          "--set filter.rangeVariance=raeding: 'raeding' is not known here; did you mean 'reading'?"),
         ("pf", "filter.crossCovariances=dropped",
-         "--set filter.crossCovariances=dropped: no filter here (pf) reads it; name one that does: "
-         "--filter kf or kf-nominal or ekf or iekf or ukf"),
+         "--set filter.crossCovariances=dropped: no filter here (pf) reads it; name one that does: --filter "
+         + " or ".join(name for name in FILTERS if name != "pf")),
     ],
 )  # fmt: skip
 def test_a_wrong_setting_is_told_in_a_line(filters, settings, message):
