@@ -91,7 +91,7 @@ def _expected(view: View, outputs: tuple[Quantity, ...], c: Correction, form: Fo
         f"The predicted reading was {quantities(outputs, c.predicted, directions=True)}{form.by('predicted')}\n"
         f"{expected_wall(view.step)}{form.expected(view.step)}"
         f"The derivatives are ({rows}):{form.by('derivatives')}\n"
-        f"{matrix(c.H)}{form.noise(view.step, c)}"
+        f"{matrix(c.H)}{form.noise(c)}"
     )
 
 

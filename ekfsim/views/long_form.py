@@ -8,8 +8,7 @@ import numpy as np
 from ekfsim.filters.belief import Correction, posed
 from ekfsim.geometry import Array
 from ekfsim.models.laser import REACH
-from ekfsim.models.laser_by_reading import LaserByReading
-from ekfsim.records import Control, Reading, Step
+from ekfsim.records import Control, Step
 from ekfsim.scene import Scene
 from ekfsim.views.numbers import fine, matrix, number, pose, state
 from ekfsim.views.origins import Origins, named, origins
@@ -50,7 +49,7 @@ class Form:
         """The corners of the wall that a beam was expected to meet; nothing of a sensor that sends none."""
         return ""
 
-    def noise(self, step: Step, c: Correction) -> str:
+    def noise(self, c: Correction) -> str:
         """R and S of a reading."""
         return ""
 
@@ -120,15 +119,12 @@ class LongForm(Form):
             return ""
         return f"That edge, counted from 1 in the file's order, goes {corners(step, wall)}\n"
 
-    def noise(self, step: Step, c: Correction) -> str:
+    def noise(self, c: Correction) -> str:
         """R and S of a reading."""
-        given = step.entry.given
-        assert isinstance(given, Reading)
         if not self.classroom:
             return self._matrix("R", "", c.R) + self._matrix("S", self.origins.S, c.S)
-        of = "range" if isinstance(given.sensor, LaserByReading) else "predicted range"
         return (
-            f"C_v is {number(float(c.R[0, 0]))}   ((rangeSigmaRatio * {of})^2)\n"
+            f"C_v is {number(float(c.R[0, 0]))}{self.by('range_noise')}\n"
             f"S is {number(float(c.S[0, 0]))}{self.by('S')}\n"
         )
 

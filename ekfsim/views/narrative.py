@@ -135,7 +135,7 @@ def _expected(step: Step, c: Correction, form: Form) -> str:
         + form.expected(step)
         + f"The derivatives are:{form.by('derivatives')}\n"
         + fill(DERIVATIVES, *c.H[0].tolist())
-        + form.noise(step, c)
+        + form.noise(c)
     )
 
 

@@ -10,6 +10,7 @@ from ekfsim.filters.kf import KF
 from ekfsim.filters.nominal import NominalKF
 from ekfsim.filters.pf import PF
 from ekfsim.filters.ukf import UKF
+from ekfsim.filters.ukf_augmented import AugmentedUKF
 from ekfsim.localization import by_listing
 from ekfsim.scene import Scene
 
@@ -26,6 +27,7 @@ class Origins:
     predicted: str = "eq 8: h(x)"
     derivatives: str = "eq 11: H"
     innovation: str = "eq 9: r = z - h"
+    range_noise: str = "(rangeSigmaRatio * predicted range)^2"  # C_v, in the classroom
     S: str = "eq 11: H P H' + R"
     gain: str = "eq 11: P H' S^-1"
     revised: str = "eq 10: x + K r"
@@ -40,8 +42,22 @@ def _tangents(at: str) -> Origins:
         jacobians=f"at x0, {at}",
         predicted=f"h(x0) + H (x - x0), x0 {at}",
         derivatives="H at x0",
+        range_noise="(rangeSigmaRatio * range from x0)^2",
     )
 
+
+SIGMA_POINTS = Origins(
+    state="the mean of the sigma points, moved",
+    covariance="the spread of the sigma points, moved, + G M G' + Q",
+    jacobians="at the state before",
+    predicted="the mean of the sigma points' readings",
+    derivatives="what stands for them: P_zx P^-1 of the sigma points",
+    range_noise="(rangeSigmaRatio * range from the state before)^2",
+    S="the spread of the sigma points' readings + R",
+    gain="P_xz S^-1 of the sigma points",
+    revised_covariance="P - K S K'",
+    linear=False,
+)
 
 BY_FILTER: dict[type[protocol.Filter], Origins] = {
     EKF: Origins(),
@@ -53,16 +69,12 @@ BY_FILTER: dict[type[protocol.Filter], Origins] = {
         gain="P H' (H P H' + R)^-1 with H where its iterations ended",
         revised="eq 10: x + K r, iterated",
     ),
-    UKF: Origins(
-        state="the mean of the sigma points, moved",
-        covariance="the spread of the sigma points, moved, + G M G' + Q",
-        jacobians="at the state before",
-        predicted="the mean of the sigma points' readings",
-        derivatives="what stands for them: P_zx P^-1 of the sigma points",
-        S="the spread of the sigma points' readings + R",
-        gain="P_xz S^-1 of the sigma points",
-        revised_covariance="P - K S K'",
-        linear=False,
+    UKF: SIGMA_POINTS,
+    AugmentedUKF: replace(
+        SIGMA_POINTS,
+        covariance="the spread of the sigma points, which hold the noise of M and Q, moved",
+        jacobians="",
+        S="the spread of the sigma points' readings, which hold the noise of R",
     ),
     PF: Origins(
         state="the mean of the particles, each moved with a noise of its own",
@@ -70,6 +82,7 @@ BY_FILTER: dict[type[protocol.Filter], Origins] = {
         jacobians="",
         predicted="the mean of the particles' readings",
         derivatives="what stands for them: P_zx P^-1 of the particles",
+        range_noise="the mean of each particle's (rangeSigmaRatio * range)^2",
         S="the spread of the particles' readings + R",
         revised="the mean of the particles",
         revised_covariance="the spread of the particles",
@@ -91,11 +104,12 @@ def origins(scene: Scene) -> Origins:
     if by_listing(scene):
         before = "where the robot stood before the last motion"
         own = replace(own, predicted=f"h(x), x {before}", derivatives=f"H {before}")
+    if scene.tuning.range_variance == "reading":
+        own = replace(own, range_noise="(rangeSigmaRatio * range)^2")
     if scene.tuning.cross_covariances == "dropped":
         dropped = "; then sigma_xtheta and sigma_ytheta are set to 0"
-        own = replace(
-            own, covariance=own.covariance + dropped, revised_covariance=own.revised_covariance + dropped
-        )  # fmt: skip
+        P, revised = own.covariance + dropped, own.revised_covariance + dropped
+        own = replace(own, covariance=P, revised_covariance=revised)
     return own
 
 

@@ -8,6 +8,7 @@ from scenes import DESK, NOISE, ROOM, rich, scene, told, unbounded
 
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Correction, Gaussian, Prediction, Refused
+from ekfsim.filters.tuning import Tuning
 from ekfsim.localization import play
 from ekfsim.models.laser import Laser, Sighting
 from ekfsim.models.move_turn import MoveTurn
@@ -15,6 +16,7 @@ from ekfsim.provenance import VERSION
 from ekfsim.records import Control, Entry, Kidnap, Move, Nees, Reading, Say, Sense, Step
 from ekfsim.views.narrative import narrate
 from ekfsim.views.numbers import heading
+from ekfsim.views.origins import BY_FILTER
 from ekfsim.views.playback import View, views
 from ekfsim.world import Noise
 
@@ -333,15 +335,39 @@ def test_the_long_form_has_the_assignments_names_and_numbers():
 def test_no_filter_is_given_the_equations_of_another(filter):
     made = replace(rich(), filter=filter)
     text = "".join(narrate(view, made, explain=True) for view in views(play(made)))
-    tangents, own = filter in ("kf", "kf-nominal"), {"ukf": "sigma points", "pf": "the mean of the particles"}
-    assert ("J_x P J_x' is:" in text) == (tangents or filter in ("ekf", "iekf"))
-    assert ("(eq 4: f(x, u))" in text) == ("(eq 8: h(x))" in text) == (filter in ("ekf", "iekf"))
-    assert ("(eq 10: x + K r)" in text) == (tangents or filter in ("ekf", "ukf"))
-    assert ("(eq 12: (I - K J_H) P)" in text) == (tangents or filter in ("ekf", "iekf"))
+    tangents, at_estimate = filter in ("kf", "kf-nominal"), filter in ("ekf", "iekf")
+    assert FILTERS[filter] in BY_FILTER
+    assert ("J_x P J_x' is:" in text) == ("(eq 12: (I - K J_H) P)" in text) == (tangents or at_estimate)
+    assert ("(eq 4: f(x, u))" in text) == ("(eq 8: h(x))" in text) == at_estimate
+    assert ("(eq 10: x + K r)" in text) == (filter not in ("iekf", "pf"))
+    assert ("J_u P_u J_u' is:" in text) == (filter not in ("pf", "ukf-augmented"))
     assert ("x0 the first state estimate" in text) == (filter == "kf")
     assert ("x0 on the nominal trajectory" in text) == (filter == "kf-nominal")
-    for name, words in own.items():
-        assert (words in text) == (filter == name)
+    assert ("sigma points" in text) == filter.startswith("ukf")
+    assert ("which hold the noise" in text) == (filter == "ukf-augmented")
+    assert ("the mean of the particles" in text) == (filter == "pf")
+
+
+def test_the_noise_of_a_range_is_told_as_each_filter_has_it():
+    sure = scene(Sense(0.0), sigma=(0.3, 0.3, 0.1), start=(2.0, 2.0, 0.3))
+    for name, of in (("ekf", lambda view: view.step.correction.predicted[0]),
+                     ("kf", lambda view: view.step.entry.given.sensor.h(np.array([2.0, 2.0, 0.3]))[0]),
+                     ("ukf", lambda view: view.step.entry.given.sensor.h(view.step.prior.mean)[0])):  # fmt: skip
+        made = replace(sure, filter=name)
+        view = list(views(play(made)))[-1]
+        told = re.search(r"\nC_v is (\S+)   \((.*)\)\n", narrate(view, made, explain=True))
+        assert float(told[1]) == pytest.approx((NOISE.range * of(view)) ** 2, rel=1e-5)
+        assert told[2].startswith("(rangeSigmaRatio * ")
+    assert "(rangeSigmaRatio * range from the state before)^2" in told[2]
+
+
+def test_counterexamples_are_told_as_what_they_are():
+    made = replace(scene(Move(1.0, 0.5), Sense(0.0), sigma=(0.3, 0.3, 0.1)), tuning=Tuning(
+        range_variance="reading", cross_covariances="dropped"))  # fmt: skip
+    text = "".join(narrate(view, made, explain=True) for view in views(play(made)))
+    assert "((rangeSigmaRatio * range)^2)\n" in text
+    assert "(eq 7: J_x P J_x' + J_u P_u J_u'; then sigma_xtheta and sigma_ytheta are set to 0)\n" in text
+    assert "(eq 12: (I - K J_H) P; then sigma_xtheta and sigma_ytheta are set to 0)\n" in text
 
 
 def test_a_pose_that_was_drawn_back_is_told_so():
