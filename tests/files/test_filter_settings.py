@@ -1,6 +1,7 @@
 """Numbers of a filter's own: in a commands file, by --set filter.NAME=VALUE, by --particles."""
 
 from dataclasses import asdict
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,11 +15,13 @@ from ekfsim.filters import FILTERS
 from ekfsim.filters.shadows import ShadowsAlone
 from ekfsim.filters.tuning import UNTUNED
 from ekfsim.localization import filter_of, play
+from ekfsim.records import Reading
 from ekfsim.study.comparison import Comparison, with_sides
 from ekfsim.study.plan import Plan
 from ekfsim.study.results import Result
 from ekfsim.views.study_words import played
 
+PYLON = Path(__file__).resolve().parents[2] / "../shared/data/pylon/2020_2_26__17_21_59_filtered.csv"
 OWN = [  # what is written, the filter, its field and the number there
     ("particles: 70", "pf", "count", 70),
     ("alpha: 0.5", "ukf", "alpha", 0.5),
@@ -164,6 +167,15 @@ def test_the_beliefs_of_many_particles_are_of_so_many():
     steps = play(scene)
     next(steps)
     assert next(step for step in steps if step.prediction is not None).posterior.states.shape == (7, 3)
+
+
+@pytest.mark.skipif(not PYLON.is_file(), reason="the recorded logs are not here")
+def test_a_recorded_log_is_told_another_sigma_and_other_particles():
+    told = ("sensors.pylon.sigma=0.022", "filter.particles=2000")
+    scene = scene_of("pylon_log", filter_name="pf", log=str(PYLON), settings=told)
+    sensors = {entry.given.sensor for entry in scene.log.entries if isinstance(entry.given, Reading)}
+    assert [(sensor.sigma_x, sensor.sigma_y) for sensor in sensors] == [(0.022, 0.022)]
+    assert filter_of(scene).count == 2000
 
 
 def test_dropping_is_around_whatever_filter_there_is():
