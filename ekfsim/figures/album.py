@@ -14,6 +14,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ekfsim.version import VERSION
 from ekfsim.views.lettering import drawable
+from ekfsim.views.map_axes import in_metres
 
 PATTERNS = ("*.png", "*.svg", "*.pdf", "*.csv", "captions.md")  # what an album consists of
 BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = "#0072B2", "#56B4E9", "#009E73", "#D55E00", "#CC79A7", "#E69F00"
@@ -106,4 +107,6 @@ def labelled(axes: Axes, x: str, y: str) -> Axes:
 def square(axes: Axes) -> Axes:
     """Axes of a map: metres alike in both directions."""
     axes.set_aspect("equal", adjustable="datalim")
-    return labelled(axes, "x (m)", "y (m)")
+    labelled(axes, "x (m)", "y (m)")
+    in_metres(axes)
+    return axes

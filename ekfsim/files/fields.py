@@ -8,6 +8,7 @@ from pydantic_core import PydanticCustomError
 
 from ekfsim.seeds import MOST_SEED, REPEATS
 
+FARTHEST = 1e8  # m, of coordinates: every grid of a map lies inside, and a double still tells 15 nm apart there
 FAR = 1e6  # m, degrees, or times: beyond it a millimetre is lost in rounding, and squares in covariances after it
 
 
@@ -46,6 +47,7 @@ def aliases(model: type[BaseModel]) -> dict[str, str]:
     return {name: field.alias or name for name, field in model.model_fields.items()}
 
 
+Coordinate = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST, examples=[1.5])]
 Metres = Annotated[float, Field(ge=-FAR, le=FAR, examples=[1.5])]
 Degrees = Annotated[float, Field(ge=-FAR, le=FAR, examples=[90])]
 Spread = Annotated[float, Field(ge=0, le=FAR, examples=[0.1])]
@@ -68,7 +70,8 @@ Name = Annotated[str, Field(pattern=r"^[^\r\n]*\S[^\r\n]*$", examples=["desk"])]
 Text = Annotated[str, Field(examples=["One room, two desks."])]
 
 Point = Annotated[
-    list[Metres], Field(title="a point [x, y]", min_length=2, max_length=2, examples=[[4, 3]], description="x, y in m")
+    list[Coordinate],
+    Field(title="a point [x, y]", min_length=2, max_length=2, examples=[[4, 3]], description="x, y in m"),
 ]
 Polygon = Annotated[list[Point], Field(title="a polygon", min_length=3, examples=[[[4, 3], [5, 3], [5, 4]]])]
 Way = Annotated[list[Point], Field(title="a way", min_length=2, examples=[[[0, 0], [10, 0], [10, -10]]])]
@@ -92,6 +95,6 @@ Share = Annotated[
 class Pose(Strict):
     """Where something stands, and which way it looks."""
 
-    x: Metres = Field(description="m, to the east")
-    y: Metres = Field(description="m, to the north")
+    x: Coordinate = Field(description="m, to the east")
+    y: Coordinate = Field(description="m, to the north")
     theta: Degrees = Field(description="Heading in degrees, counter-clockwise from +x: 90 looks north.")

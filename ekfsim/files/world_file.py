@@ -7,8 +7,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 
 from ekfsim.files.fields import (
+    Coordinate,
     Degrees,
-    Metres,
     Name,
     Polygon,
     Pose,
@@ -142,8 +142,8 @@ class LandmarkKeys(Strict):
     model_config = ConfigDict(title="a landmark", json_schema_extra={"examples": [LANDMARK]})
 
     id: int = Field(description="A number of its own.", ge=0, le=2**31 - 1, examples=[3])
-    x: Metres = Field(description="m")
-    y: Metres = Field(description="m")
+    x: Coordinate = Field(description="m")
+    y: Coordinate = Field(description="m")
 
 
 class BeliefKeys(Strict):

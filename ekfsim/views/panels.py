@@ -19,6 +19,7 @@ from ekfsim.views.artists import BeamArtists, BeliefArtists, WorldArtists
 from ekfsim.views.beams import Beam, beam, length
 from ekfsim.views.captions import away
 from ekfsim.views.limits import Limits
+from ekfsim.views.map_axes import in_metres
 from ekfsim.views.other_artists import OtherArtists
 from ekfsim.views.outlined import OutlinedText
 from ekfsim.views.playback import View
@@ -57,8 +58,8 @@ class Main:
         self.fixes = FixArtists(axes, scene)
         self.moving = [child for child in axes.get_children() if child not in static]
         axes.set_aspect("equal", adjustable="box")
-        axes.set(xlabel="x (m)", ylabel="y (m)")
         self.limit(limits)
+        in_metres(axes)
 
     def limit(self, limits: Limits) -> None:
         """Show this much of the plane, and more to the shape of the Axes."""

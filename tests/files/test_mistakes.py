@@ -98,8 +98,8 @@ WORLDS = {
         ],
     ),
     "too far": (
-        "name: a\n" + NOISE + "start: {x: 1000001, y: 1, theta: 0}\n",
-        ["3:12: start.x: 1000001 is too large; write a number of at most 1 000 000"],
+        "name: a\n" + NOISE + "start: {x: 100000001, y: 1, theta: 0}\n",
+        ["3:12: start.x: 100000001 is too large; write a number of at most 100 000 000"],
     ),
     "negative ratio": (
         "name: a\n" + START + NOISE.replace("rangeSigmaRatio: 0.01", "rangeSigmaRatio: -0.01"),

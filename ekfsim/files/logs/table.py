@@ -25,7 +25,7 @@ MOST_TOLD = 20  # mistakes
 MOST_WARNED = 3  # rows of one kind
 EPOCH = 1e10  # s since 1970, until the year 2286; stamps count from then on in
 FINER = (("milliseconds", 1e3), ("microseconds", 1e6), ("nanoseconds", 1e9))
-ENORMOUS = {"t": 1e12, "time": 1e12, "x": 1e7, "y": 1e7}  # s and m: until the year 33658, and for any UTM northing
+ENORMOUS = {"t": 1e12, "time": 1e12, "x": 1e8, "y": 1e8}  # s and m: until the year 33658, and for any map grid
 
 
 @dataclass(frozen=True)
