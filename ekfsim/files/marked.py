@@ -22,6 +22,7 @@ from ekfsim.printable import quoted, short
 
 MAX_VALUES = 1_000_000
 MAX_DEPTH = 64
+LARGE = 2.0**53  # from there on a float does not tell which whole number was written
 LONG = 2_000_000  # characters, which can be as many values
 TOO_MANY = "the file holds more than 1 000 000 values, aliases written out"
 VALUES = (yaml.ScalarEvent, yaml.CollectionStartEvent)
@@ -79,11 +80,13 @@ class Node:
         return None
 
     def plain(self) -> object:
-        """Plain dicts, lists and scalars, without places."""
+        """Plain dicts, lists and scalars, without places. Whole numbers may be written 7.0 or 1e3: in JSON they are."""
         if isinstance(self.value, dict):
             return {key: node.plain() for key, node in self.value.items()}
         if isinstance(self.value, list):
             return [node.plain() for node in self.value]
+        if isinstance(self.value, float) and self.value.is_integer() and abs(self.value) < LARGE:
+            return int(self.value)
         return self.value
 
     def walk(self, path: Path = ()) -> "Iterator[tuple[Path, Node]]":

@@ -12,6 +12,30 @@ from ekfsim.files.world_file import WorldKeys
 
 Kind = Literal["world", "commands", "study"]
 Schema = dict[str, Any]
+CANNOT = (  # say of any file
+    "numbers that are none (.nan)",
+    "merge keys ('<<'), which an editor may write out, tags, and a key that is given twice",
+)
+CANNOT_OF: dict[Kind, tuple[str, ...]] = {
+    "world": (
+        "outlines that cross themselves or have no area",
+        "names, ids and sensors that stand twice",
+        "obstacles that are missing and not there",
+        "places where the robot cannot stand",
+        "pairs whose first number is the larger",
+    ),
+    "commands": (
+        "whether the files that are named are there",
+        "whether it fits the world, as a drive in a classroom does not",
+        "pairs whose first number is the larger",
+    ),
+    "study": (
+        "whether the files that are named are there",
+        "whether a key with dots is one of the files",
+        "which filters a side names",
+        "values that stand twice",
+    ),
+}
 MODELS: dict[Kind, type[BaseModel]] = {"world": WorldKeys, "commands": CommandsKeys, "study": StudyKeys}
 
 
@@ -45,7 +69,9 @@ def json_schema(kind: Kind) -> Schema:
     ['name', 'start']
     """
     schema = MODELS[kind].model_json_schema(schema_generator=WithoutNull)
-    return {"$schema": WithoutNull.schema_dialect, **schema}
+    cannot = "; ".join((*CANNOT, *CANNOT_OF[kind]))
+    told = f"{schema['description']}\n\nOnly `ekfsim check` sees what no schema can tell: {cannot}."
+    return {"$schema": WithoutNull.schema_dialect, **schema, "description": told}
 
 
 def schema_at(kind: Kind, path: tuple[str | int, ...]) -> Schema:

@@ -216,9 +216,9 @@ def check_path(file: Sound) -> Iterator[Mistake]:
         return
     names = aliases(PathKeys)
     known = ["path", *(names[name] for name in fields_of(DRIVES[path]))]
-    for key in drive.keys:
-        if key in names.values() and key not in known:
-            yield file.mistake(("drive", key), f"a {path} has no key '{key}'", f"it has: {', '.join(known)}")
+    foreign = [key for key in drive.keys if key in names.values() and key not in known]
+    for key in foreign:
+        yield file.mistake(("drive", key), f"a {path} has no key '{key}'", f"it has: {', '.join(known)}")
     laps = file.value("drive", "laps")
     if path == "square" and laps is not None and laps != int(laps):
         yield file.mistake(("drive", "laps"), f"{laps} is no whole number of squares", f"write {max(int(laps), 1)}")
@@ -229,6 +229,8 @@ def check_path(file: Sound) -> Iterator[Mistake]:
         if rounds > MAX_ROUNDS:
             wrong = f"so near to each other, there are {rounds:.0f} rounds, more than {MAX_ROUNDS}"
             yield file.mistake(("drive", "spacing"), wrong, f"write at least {0.4 * min(width, length) / MAX_ROUNDS:g}")
+    if foreign:
+        file.give_up(("drive",))  # it cannot be driven: how long it takes is not asked
 
 
 def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake]:
@@ -241,7 +243,7 @@ def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake
         if world.robot is None:
             wrong = "the classroom's robot is not driven, it obeys commands"
             yield file.mistake(("drive",), wrong, "write 'commands', or name a world of another system")
-        else:
+        elif file.value("drive") is not None:
             yield from check_length(file, drive_of(keys.drive), world.robot.rate)
     elif keys.recording is not None and system != (wanted := SYSTEM_OF[keys.recording.format]):
         wrong = f"a '{keys.recording.format}' log is of the system '{wanted}', the world of the system '{system}'"

@@ -204,7 +204,6 @@ WORLDS = {
         [
             "4:39: landmarks[1].id: 3 is already the id of the landmark on line 4; choose another id",
             "4:60: landmarks[2].id: 1.5 is not written as a whole number; write e.g. 3",
-            "4:83: landmarks[3].id: 4.0 is not written as a whole number; write 4",
         ],
     ),
     "start outside": (
