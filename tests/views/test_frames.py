@@ -137,6 +137,11 @@ def test_what_is_special_of_a_beam_is_said():
             assert len(picture.main.beam.probes.get_segments()) == (0 if ray is None else len(ray.probes))
             if ray is not None:
                 assert bool(ray.probes) == ray.ambiguous
+                asked = picture.main.beam.arms.get_xydata().reshape(-1, 2, 2)  # from the estimate to each pose
+                assert asked[:, 0] == pytest.approx(np.tile(ray.pose[:2], (len(ray.probes), 1)))
+                assert asked[:, 1] == pytest.approx(np.array([p.pose[:2] for p in ray.probes]).reshape(-1, 2))
+                assert ray.doubt in picture.notes.get_text().replace("\n", " ")
+                assert bool(re.match("from .* it would meet .*, not ", ray.doubt)) == ray.ambiguous
     assert said == WORDS
 
 
