@@ -143,6 +143,11 @@ def evidence(found: Verdict) -> list[str]:
             f"NIS is {way.nis.value:.3g} per number read, where {way.nis.low:.3g} to {way.nis.high:.3g} is chance"
             f"{_right(right, held)}{word}"
         )
+        of = found.result.tally.of
+        above, below = (percent(Share(runs, of.nis_runs)) for runs in (of.nis_above, of.nis_below))
+        told.append(
+            f"{above} % of the runs have a sum of NIS above its 95 % band, {below} % below (2.5 % each is chance)"
+        )
     if way.steps:
         share, steps = way.worst.above_999, len(way.steps)
         many = "" if steps == 1 else f", the most of {steps} steps with more than {100 * MOST_LOST:.0f} %"

@@ -63,10 +63,10 @@ def test_a_study_leaves_a_folder_and_says_what_is_to_be_thought_of_it(place):
     assert [line.partition(" %")[0].strip() for line in lines[6:9]] == [cells[3], cells[6], cells[8]]
     played = "ekfsim play short.yaml --seed 0 --run"
     assert lines[9].startswith(f"  NIS is {float(row['nis_mean']):.3g} per number read")
-    assert " lie beyond the χ² 99.9 % quantile at step 2, the most of 2 steps with more than 2 %" in lines[10]
+    assert " lie beyond the χ² 99.9 % quantile at step 2, the most of 2 steps with more than 2 %" in lines[11]
     assert (row["on_the_way"], row["from_step"], row["to_step"], row["from_t"]) == ("over-confident", "2", "3", "")
-    assert lines[11].startswith(f"  the worst run: {played} {row['worst_run']} --filter ekf  # its last NEES is ")
-    assert lines[12] == f"  a typical run: {played} {row['typical_run']} --filter ekf"
+    assert lines[12].startswith(f"  the worst run: {played} {row['worst_run']} --filter ekf  # its last NEES is ")
+    assert lines[13] == f"  a typical run: {played} {row['typical_run']} --filter ekf"
     steps = rows("out/steps.csv")
     assert [step["step"] for step in steps] == ["0", "1", "2", "3"]
     assert all(steps[-1][name] == row[name] for name in steps[-1])

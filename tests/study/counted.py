@@ -18,7 +18,15 @@ def counted(above=(500,), ellipse=(954,), lost_from=None, runs=1000, ellipse_run
         position_square=0.01 * full, heading_square=0.0004 * full,
     )  # fmt: skip
     nis, readings = more.get("nis", (1.0, 10_000))
-    of = OfRuns(nis_runs=runs, nis_readings=readings, nis_dof=readings, nis_sum=nis * readings)
+    above_band, below_band = more.get("outside", (0, 0))
+    of = OfRuns(
+        nis_runs=runs,
+        nis_above=above_band,
+        nis_below=below_band,
+        nis_readings=readings,
+        nis_dof=readings,
+        nis_sum=nis * readings,
+    )
     spread, worst = more.get("spread", {0: Bin(runs, 0)}), Extreme(False, 9.0, 7)
     clock = np.full(k, np.nan) if times is None else np.array(times)
     return Result(None, Tally(runs, np.arange(k), clock, at, of, lost_from or {}, spread, worst))

@@ -157,12 +157,13 @@ def test_the_sentence_names_both_parts(made, told):
 
 
 def test_the_evidence_says_which_way_each_measure_points():
-    made = counted(runs=20, above=(12, 12), ellipse=(20, 20), beyond=(9, 0), nis=(1.4, 100))
+    made = counted(runs=20, above=(12, 12), ellipse=(20, 20), beyond=(9, 0), nis=(1.4, 100), outside=(3, 1))
     assert evidence(Verdict(made)) == [
         "60.0 % [38.7, 78.1] end with a NEES above the χ² median, not 45 to 55 %: over-confident",
         "100 % [83.9, 100] end inside the 95.4 % ellipse, not 93.4 to 97.4 %: over-cautious",
         "0 % [0, 16.1] are lost (fewer than 2 % is right)",
         "NIS is 1.4 per number read, where 0.742 to 1.3 is chance, not 0.8 to 1.25: over-confident",
+        "15.0 % of the runs have a sum of NIS above its 95 % band, 5.0 % below (2.5 % each is chance)",
         "45.0 % [25.8, 65.8] lie beyond the χ² 99.9 % quantile at step 0",
     ]
     assert evidence(Verdict(counted(ellipse=(0,), ellipse_runs=(0,), lost_from={0: 30})))[1:3] == [
