@@ -69,7 +69,7 @@ class _Watch(NamedTuple):
     true: Target
     faults: SensorFaults
     noise: Stream
-    outliers: Stream
+    outliers: Stream | None  # None where there are none
 
     def read(self, pose: Array, x: Array, u: Array) -> Array:
         """Its readings from true poses (D, …, 3) and their states x : (D, …, k), nan where it is not in view."""
@@ -79,7 +79,7 @@ class _Watch(NamedTuple):
             h, bias = _turned(h, u[..., 2] - pose[..., 2]), _turned(bias, u[..., 2])
             R = np.broadcast_to(np.eye(2) * self.instrument.sigma**2, (*h.shape, 2))
         noise = _noise(np.nan_to_num(R), self.noise)
-        if self.faults.outliers > 0:
+        if self.outliers is not None:
             struck = self.outliers.uniforms(len(noise)) < self.faults.outliers
             noise = np.where(struck[..., None], self.faults.outlier_size * noise, noise)
         z = h + bias + noise
@@ -102,8 +102,8 @@ def _watches(scene: Scene, draws: Draws) -> Iterator[_Watch]:
     both = zip(world.targets(scene.reading), world.true_targets(), strict=True)
     for number, ((believed, known), (instrument, real)) in enumerate(both):
         faults = world.drive_faults.sensors.get(instrument.name, SOUND)
-        noise, outliers = draws.stream(READING, number), draws.stream(OUTLIER, number)
-        yield _Watch(instrument, believed, known, real, faults, noise, outliers)
+        outliers = draws.stream(OUTLIER, number) if faults.outliers > 0 else None
+        yield _Watch(instrument, believed, known, real, faults, draws.stream(READING, number), outliers)
 
 
 def _readings(
