@@ -134,13 +134,13 @@ class World:
 
     def true_targets(self) -> list[tuple[Instrument, Target]]:
         """The same in the same order, with the sensors as they are."""
-        around = self._around("corrected", self.map, self.robot)
+        around = self._around("corrected", self.map, self.robot, self.start)
         return [(instrument, target) for instrument in self.instruments for target in instrument.targets(around)]
 
     def around(self, reading: DocumentReading) -> Surroundings:
         """What the sensors that the filter is told of are made from."""
-        return self._around(reading, self.told.map, self.told_robot)
+        return self._around(reading, self.told.map, self.told_robot, self.told.start)
 
-    def _around(self, reading: DocumentReading, floor: Map, robot: Robot | None) -> Surroundings:
+    def _around(self, reading: DocumentReading, floor: Map, robot: Robot | None, start: Array) -> Surroundings:
         yaw_sigma = robot.yaw_sigma if isinstance(robot, PylonCart) else 0.0
-        return Surroundings(self.landmarks, floor.walls, self.layout, reading, yaw_sigma)
+        return Surroundings(self.landmarks, floor.walls, self.layout, reading, yaw_sigma, float(start[2]))

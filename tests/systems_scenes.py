@@ -9,7 +9,7 @@ from scenes import SILENT
 from ekfsim.scene import Scene
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.drives import Circle, Square
-from ekfsim.systems.instruments import Bearings, Infrared, Landmark, Ultrasonic
+from ekfsim.systems.instruments import Bearings, Compass, Gyro, Infrared, Landmark, Ultrasonic
 from ekfsim.world import Map, Obstacle, Told, World
 
 FIELD = tuple(Landmark(i, float(x), float(y)) for i, (x, y) in enumerate([(3, 3), (3, -3), (-3, 3), (-3, -3), (6, 0)]))
@@ -70,4 +70,9 @@ def infrared(**settings):
     return driven("pioneer", drive, floor=CELLAR, landmarks=(), instruments=(Infrared(),), **settings)
 
 
-SCENES = (mower, bearings, landmarks, ranges, gnss, pylon, ultrasonic, infrared)
+def yaws(**settings):
+    drive = Square(2.0, 1.0, math.radians(90))
+    return driven("pioneer", drive, floor=CELLAR, landmarks=(), instruments=(Compass(), Gyro(5.0)), **settings)
+
+
+SCENES = (mower, bearings, landmarks, ranges, gnss, pylon, ultrasonic, infrared, yaws)

@@ -6,12 +6,14 @@ from pydantic import AfterValidator, ConfigDict, Field, field_validator
 from pydantic.config import JsonDict
 from pydantic_core import PydanticCustomError
 
-from ekfsim.files.fields import Metres, PartKeys, Positive, Rate, Ratio, Spread, Strict, Turn
+from ekfsim.files.fields import Degrees, Metres, PartKeys, Positive, Rate, Ratio, Spread, Strict, Turn
 from ekfsim.files.system_file import degrees
 from ekfsim.models.infrared import COLOURS
 from ekfsim.systems.instruments import (
     Bearings,
+    Compass,
     Gnss,
+    Gyro,
     Infrared,
     Instrument,
     Lidar,
@@ -202,6 +204,27 @@ class InfraredKeys(PartKeys):
     _known = field_validator("colour")(known_colour)
 
 
+class CompassKeys(PartKeys):
+    """A compass, which tells the absolute yaw."""
+
+    angles: ClassVar[frozenset[str]] = frozenset({"sigma", "orientation"})
+
+    rate: Rate = Field(Compass.rate, description=READ)
+    sigma: Turn = Field(degrees(Compass.sigma), description="Standard deviation of the yaw, degrees.", examples=[10])
+    orientation: Degrees = Field(
+        degrees(Compass.orientation), description="What it tells where the robot looks along +x, degrees."
+    )
+
+
+class GyroKeys(PartKeys):
+    """A gyroscope, which tells the yaw since it was set to 0 along the mark, the heading of `start`."""
+
+    angles: ClassVar[frozenset[str]] = frozenset({"sigma"})
+
+    rate: Rate = Field(Gyro.rate, description=READ)
+    sigma: Turn = Field(degrees(Gyro.sigma), description="Standard deviation of the yaw, degrees.", examples=[1])
+
+
 class SensorKeys(Strict):
     """One sensor: exactly one kind."""
 
@@ -239,6 +262,12 @@ class SensorKeys(Strict):
     infrared: InfraredKeys | None = Field(
         None, description="Pairs of an infrared emitter and receiver.", examples=[{"rate": 2, "colour": "white"}]
     )
+    compass: CompassKeys | None = Field(
+        None, description="A compass, which tells the absolute yaw.", examples=[{"rate": 2, "sigma": 10}]
+    )
+    gyro: GyroKeys | None = Field(
+        None, description="A gyroscope, which tells the yaw since the start.", examples=[{"rate": 10, "sigma": 1}]
+    )
 
     def part(self) -> PartKeys:
         """The keys of the one kind that is written."""
@@ -258,4 +287,6 @@ SENSORS: dict[type[PartKeys], type[Instrument]] = {
     LidarKeys: Lidar,
     UltrasonicKeys: Ultrasonic,
     InfraredKeys: Infrared,
+    CompassKeys: Compass,
+    GyroKeys: Gyro,
 }

@@ -69,6 +69,23 @@ class ToldInfraredKeys(PartKeys):
     _known = field_validator("colour")(known_colour)
 
 
+class ToldYawKeys(PartKeys):
+    """What the filter is told of a gyroscope."""
+
+    angles: ClassVar[frozenset[str]] = frozenset({"sigma"})
+
+    sigma: Turn | None = Field(None, description=SEE, examples=[1])
+
+
+class ToldCompassKeys(PartKeys):
+    """What the filter is told of a compass."""
+
+    angles: ClassVar[frozenset[str]] = frozenset({"sigma", "orientation"})
+
+    sigma: Turn | None = Field(None, description=SEE, examples=[10])
+    orientation: Degrees | None = Field(None, description=SEE, examples=[0])
+
+
 class ToldSensorsKeys(Strict):
     """What the filter is told of the sensors, by their names."""
 
@@ -83,6 +100,8 @@ class ToldSensorsKeys(Strict):
     lidar: ToldFixKeys | None = Field(None, description="A lidar in its own frame.", examples=[{"sigma": 0.02}])
     ultrasonic: ToldUltrasonicKeys | None = Field(None, description="Beams.", examples=[{"sigma": 0.05}])
     infrared: ToldInfraredKeys | None = Field(None, description="Pairs.", examples=[{"colour": "black"}])
+    compass: ToldCompassKeys | None = Field(None, description="A compass.", examples=[{"sigma": 5}])
+    gyro: ToldYawKeys | None = Field(None, description="A gyroscope.", examples=[{"sigma": 0.5}])
 
 
 class FaultyKeys(PartKeys):
@@ -162,6 +181,14 @@ class FaultyInfraredKeys(FaultyKeys):
     bias: Metres = Field(0.0, description="V added to every intensity.")
 
 
+class FaultyYawKeys(FaultyKeys):
+    """What is wrong with a compass or a gyroscope."""
+
+    angles: ClassVar[frozenset[str]] = frozenset({"bias"})
+
+    bias: Degrees = Field(0.0, description="Degrees added to every yaw.")
+
+
 class FaultySensorsKeys(Strict):
     """What is wrong with the sensors, by their names."""
 
@@ -176,6 +203,8 @@ class FaultySensorsKeys(Strict):
     lidar: FaultyLidarKeys | None = Field(None, description="A lidar in its own frame.", examples=[{"aheadBias": 0.1}])
     ultrasonic: FaultyRangeKeys | None = Field(None, description="Beams.", examples=[{"bias": 0.02}])
     infrared: FaultyInfraredKeys | None = Field(None, description="Pairs.", examples=[{"bias": 0.1}])
+    compass: FaultyYawKeys | None = Field(None, description="A compass.", examples=[{"bias": 5}])
+    gyro: FaultyYawKeys | None = Field(None, description="A gyroscope.", examples=[{"bias": 1}])
 
 
 class FaultKeys(PartKeys):

@@ -10,7 +10,7 @@ and so on, wherever the package cites an equation, are these, and here is where 
          in Navigation
          7 to 11 filters/kf.py · 12, 13 filters/ekf.py · 14 to 17 filters/unscented.py · 20 to 28 filters/ukf.py
          18, 19 models/polar.py · 29 to 35 models/odometry.py · 38 models/echo.py, and its estimate systems/echo.py
-         fig. 4 models/infrared.py · fig. 6 models/ultrasonic.py · its compass (36, 37) it does not use itself
+         fig. 4 models/infrared.py · fig. 6 models/ultrasonic.py · 36, 37 models/yaw.py, which it does not use itself
     002  classroom: Localization and the extended Kalman filter, an assignment
          1, 3, 6 models/move_turn.py · 8, and the Jacobian J_H models/laser.py · 4, 7, 9 to 12 filters/ekf.py
     003  gnss: Sahni, Assignment 3: Sensor fusion for lawn mower
@@ -27,7 +27,9 @@ from dataclasses import dataclass
 
 from ekfsim.systems.instruments import (
     Bearings,
+    Compass,
     Gnss,
+    Gyro,
     Infrared,
     Instrument,
     Lidar,
@@ -57,5 +59,6 @@ SYSTEMS: dict[str, System] = {
     "ranges": System(RangingMower(), (Ranges(),)),
 }
 INSTRUMENTS: dict[str, type[Instrument]] = {
-    kind.name: kind for kind in (Markers, RangeBearings, Ranges, Bearings, Gnss, Pylon, Lidar, Ultrasonic, Infrared)
+    kind.name: kind
+    for kind in (Markers, RangeBearings, Ranges, Bearings, Gnss, Pylon, Lidar, Ultrasonic, Infrared, Compass, Gyro)
 }

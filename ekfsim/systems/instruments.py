@@ -21,6 +21,7 @@ from ekfsim.models.offset import LandmarkOffset
 from ekfsim.models.position import Position
 from ekfsim.models.protocols import Sensor
 from ekfsim.models.ultrasonic import UltrasonicBeam
+from ekfsim.models.yaw import Yaw
 from ekfsim.systems.document import DocumentReading
 
 ALL_ROUND = ((-math.pi, math.pi),)
@@ -42,6 +43,7 @@ class Surroundings(NamedTuple):
     layout: Layout  # of the filter's state
     reading: DocumentReading
     yaw_sigma: float = 0.0  # rad, of the heading by which readings are turned into the global frame
+    mark: float = 0.0  # rad, the heading of the mark on which the robot is set down
 
 
 class Target(NamedTuple):
@@ -276,3 +278,33 @@ class Infrared(_Looking):
                 self.farthest,
             )  # fmt: skip
             yield Target(f"infrared {number}", beam)
+
+
+@dataclass(frozen=True)
+class Compass(_Looking):
+    """Document 001: tells the absolute yaw; "in indoor conditions" of "rather poor quality", and so left out there."""
+
+    name: ClassVar[str] = "compass"
+    rate: float = 2.0
+    sigma: float = math.radians(10)  # rad; the document prints none
+    orientation: float = 0.0  # rad, β of eqs 36, 37: what it tells where the robot looks along +x
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """The yaw."""
+        yield Target("compass", Yaw(self.orientation, self.sigma, around.layout))
+
+
+@dataclass(frozen=True)
+class Gyro(_Looking):
+    """Document 001: a gyroscope that tells the yaw relative to the mark, along which it was set to 0.
+
+    It has summed up its rates itself. What it drifts is no white noise: no filter here is told, see `faults`.
+    """
+
+    name: ClassVar[str] = "gyro"
+    rate: float = 10.0
+    sigma: float = math.radians(1)  # rad; the document prints none
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """The yaw, 0 along the mark."""
+        yield Target("gyro", Yaw(-around.mark, self.sigma, around.layout))

@@ -14,6 +14,7 @@ from ekfsim.models.lidar import LidarOffset
 from ekfsim.models.offset import LandmarkOffset
 from ekfsim.models.position import Position
 from ekfsim.models.protocols import Sensor
+from ekfsim.models.yaw import Yaw
 from ekfsim.records import Entry
 from ekfsim.scene import Scene
 from ekfsim.systems.robots import PylonCart
@@ -30,8 +31,9 @@ LABELS: dict[type, str] = {
     Position: "fix as measured, with 1 σ",
     LandmarkOffset: "offset, as measured",
     LidarOffset: "offset, as measured",
+    Yaw: "heading, as measured",
 }
-DIRECTIONS = {MarkerAngles, BearingOnly}  # the way that was expected ends nowhere
+DIRECTIONS = {MarkerAngles, BearingOnly, Yaw}  # the way that was expected ends nowhere
 POINTS = {RangeBearing, LandmarkOffset, LidarOffset, Position}  # a reading of these puts something at a point
 
 
@@ -71,7 +73,7 @@ class SightArtists:
         yield (self.line, end) if points else self.line
         yield Line2D([], [], color=VERMILLION, lw=2, ls="--", label="… is refused")
         yield self.way if self._sensors <= DIRECTIONS else self.expected
-        if self._sensors != {Position}:
+        if self._sensors - {Position, Yaw}:
             yield self.place
 
 

@@ -20,11 +20,13 @@ from ekfsim.models.offset import LandmarkOffset
 from ekfsim.models.position import Position
 from ekfsim.models.protocols import Quantity, Sensor
 from ekfsim.models.ultrasonic import UltrasonicBeam
+from ekfsim.models.yaw import Yaw
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 
 ARC = math.radians(25)  # to each side of the estimate: as much of the circle about a landmark as is drawn
 CORNERS = 41  # of an arc, and of the circle about a fix
+NEEDLE = 1.0  # m, of a heading
 FARTHEST = 5.0  # times as far as it is specified for may an intensity seem to come from
 BeamSensor = Laser | UltrasonicBeam | InfraredBeam
 NOWHERE = np.empty((0, 2))
@@ -73,6 +75,9 @@ def sight(step: Step) -> Sight | None:
         case LidarOffset():
             line, way = (_ray(pose, math.atan2(-x, y), math.hypot(x, y)) for x, y in (z, predicted))
             return Sight(line, line[1:], way, way[1:], np.array([[sensor.x, sensor.y]]), refused, "offset")
+        case Yaw():
+            line, way = (_ray(pose, value[0] - sensor.orientation - pose[2], NEEDLE) for value in (z, predicted))
+            return Sight(line, NOWHERE, way, NOWHERE, NOWHERE, refused, "direction")
         case Laser() | UltrasonicBeam() | InfraredBeam():
             line, way = (_ray(pose, sensor.bearing, beam_length(sensor, float(value[0]))) for value in (z, predicted))
             return Sight(line, line[1:], way, way[1:], NOWHERE, refused, "beam")

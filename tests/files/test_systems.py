@@ -339,9 +339,9 @@ ROOMS = {
         GNSS + "sensors:\n  - {gnss: {}, pylon: {}}\n  - {}\n  - gns: {}\n  - camera: {}\n  - gnss\n  - gnss:\n",
         [
             "5:5: sensors[0]: 'gnss' and 'pylon' stand in one item; begin each sensor with '- ' on a line of its own",
-            "6:5: sensors[1]: the sensor is missing; write one of markers, rangeBearing, range, bearing, gnss, pylon, lidar, ultrasonic, infrared",
+            "6:5: sensors[1]: the sensor is missing; write one of markers, rangeBearing, range, bearing, gnss, pylon, lidar, ultrasonic, infrared, compass, gyro",
             "7:5: sensors[2]: 'gns' is not a sensor; did you mean 'gnss'?",
-            "8:5: sensors[3]: 'camera' is not a sensor; known sensors here: markers, rangeBearing, range, bearing, gnss, pylon, lidar, ultrasonic, infrared",
+            "8:5: sensors[3]: 'camera' is not a sensor; known sensors here: markers, rangeBearing, range, bearing, gnss, pylon, lidar, ultrasonic, infrared, compass, gyro",
             "9:5: sensors[4]: 'gnss' is text where a sensor belongs; write e.g. {markers: {rate: 0.5, range: 10}}",
             "10:10: sensors[5].gnss: nothing stands where a mapping 'key: value' belongs; write e.g. {rate: 10, sigma: 0.15}",
         ],

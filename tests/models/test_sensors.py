@@ -13,6 +13,7 @@ from ekfsim.models.lidar import LidarOffset
 from ekfsim.models.offset import LandmarkOffset
 from ekfsim.models.position import Position
 from ekfsim.models.protocols import angles
+from ekfsim.models.yaw import Yaw
 
 LAYOUTS = {"pose": POSE, "speed": SPEED_POSE, "inertial": INERTIAL}
 MAKERS = {
@@ -21,6 +22,7 @@ MAKERS = {
     "range": lambda layout: RangeOnly(0.5, -1.0, 0.6, layout),
     "bearing": lambda layout: BearingOnly(0.5, -1.0, 0.02, layout),
     "position": lambda layout: Position(0.15, 0.2, layout),
+    "yaw": lambda layout: Yaw(2.0, 0.1, layout),
     "offset": lambda layout: LandmarkOffset(5.0, -5.0, 0.0075, 0.008, layout),
     "lidar": lambda layout: LidarOffset(5.0, -5.0, 0.0075, layout),
     "offset, yaw's error": lambda layout: LandmarkOffset(5.0, -5.0, 0.0075, 0.008, layout, 0.02),
@@ -108,7 +110,8 @@ def test_the_heading_alone_turns_the_bearing(sensor, layout):
     change = sensor.residual(sensor.h(turned), sensor.h(x))
     if isinstance(sensor, LidarOffset):  # it turns both numbers, as test_offset.py tells
         return
-    expected = [-0.25 if quantity.name in ("azimuth", "bearing") else 0 for quantity in sensor.outputs]
+    by = {"azimuth": -0.25, "bearing": -0.25, "yaw": 0.25}
+    expected = [by.get(quantity.name, 0.0) for quantity in sensor.outputs]
     np.testing.assert_allclose(change, expected, atol=1e-12)
 
 

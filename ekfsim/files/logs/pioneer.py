@@ -16,15 +16,21 @@ from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion
 from ekfsim.records import Reading
 from ekfsim.systems.document import DocumentReading
-from ekfsim.systems.instruments import Infrared, Target, Ultrasonic
+from ekfsim.systems.instruments import Compass, Gyro, Infrared, Target, Ultrasonic
 from ekfsim.world import World
 
 HOLDS = "odometry.csv, ultrasonic.csv or infrared.csv or both and, where it is known, groundtruth.csv"
-FILES = {Ultrasonic.name: ("beam", "range"), Infrared.name: ("pair", "intensity")}  # each file's columns, beside t
+FILES = {  # each file's columns, beside t; the yaws in rad
+    Ultrasonic.name: ("beam", "range"),
+    Infrared.name: ("pair", "intensity"),
+    Compass.name: ("yaw",),
+    Gyro.name: ("yaw",),
+}
 
 
 def read_pioneer(path: Path, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
-    """Each row of the odometry tells the ways since the row before it; the first is the start.
+    """Each row of the odometry tells the ways since the row before it; the first is the start. A compass or a gyro of
+    the world has a file of its own, t and yaw.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
@@ -60,11 +66,12 @@ def _inputs(motion: Motion, ways: Array, dt: Array) -> Array:
 
 def _samples(folder: Path, world: World, reading: DocumentReading, warnings: list[str]) -> list[Sample]:
     """The readings of the world's instruments, in the order in which the world names them."""
-    samples, found = list[Sample](), list[Path]()
+    samples, wanted, found = list[Sample](), list[str](), list[Path]()
     for instrument in world.told_instruments:
         if instrument.name not in FILES:
             continue
-        file = find_any(folder, "the beams", f"{instrument.name}*.csv")
+        wanted.append(instrument.name)
+        file = find_any(folder, f"the {instrument.name}", f"{instrument.name}*.csv")
         if file is None:
             warnings.append(f"{folder}: no {instrument.name}.csv in it: there are no such readings")
             continue
@@ -72,16 +79,18 @@ def _samples(folder: Path, world: World, reading: DocumentReading, warnings: lis
         beams = in_order(named_table(file, (TIME, *((name,) for name in FILES[instrument.name])), warnings), warnings)
         samples += _read(beams, instrument.name, by_name(world, reading, instrument), warnings)
     if not found:
-        names = " nor ".join(f"{name}.csv" for name in FILES)
-        raise UsageError(f"{folder}: neither {names} in it for a sensor of {world.name!r}: nothing to localize with")
+        names = " nor ".join(f"{name}.csv" for name in wanted or FILES)
+        none = f"{'neither' if ' nor ' in names else 'no'} {names} in it for a sensor of {world.name!r}"
+        none = f"{'neither' if ' nor ' in names else 'no'} {names} in it for a sensor of {world.name!r}"
+        raise UsageError(f"{folder}: {none}: nothing to localize with")
     return samples
 
 
 def _read(beams: Rows, kind: str, targets: dict[str, Target], warnings: list[str]) -> list[Sample]:
     """What each row tells of a beam that the world's instrument has."""
     samples, unknown = list[Sample](), list[int]()
-    for row, (t, number, value) in enumerate(beams.values.tolist()):
-        target = targets.get(f"{kind} {number:g}")
+    for row, (t, *number, value) in enumerate(beams.values.tolist()):
+        target = targets.get(" ".join([kind, *(f"{beam:g}" for beam in number)]))
         if target is None:
             unknown.append(row)
         else:

@@ -18,6 +18,7 @@ from ekfsim.scene import Scene
 
 ALL_FILES = ("*.csv", "*.txt")  # what `--force` may replace
 BEGINNING = 1_600_000_000  # s, Unix, at which a simulated pylon log begins
+YAWS = "compass", "gyro"
 GPS_ORIGIN = (47.0, 8.0)  # degrees, of latitude and longitude: where its GPS takes (0, 0) to lie
 
 Files = dict[str, str]  # the text of each file, by its name
@@ -136,19 +137,24 @@ def _degrees(x: float, y: float) -> tuple[float, float]:
 
 
 def _pioneer(scene: Scene, run: Run, out: Path) -> Files:
-    """The ways of the wheels since the row before, which the first row, the start, has not; and the beams."""
-    ways, beams = [[run.t, 0.0, 0.0]], dict[str, list[list[float | int]]](ultrasonic=[], infrared=[])
+    """The ways of the wheels since the row before, which the first row, the start, has not; beams, and yaws in rad."""
+    ways, read = [[run.t, 0.0, 0.0]], dict[str, list[list[float | int]]](ultrasonic=[], infrared=[])
+    yaws = {name: list[list[float]]() for name in YAWS if any(i.name == name for i in scene.world.instruments)}
     for tick in run.ticks:
         left, right, *dt = tick.u.tolist()  # a skid-steered robot is given speeds and dt
         span = dt[0] if dt else 1.0
         ways.append([tick.t, left * span, right * span])
         for reading in tick.readings:
-            kind, beam = numbered(reading, tuple(beams), out)
-            beams[kind].append([tick.t, beam, *reading.z.tolist()])
+            kind, beam = numbered(reading, (*read, *yaws), out)
+            if kind in yaws:
+                yaws[kind].append([tick.t, *reading.z.tolist()])
+            else:
+                read[kind].append([tick.t, beam, *reading.z.tolist()])
     return {
         "odometry.csv": text_of(ways, ",", "t,left,right"),
-        "ultrasonic.csv": text_of(beams["ultrasonic"], ",", "t,beam,range"),
-        "infrared.csv": text_of(beams["infrared"], ",", "t,pair,intensity"),
+        "ultrasonic.csv": text_of(read["ultrasonic"], ",", "t,beam,range"),
+        "infrared.csv": text_of(read["infrared"], ",", "t,pair,intensity"),
+        **{f"{name}.csv": text_of(rows, ",", "t,yaw") for name, rows in yaws.items()},
         "groundtruth.csv": _truth(run, "heading"),
     }
 

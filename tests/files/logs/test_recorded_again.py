@@ -13,7 +13,7 @@ from ekfsim.records import Control, Sense
 from ekfsim.scene import Scene
 from ekfsim.simulation import simulate
 from ekfsim.systems.drives import Circle, Square
-from ekfsim.systems.instruments import Infrared, Landmark, Markers, Ultrasonic
+from ekfsim.systems.instruments import Compass, Gyro, Infrared, Landmark, Markers, Ultrasonic
 from ekfsim.systems.instruments import Pylon as PylonLidar
 from ekfsim.systems.robots import Pioneer, PylonCart
 
@@ -29,6 +29,11 @@ SCENES = {
     "pioneer's other order": Scene(
         world("pioneer", floor=CLOSET, instruments=(Infrared(), Ultrasonic(rate=1.0))), drive=AROUND
     ),
+    "pioneer with a compass and a gyro": Scene(
+        world("pioneer", floor=CLOSET, start=(1, 1, 2.5), instruments=(Ultrasonic(), Compass(2, 0.1, 0.7), Gyro())),
+        drive=AROUND,
+    ),
+    "pioneer by its gyro alone": Scene(world("pioneer", floor=CLOSET, instruments=(Gyro(),)), drive=AROUND),
     "pioneer on skids": Scene(world("pioneer", floor=CLOSET, robot=Pioneer(odometry="skidSteer")), drive=AROUND),
     "gnss from elsewhere": Scene(world("gnss", start=(2.0, -3.0, 3.0)), drive=ROUND),
 }
