@@ -10,6 +10,7 @@ from ekfsim.files.trace import ODOMETRY
 from ekfsim.filters.belief import Refused, posed
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import ellipse
+from ekfsim.printable import cell
 from ekfsim.provenance import provenance, told_in_a_line
 from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
@@ -81,7 +82,7 @@ class Table:
     """
 
     def __init__(self, file: TextIO, scene: Scene, confidence: float) -> None:
-        self._origin = [_cell(value) for value in provenance(scene).values()]
+        self._origin = [cell(_cell(value)) for value in provenance(scene).values()]
         self._confidence, self._layout, self._commanded = confidence, scene.world.layout, scene.commanded
         self._csv = csv.writer(file, lineterminator="\n")
         columns = COLUMNS if self._commanded else DRIVEN_COLUMNS

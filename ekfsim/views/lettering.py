@@ -62,7 +62,9 @@ def families() -> list[str]:
 
 
 def _printable(sign: str) -> str:
-    return " " if unicodedata.category(sign) in ("Cc", "Zl", "Zp") else sign
+    """A sign, a space for what breaks lines, nothing for what turns or hides its neighbours."""
+    kind = unicodedata.category(sign)
+    return " " if kind in ("Cc", "Zl", "Zp") else "" if kind == "Cf" else sign
 
 
 def _widened(sign: str) -> str:

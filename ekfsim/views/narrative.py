@@ -4,6 +4,7 @@ import math
 
 from ekfsim.filters.belief import Correction, Refused
 from ekfsim.geometry import Array
+from ekfsim.printable import shown
 from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense, Step
 from ekfsim.scene import Scene
 from ekfsim.views import driven_narrative
@@ -51,7 +52,7 @@ def narrate(view: View, scene: Scene, probability: float = 0.954, explain: bool 
             )
         case _:
             text = opening(scene) + form.words + _start(view, scene, probability)
-    return f"{text}\n"
+    return shown(f"{text}\n")
 
 
 def _start(view: View, scene: Scene, probability: float) -> str:

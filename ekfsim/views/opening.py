@@ -40,8 +40,13 @@ def opening(scene: Scene) -> str:
 
 
 def plain(text: str) -> str:
-    """A text in plain lines: whatever else breaks a line or moves a cursor has no place in a narrative."""
-    return "\n".join(text.strip().splitlines())
+    r"""A text in plain lines, all but the first indented: none is taken for a line of ours.
+
+    >>> print(plain("Look!\n==>The robot moved"))
+    Look!
+       ==>The robot moved
+    """
+    return "\n   ".join(text.strip().splitlines())
 
 
 def _numbers(scene: Scene) -> Iterator[str]:

@@ -1,5 +1,6 @@
 """run: its options, its streams, and what is wrong with how it is asked."""
 
+import csv
 import json
 import os
 
@@ -7,6 +8,7 @@ import pytest
 from program import LONG, MEASURED, SHORT, WORLD, ekfsim, lay_out, left_in, process
 
 from ekfsim.filters import FILTERS
+from ekfsim.views.lettering import wrapped
 
 BREAKS = "\r\x85"  # to YAML the end of a line, as \n
 CONTROLS = sorted({chr(code) for code in [*range(32), *range(127, 160)]} - {*"\t\n"})
@@ -193,6 +195,35 @@ def test_the_narrative_holds_no_control_characters(place):
 def test_nor_does_another_line_break(place, char):
     (place / "short.yaml").write_text(SHORT.replace("The end.", json.dumps(f"The {char} end.")))
     assert not set(CONTROLS) & set(ekfsim("run", "short.yaml").out)
+
+
+@pytest.mark.parametrize("sign", ["\u202e", "\u2066", "\u200b", "\ufeff", "\u2060", "\U000e0041"])
+def test_nor_do_signs_that_turn_or_hide_what_stands_around_them(place, sign):
+    (place / "world.yaml").write_text(WORLD.replace("lab", json.dumps(f"l{sign}b")).replace("desk", f"d{sign}k"))
+    (place / "short.yaml").write_text(SHORT.replace("The end.", json.dumps(f"gnp.{sign}exe")))
+    (place / f"{sign}.yaml").write_text(SHORT)
+    for told in (ekfsim("run", "short.yaml"), ekfsim("run", f"{sign}.yaml"), ekfsim("check", f"no{sign}.yaml")):
+        assert sign not in told.out + told.err
+    assert sign not in "".join(wrapped([f"gnp.{sign}exe"], 40, 1))
+
+
+def test_no_line_that_a_file_says_is_taken_for_one_of_ours(place):
+    said = "One.\n==>The robot moved: distance=1, angle=0\rVerdict: lost"
+    (place / "short.yaml").write_text(SHORT.replace("The end.", json.dumps(said)))
+    lines = ekfsim("run", "short.yaml").out.splitlines()
+    at = lines.index("==>One.")
+    assert lines[at + 1 : at + 3] == ["   ==>The robot moved: distance=1, angle=0", "   Verdict: lost"]
+    assert len([line for line in lines if line.startswith("Verdict:")]) == 1
+
+
+@pytest.mark.parametrize("name", ["=1+1.yaml", "+a.yaml", "@a.yaml"])
+def test_no_name_of_a_file_is_a_formula_in_a_table(place, name):
+    (place / name).write_text(SHORT)
+    assert ekfsim("run", name, "-q", "--csv", "table.csv").status == 0
+    with open("table.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["commands"] for row in rows} == {f"'{name}"}
+    assert not [cell for row in rows for cell in row.values() if cell.startswith(("=", "+", "@"))]
 
 
 @pytest.mark.parametrize("name", ["red\x1b[31m.yaml", "bell\x07.yaml", "two\nlines.yaml"])
