@@ -3,7 +3,7 @@
 import sys
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, Literal, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import click
 
@@ -19,6 +19,7 @@ from ekfsim.options import (
     Seed,
     Source,
     Whole,
+    Word,
     compare_options,
     scene_options,
     study_options,
@@ -27,6 +28,9 @@ from ekfsim.printable import in_a_line
 from ekfsim.process import Program, heed, part_with, say, shown, warn, width
 from ekfsim.progress import blocks_bar, study_into
 from ekfsim.version import VERSION
+
+if TYPE_CHECKING:
+    from ekfsim.files.packaged import Folder
 
 
 def main() -> NoReturn:
@@ -43,7 +47,7 @@ def ekfsim() -> None:
     """
 
 
-@ekfsim.command()
+@ekfsim.command(short_help="Step through COMMANDS with single keys.")
 @scene_options
 @click.option("--show", type=click.Choice(["auto", "window", "text", "files"]), default="auto", show_default=True,
               help="Draw in a window, as text in the terminal, or into one file rewritten in place.")  # fmt: skip
@@ -133,7 +137,7 @@ def run(
     (sys.stderr if outputs.on_stdout() else sys.stdout).write(conclude_all(scene, results, quiet))
 
 
-@ekfsim.command()
+@ekfsim.command(short_help="Write the simulated run of COMMANDS as a recorded log.")
 @scene_options
 @click.option("--out", "-o", type=Result(), required=True, help="A folder for the files of the log.")
 @FORCE
@@ -148,7 +152,7 @@ def record(out: Path, force: bool, confidence: float, **chosen: Any) -> None:
     click.echo(f"{shown(out)}: a {scene.world.system} log; run the filter on it with --log")
 
 
-@ekfsim.command()
+@ekfsim.command(short_help="Validate FILES: every mistake with its place, or ok.")
 @click.argument("files", nargs=-1, required=True)
 def check(files: tuple[str, ...]) -> None:
     """Validate world and command FILES: every mistake with its place, or `ok`."""
@@ -174,7 +178,7 @@ def check(files: tuple[str, ...]) -> None:
         sys.exit(UsageError.status)
 
 
-@ekfsim.command()
+@ekfsim.command(short_help="Print the JSON Schema by which editors check a file.")
 @click.argument("kind", type=click.Choice(["world", "commands", "study"]))
 def schema(kind: str) -> None:
     """Print the JSON Schema from which editors complete and check a world, commands or study file."""
@@ -186,16 +190,22 @@ def schema(kind: str) -> None:
     click.echo(json.dumps(json_schema(cast("Kind", kind)), indent=2, ensure_ascii=False))
 
 
-@ekfsim.command("list")
-def list_packaged() -> None:
-    """List the worlds and commands that come along."""
-    from ekfsim.files.packaged import description_of, packaged
+@ekfsim.command("list", short_help="List what comes along, or all that is said of NAME.")
+@click.argument("name", required=False)
+@click.option("--worlds", is_flag=True, help="The worlds in place of the commands.")
+def list_packaged(name: str | None, worlds: bool) -> None:
+    """List the commands that come along, or the worlds; with NAME, all that is said of that one."""
+    from ekfsim.files.packaged import described, description_of, grouped, packaged, resolve
 
-    for kind in ("worlds", "commands"):
-        click.echo(f"{kind}:")
-        files = packaged(kind)
-        for name, path in files.items():
-            click.echo(f"  {name:{max(map(len, files))}}  {description_of(path)}")
+    if name is not None:
+        is_world = worlds or (name in packaged("worlds") and name not in packaged("commands"))
+        kind: Folder = "worlds" if is_world else "commands"
+        click.echo(shown(described(resolve(name, kind))))
+        return
+    for title, files in [("worlds", packaged("worlds"))] if worlds else grouped():
+        click.echo(f"{title}:")
+        for one, path in files.items():
+            click.echo(f"  {one:{max(map(len, files))}}  {description_of(path)}")
 
 
 @ekfsim.command()
@@ -218,8 +228,8 @@ def new(file: Path, kind: str | None, force: bool) -> None:
     click.echo(shown(f"{file}: a {told} file to start from; ekfsim check {file} validates it"))
 
 
-@ekfsim.command(epilog=DOCUMENTS)
-@click.argument("name", type=click.Choice(["classroom", "mower", "pioneer", "gnss", "pylon", "gallery"]))
+@ekfsim.command(epilog=DOCUMENTS, short_help="Draw the figures and tables of a document.")
+@click.argument("name", type=Word(["classroom", "mower", "pioneer", "gnss", "pylon", "gallery"]))
 @click.option("--out", "-o", type=Result(), required=True, help="A folder for the figures, tables and captions.md.")
 @click.option("--format", "formats", type=click.Choice(["png", "svg", "pdf"]), multiple=True, default=("png",),
               show_default=True, help="May be given several times.")  # fmt: skip
@@ -243,7 +253,7 @@ def figures(
     click.echo(shown(f"{out}: {len(written)} files, read captions.md first"))
 
 
-@ekfsim.command()
+@ekfsim.command(short_help="Run COMMANDS many times: is the filter honest?")
 @study_options
 def study(
     out: Path | None, resume: bool, force: bool, workers: int, cluster: str | None, expect: bool, **asked: Any
@@ -280,7 +290,7 @@ def study(
         raise RunError(told)
 
 
-@ekfsim.command()
+@ekfsim.command(short_help="Put two settings side by side, on the same draws.")
 @compare_options
 def compare(
     a: str | None, b: str | None, out: Path | None, force: bool, workers: int, cluster: str | None, **asked: Any

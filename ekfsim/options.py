@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +42,19 @@ class Seed(Whole):
         if seed > MOST_SEED:
             self.fail(f"{seed} is too large: {REPEATS}; choose one from 0 to {MOST_SEED}.", param, ctx)
         return super().convert(value, param, ctx)
+
+
+class Word(click.Choice[str]):
+    """One of a few words."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """The word. Fails for another, and tells the one that it nearly is."""
+        try:
+            return super().convert(value, param, ctx)
+        except click.BadParameter as refusal:
+            if near := get_close_matches(str(value).lower(), map(str, self.choices), 1):
+                self.fail(f"{refusal.message.rstrip('.')}; did you mean {near[0]!r}?", param, ctx)
+            raise
 
 
 class Source(click.Path):

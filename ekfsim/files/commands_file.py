@@ -181,7 +181,8 @@ class CommandsKeys(Strict):
 
     world: Name | None = Field(
         None,
-        description="The world file, relative to this file; a world named on the command line wins.",
+        description="The world file, relative to this file, or the bare name of one that comes along; a world named on "
+        "the command line wins.",
         examples=["../worlds/classroom.yaml"],
     )
     seed: Seed = Field(0, description="Whole number below 2³² that fixes all noise; --seed wins.")

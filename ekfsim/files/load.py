@@ -23,7 +23,7 @@ from ekfsim.files.fields import aliases
 from ekfsim.files.filter_checks import check_filter_settings, filter_warnings
 from ekfsim.files.marked import Mark, Node, parse, without_collection
 from ekfsim.files.marked import Path as Route
-from ekfsim.files.packaged import resolve, source_name
+from ekfsim.files.packaged import resolve, source_name, world_beside
 from ekfsim.files.schema import MODELS, Kind
 from ekfsim.files.settings import Setting, idle_on_log, of_log, overruled, pinned, refusal, remark
 from ekfsim.files.source import bytes_of, text_of
@@ -172,7 +172,7 @@ def scene_in(
     """The scene that was found in a file, in the world that it names or in the one given, its log not yet read."""
     if file.sound is None:  # nothing can be read in it, not even its world
         return Loaded(mistakes=file.mistakes)
-    source = Path(world) if world is not None else path.parent / (file.sound.value("world") or "")
+    source = Path(world) if world is not None else world_beside(path, file.sound.value("world") or "")
     logged = file.sound.value("recording", "format") in WITH_LANDMARKS
     if world is not None:
         found = read_world(source, logged=logged, settings=settings)

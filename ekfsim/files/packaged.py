@@ -2,11 +2,12 @@
 
 import difflib
 import os
+import re
 from pathlib import Path
 from typing import Literal
 
 from ekfsim.errors import EkfsimError, UsageError
-from ekfsim.files.looking import exists, is_folder
+from ekfsim.files.looking import exists, is_file, is_folder
 from ekfsim.printable import in_a_line
 
 Folder = Literal["worlds", "commands"]
@@ -46,6 +47,36 @@ def resolve(name_or_path: str | Path, kind: Folder) -> Path:
     return known[name]
 
 
+GROUPS = (  # of the commands that come along: what their names begin or end with
+    ("start here", re.compile("tour|square|theta")),
+    ("proofs: each shows one thing", re.compile("proof-.*")),
+    ("divergence: how a filter gets lost, and why", re.compile("diverge-.*")),
+    ("recorded logs, by --log", re.compile(".*_log")),
+    ("other systems", re.compile(".*")),
+)
+
+
+def grouped() -> list[tuple[str, dict[str, Path]]]:
+    """The packaged commands in groups, those to begin with first."""
+    left = packaged("commands")
+    groups = []
+    for title, names in GROUPS:
+        groups.append((title, {name: path for name, path in left.items() if names.fullmatch(name)}))
+        left = {name: path for name, path in left.items() if name not in groups[-1][1]}
+    return [(title, files) for title, files in groups if files]
+
+
+def world_beside(path: Path, named: str) -> Path:
+    """The world that a commands file names: a file relative to it, else one that comes along, by its bare name."""
+    near = path.parent / named
+    known = packaged("worlds")
+    try:
+        is_there = named not in known or is_file(near)
+    except OSError:
+        is_there = False
+    return near if is_there else known[named]
+
+
 def source_name(path: str | Path) -> str:
     """How outputs name a file, in a line: a packaged one alike on every machine, any other as it was given."""
     given = in_a_line(os.path.normpath(path))
@@ -57,7 +88,12 @@ def source_name(path: str | Path) -> str:
 
 
 def description_of(path: Path) -> str:
-    """The first line of a file's description, "" where it has none or cannot be read. Reads no further than that."""
+    """The first line of a file's description, "" where it has none or cannot be read."""
+    return described(path).partition("\n")[0]
+
+
+def described(path: Path) -> str:
+    """A file's description, "" where it has none or cannot be read. Reads no further than that."""
     import yaml
 
     from ekfsim.files.marked import LOADER, Tree
@@ -72,4 +108,4 @@ def description_of(path: Path) -> str:
                 break
     except (EkfsimError, yaml.YAMLError):
         return ""
-    return text.strip().partition("\n")[0] if isinstance(text, str) else ""
+    return text.strip() if isinstance(text, str) else ""

@@ -87,7 +87,9 @@ def filters_in(text: str, option: str = "--filter") -> tuple[str, ...]:
     names = tuple(name.strip() for name in text.split(","))
     for n, name in enumerate(names):
         if name not in FILTERS:
-            raise UsageError(f"{option} {name}: there is no such filter; known: {', '.join(FILTERS)}")
+            near = nearest(name, list(FILTERS))
+            right = f"did you mean '{near}'?" if near else f"known: {', '.join(FILTERS)}"
+            raise UsageError(f"{option} {short(name)}: there is no such filter; {right}")
         if name in names[:n]:
             raise UsageError(f"{option} {text}: '{name}' stands twice; delete one")
     return names

@@ -36,6 +36,10 @@ WORDS = {
         "this backslash begins no known escape",
         "write '\\\\' for a backslash, or use single quotes",
     ),
+    "invalid Unicode character escape": (
+        "this escape is no sign of its own",
+        "write the sign itself, or one escape for it, as in '\\U0001F916'",
+    ),
     "<document start>": ("this stands behind the end of the document", "indent it, or delete it"),
     "undefined tag handle": ("tags ('!name!') are not read", "write the value without it"),
     "incompatible YAML document": ("the file asks for another version of YAML", "delete the line '%YAML'"),

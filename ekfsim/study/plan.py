@@ -14,6 +14,7 @@ from ekfsim.files.commands_file import CommandsKeys
 from ekfsim.files.load import read, read_scene
 from ekfsim.files.load_study import Request
 from ekfsim.files.marked import parse
+from ekfsim.files.packaged import world_beside
 from ekfsim.files.settings import Setting
 from ekfsim.files.source import bytes_of, text_of
 from ekfsim.geometry import backend
@@ -143,7 +144,7 @@ def world_of(request: Request) -> Path:
     root, _ = parse(text_of(request.commands, str(request.commands)), str(request.commands))
     named = root.at(("world",))
     assert named is not None  # else there had been no scene
-    return request.commands.parent / named.written
+    return world_beside(request.commands, named.written)
 
 
 def _digest(path: Path) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from program import SHORT, WORLD, ekfsim, lay_out, left_in, process
 
-from ekfsim.files.packaged import packaged
+from ekfsim.files.packaged import description_of, packaged
 
 
 @pytest.fixture(autouse=True)
@@ -84,10 +84,67 @@ def test_schema_is_json(kind):
 
 
 def test_list_names_all_that_comes_along():
-    told = ekfsim("list")
-    assert (told.status, told.err) == (0, "")
-    names = [line.split()[0] for line in told.out.splitlines() if line.startswith("  ")]
-    assert names == [*packaged("worlds"), *packaged("commands")]
+    for more, kind in (((), "commands"), (("--worlds",), "worlds")):
+        told = ekfsim("list", *more)
+        assert (told.status, told.err) == (0, "")
+        names = [line.split()[0] for line in told.out.splitlines() if line.startswith("  ")]
+        assert sorted(names) == sorted(packaged(kind))
+    groups = [line.split(":")[0] for line in ekfsim("list").out.splitlines() if not line.startswith(" ")]
+    assert groups[:3] == ["start here", "proofs", "divergence"]
+
+
+def test_list_tells_all_that_a_file_says_of_itself():
+    (line, *more) = ekfsim("list", "tour").out.splitlines()
+    assert line == description_of(packaged("commands")["tour"])
+    assert len(more) > 2
+    assert ekfsim("list", "furnished-room").out.strip()
+    assert ekfsim("list", "--worlds", "gnss").out != ekfsim("list", "gnss").out
+    assert ekfsim("list", "tuor").err.endswith("did you mean 'tour'?\n")
+
+
+def test_no_summary_of_a_command_is_cut():
+    assert "..." not in ekfsim("--help").out.partition("Commands:")[2]
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        (("run", "tour", "--filter", "EKF"), "ekf"),
+        (("run", "tour", "--filter", "ekf,uuf"), "ukf"),
+        (("figures", "Classroom", "-o", "out"), "classroom"),
+    ],
+)
+def test_a_word_that_is_nearly_one_of_ours_is_met_with_it(words, meant):
+    told = ekfsim(*words)
+    assert (told.status, told.out) == (2, "")
+    assert told.err.endswith(f"did you mean '{meant}'?\n")
+
+
+def test_a_commands_file_may_name_a_world_that_comes_along(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "c.yaml").write_text("world: furnished-room\ncommands: [{say: a}]\n")
+    assert ekfsim("check", "c.yaml").out == "c.yaml: ok\n"
+    assert ekfsim("run", "c.yaml", "-q").status == 0
+    assert ekfsim("study", "c.yaml", "--runs", 2, "-o", "out").status == 0
+    (tmp_path / "furnished-room").write_text("name: mine\n")  # a file wins
+    assert "start: the key is missing" in ekfsim("check", "c.yaml").out
+
+
+def test_a_shared_world_is_told_of_once(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "w.yaml").write_text("name: a\n")
+    (tmp_path / "c.yaml").write_text("world: w.yaml\ncommands: [{say: a}]\n")
+    told = ekfsim("check", "./w.yaml", "c.yaml")
+    assert told.status == 2
+    lines = told.out.splitlines()
+    assert [line.split(": ")[1] for line in lines] == ["start", "noise", "what is wrong with it is told above"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no pipes by name here")
+def test_a_pipe_is_read_once():
+    told = process("check", "/dev/stdin", keys=b"name: a\n")
+    assert told.status == 2
+    assert "start: the key is missing" in told.out
 
 
 def test_output_that_only_ascii_can_reach_still_comes():
