@@ -10,6 +10,7 @@ from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap, wrap_one
 
 ROUNDING = 16 * float(np.finfo(float).eps)  # a difference below this share of what it is taken of is rounding
+SHARP = 1e-4  # of Σ Hᵢ² Pᵢᵢ; a sensor of less noise leaves less than P − K H P may be trusted with
 
 
 def symmetric(P: Array) -> Array:

@@ -47,6 +47,8 @@ def covariance(P: Array) -> Array:
     Symmetric, no variance below 0, no correlation beyond ±1. The one place where that is forced.
     """
     P = symmetric(P)
+    if P.ndim == 2 and _is_covariance(P.tolist()):
+        return P
     variances = np.diagonal(P, axis1=-2, axis2=-1)
     square = variances[..., :, None] * variances[..., None, :]
     if (square >= P * P).all() and (variances >= 0).all():
@@ -54,6 +56,18 @@ def covariance(P: Array) -> Array:
     σ = np.sqrt(np.maximum(variances, 0.0))
     limit = σ[..., :, None] * σ[..., None, :]
     return np.clip(P, -limit, limit)
+
+
+def _is_covariance(P: Rows) -> bool:
+    """Whether one symmetric matrix needs no force."""
+    for i, row in enumerate(P):
+        variance = row[i]
+        if not variance >= 0:
+            return False
+        for j in range(i):
+            if row[j] * row[j] > variance * P[j][j]:
+                return False
+    return True
 
 
 def square_root(P: Array, seen: Array | None = None) -> Array:
@@ -174,7 +188,8 @@ def _carlson(A: Array, f: Array, r: Array) -> tuple[Array, Array, Array]:
 def square_root_one(P: Rows, H: Rows) -> Rows:
     """`square_root` of one robot in plain floats, held equal to it by a test."""
     n = len(P)
-    order = sorted(range(n), key=lambda i: -sum(row[i] * row[i] for row in H) * P[i][i])
+    seen = [-sum([row[i] * row[i] for row in H]) * P[i][i] for i in range(n)]
+    order = sorted(range(n), key=seen.__getitem__)
     L = [[0.0] * n for _ in range(n)]
     for j, p in enumerate(order):
         P_p, L_p = P[p], L[p]
@@ -198,8 +213,8 @@ def slope_one(H: Rows, L: Rows) -> Rows:
         f = []
         for j in range(n):
             d = terms = 0.0
-            for i in range(n):
-                term = row[i] * L[i][j]
+            for h, L_i in zip(row, L, strict=True):
+                term = h * L_i[j]
                 d += term
                 terms += abs(term)
             f.append(d if abs(d) > ROUNDING * terms else 0.0)
@@ -210,6 +225,11 @@ def slope_one(H: Rows, L: Rows) -> Rows:
 def conditioned_one(L: Rows, D: Rows, R: Rows, h: list[float]) -> tuple[Rows, Rows, Rows, list[float]]:
     """`conditioned` of one robot: the root of P, K, T and s."""
     n, k = len(L), len(D)
+    if k == 1:
+        left, b, s_1 = _carlson_one(L, D[0], R[0][0])
+        if s_1 <= (ROUNDING * h[0]) ** 2:
+            return L, [[0.0]] * n, [[1.0]], [0.0]
+        return left, [[b_q / s_1 if s_1 > 0 else 0.0] for b_q in b], [[1.0]], [s_1]
     A, R = [*map(list, L), *map(list, D)], [*map(list, R)]
     T, s, K = [[float(i == j) for j in range(k)] for i in range(k)], [0.0] * k, [[0.0] * k for _ in range(n)]
     for i in range(k):
@@ -262,6 +282,8 @@ def _carlson_one(A: Rows, f: list[float], r: float) -> tuple[Rows, list[float], 
 
 def nis_one(T: Rows, s: list[float], innovation: list[float]) -> float:
     """`Conditioned.nis` of one robot."""
+    if len(s) == 1:
+        return innovation[0] * innovation[0] / s[0] if s[0] > 0 else math.nan
     if not any(s) or any(map(math.isnan, s)):
         return math.nan
     e: list[float] = [sum(map(mul, row, innovation)) for row in T]
@@ -270,7 +292,10 @@ def nis_one(T: Rows, s: list[float], innovation: list[float]) -> float:
 
 def squared_one(L: Rows, before: Rows) -> Rows:
     """`squared` of one robot."""
-    P = [[sum(map(mul, row, other)) for other in L] for row in L]
-    for i, row in enumerate(P):
-        row[i] = min(row[i], before[i][i])
+    n = len(L)
+    P = [[0.0] * n for _ in range(n)]
+    for i, row in enumerate(L):
+        P[i][i] = min(sum(map(mul, row, row)), before[i][i])
+        for j in range(i):
+            P[i][j] = P[j][i] = sum(map(mul, row, L[j]))
     return P

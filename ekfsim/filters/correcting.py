@@ -1,10 +1,11 @@
 """The end that the updates share: a reading is judged, and the belief revised where it is used."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from ekfsim.filters.algebra import refusal, refusal_one, wrapped
+from ekfsim.filters.algebra import SHARP, refusal, refusal_one, wrapped
 from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.filters.conditioning import (
     Conditioned,
@@ -78,16 +79,33 @@ def where_used(refused: Integers, posterior: Gaussian, prior: Gaussian) -> Gauss
 def _corrected_one(
     prior: Gaussian, reading: Linearized, skip: bool, gate: float | None, headings: tuple[int, ...]
 ) -> tuple[Gaussian, Correction]:
-    """The same for one robot in plain floats: a third of the time, held equal to the above by a test."""
+    """The same for one robot: a third of the time, held equal to the above by a test."""
     (x, P), (z, h, innovation, H, R) = prior, reading
-    rows, slopes, noise = P.tolist(), H.tolist(), R.tolist()
-    L = square_root_one(rows, slopes)
-    D = slope_one(slopes, L)
-    root, K_rows, T, s = conditioned_one(L, D, noise, h.tolist())
-    nis = nis_one(T, s, innovation.tolist())
+    K, S, P_new, nis = _dull(P, H, R, innovation) or _any(P, H, R, h, innovation)
     refused = refusal_one(z, h, nis, skip, gate)
-    K, S = np.array(K_rows), np.array([[s[0]]]) if len(s) == 1 else H @ P @ H.mT + R if any(s) else np.zeros_like(R)
     posterior = prior
-    if refused is Refused.NOT and any(s):
-        posterior = Gaussian(wrapped(x + K @ innovation, headings), np.array(squared_one(root, rows)))
+    if refused is Refused.NOT and not math.isnan(nis):
+        posterior = Gaussian(wrapped(x + K @ innovation, headings), P_new)
     return posterior, Correction(h, innovation, R, S, H, K, np.array(nis), np.array(int(refused)))
+
+
+def _dull(P: Array, H: Array, R: Array, innovation: Array) -> tuple[Array, Array, Array, float] | None:
+    """K, S, P and NIS of one number that leaves of every variance so much that the textbook's difference is right."""
+    if len(innovation) != 1:
+        return None
+    row, r = H[0], float(R[0, 0])
+    if not r > SHARP * float(row * row @ P.diagonal()):
+        return None
+    PHt = P @ row
+    s = float(row @ PHt) + r
+    column = PHt[:, None]
+    return column / s, np.array([[s]]), P - column * PHt / s, float(innovation[0]) ** 2 / s
+
+
+def _any(P: Array, H: Array, R: Array, h: Array, innovation: Array) -> tuple[Array, Array, Array, float]:
+    """K, S, P and NIS by the square root of P, in plain floats."""
+    rows, slopes = P.tolist(), H.tolist()
+    L = square_root_one(rows, slopes)
+    root, K, T, s = conditioned_one(L, slope_one(slopes, L), R.tolist(), h.tolist())
+    S = np.array([[s[0]]]) if len(s) == 1 else H @ P @ H.mT + R if any(s) else np.zeros_like(R)
+    return np.array(K), S, np.array(squared_one(root, rows)), nis_one(T, s, innovation.tolist())

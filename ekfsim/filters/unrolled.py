@@ -7,6 +7,7 @@ sharper than the belief) is left to the readable text, for those runs alone. A t
 
 import numpy as np
 
+from ekfsim.filters.algebra import SHARP
 from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.correcting import Linearized, corrected
@@ -15,7 +16,6 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.lanes import back, front
 
 MANY = 64  # runs from which on this pays
-SHARP = 1e-4  # of Σ Hᵢ² Pᵢᵢ; a sensor of less noise leaves less than P − K H P may be trusted with
 STILL = np.eye(3)[:, :2, None]  # what the first two columns of F are where no motion depends on the place
 
 
