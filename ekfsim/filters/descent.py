@@ -9,6 +9,7 @@ from ekfsim.models.protocols import Sensor
 
 CONVERGED = 1e-10  # standard deviations; a step that is shorter is the last
 SHORTEST = 2.0**-10  # a step that must be shortened so much before it leads down leads nowhere
+TRIES = 8  # for each whole step: in a narrow bent valley, as a far too sharp sensor makes one, no step gets far
 
 
 class Search:
@@ -42,9 +43,11 @@ class Search:
         ν, h, H = (_rows(a, self._axes, a.shape[len(a.shape) - m :]).copy() for a, m in ((ν, 1), (h, 1), (H, 2)))
         going = np.flatnonzero(np.broadcast_to(used, self._axes))
         J, share, left = np.zeros(len(x)), np.ones(len(x)), np.full(len(x), float(most))
+        tries = TRIES * most
         J[going] = self._cost(going, w[going], ν[going], h[going])[0]
         step, going = self._step(going, w, ν, h, H)
-        while len(going):
+        while len(going) and tries:
+            tries -= 1
             w_t = w[going] + share[going, None] * step[going]
             x_t = wrapped(self._x[going] + np.matvec(self._L[going], w_t), self._headings)
             h_t, H_t = self._linearized(x_t)
@@ -61,6 +64,7 @@ class Search:
             step[moved] = renewed[moved]
             going = np.concatenate([moved, stays[share[stays] > SHORTEST]])
         settled = left > 0
+        settled[going] = False
         return x.reshape(*self._axes, n), settled.reshape(self._axes)
 
     def _step(self, some: Integers, w: Array, ν: Array, h: Array, H: Array) -> tuple[Array, Integers]:

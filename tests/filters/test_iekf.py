@@ -1,5 +1,6 @@
 import math
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -157,3 +158,29 @@ def test_a_run_among_walls_is_the_same_alone_as_among_others():
     for one, all_runs in zip(play(replace(scene, run=7)), many, strict=True):
         assert all_runs.posterior.mean[7] == pytest.approx(one.posterior.mean, abs=1e-9)
         assert all_runs.posterior.covariance[7] == pytest.approx(one.posterior.covariance, abs=1e-9)
+
+
+class Counted(Laser):
+    """A laser that counts how often it is looked along."""
+
+    __slots__ = ()
+    looks: ClassVar[list[int]] = []
+
+    def linearize(self, x):
+        self.looks.append(len(x))
+        return super().linearize(x)
+
+
+@pytest.mark.parametrize("most", [8, 50])
+def test_a_bent_valley_is_not_walked_to_its_end(most):
+    """A beam of a millimetre and a belief wider than the room, all of it correlated: many short steps lead down."""
+    random = np.random.default_rng(1)
+    x = np.column_stack([random.uniform(1, 9, (64, 2)), random.uniform(-np.pi, np.pi, 64)])
+    root = random.normal(size=(64, 3, 3))
+    P = root @ root.mT
+    laser = Counted(ROOM, 0.3, 1e-4)
+    laser.looks.clear()
+    _, correction = IEKF(iterations=most).update(Gaussian(x, P), laser, random.uniform(1, 5, (64, 1)))
+    assert len(laser.looks) <= 8 * most + 2
+    if most == 8:
+        assert not correction.settled.all()
