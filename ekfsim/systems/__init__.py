@@ -8,7 +8,8 @@ and so on, wherever the package cites an equation, are these, and here is where 
          23 to 25, 30 models/landmarks.py · its listing: filters/listing.py, models/frozen.py
     001  pioneer: Tamás, Lazea, Robotin, Marcu, Herle & Szekely, State Estimation Based on Kalman Filtering Techniques
          in Navigation
-         7 to 11 filters/kf.py · 12, 13 filters/ekf.py · 14 to 17 filters/unscented.py · 20 to 28 filters/ukf.py
+         7 to 11 filters/kf.py, nominal.py · 12, 13 filters/ekf.py · 14 to 17 filters/unscented.py
+         20 to 28 filters/ukf.py, ukf_augmented.py (22)
          18, 19 models/polar.py · 29 to 35 models/odometry.py · 38 models/echo.py, and its estimate systems/echo.py
          fig. 4 models/infrared.py · fig. 6 models/ultrasonic.py · 36, 37 models/yaw.py, which it does not use itself
     002  classroom: Localization and the extended Kalman filter, an assignment
