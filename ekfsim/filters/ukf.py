@@ -55,10 +55,9 @@ class UKF:
         is P_x⁻x P⁺.
         """
         x, P = belief
-        _, _, G, M, Q = motion.linearize(x, u)
-        n = x.shape[-1]
+        _, F, G, M, Q = motion.linearize(x, u)
         moved = unscented_transform(
-            x, P, lambda X: motion.f(X, u[..., None, :]), self._weights(x), self.headings, np.eye(n)
+            x, P, lambda X: motion.f(X, u[..., None, :]), self._weights(x), self.headings, self._turning(F)
         )
         P_new = self._definite(x, covariance(moved.covariance + G @ M @ G.mT + Q))
         return Gaussian(moved.mean, P_new), Prediction(statistical_slope(moved.slope, moved.root), G)
@@ -77,11 +76,8 @@ class UKF:
         """
         x, P = prior
         _, H, R = sensor.linearize(x)
-        directions, turning = angles(sensor.outputs), None
-        if directions and self.headings:
-            turning = np.zeros_like(H)
-            turning[..., self.headings] = H[..., self.headings]
-        seen = unscented_transform(x, P, sensor.h, self._weights(x), directions, turning)
+        directions = angles(sensor.outputs)
+        seen = unscented_transform(x, P, sensor.h, self._weights(x), directions, self._turning(H))
         D, noise = seen.slope, self._definite(x, seen.bend + R)
         innovation = sensor.residual(z, seen.mean)
         learnt = conditioned(seen.root, D, noise, seen.mean)
@@ -91,6 +87,14 @@ class UKF:
         return where_used(refused, posterior, Gaussian(x, P)), Correction(
             seen.mean, innovation, R, learnt.S(D, noise), statistical_slope(D, seen.root), learnt.K, nis, refused
         )
+
+    def _turning(self, J: Array) -> Array | None:
+        """What of a Jacobian (…, k, n) the headings of the state do, None where it has none."""
+        if not self.headings:
+            return None
+        turning = np.zeros_like(J)
+        turning[..., self.headings] = J[..., self.headings]
+        return turning
 
     def _weights(self, x: Array) -> Weights:
         return _weights(x.shape[-1], self.alpha, self.beta, self.kappa)

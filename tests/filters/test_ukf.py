@@ -171,3 +171,19 @@ def test_an_unknown_heading_stays_unknown_until_something_is_read(system, degree
             break
         i = step.layout.headings[0]
         assert math.sqrt(step.posterior.covariance[i, i]) == pytest.approx(sigma[2], rel=0.02)
+
+
+@pytest.mark.parametrize("degrees", [30, 150, 360])
+def test_a_heading_that_is_measured_anew_is_known_whatever_it_was(degrees):
+    """The cart of document 004 takes its yaw from the input: what it was goes to theta_prev, with all its doubt."""
+    cart = load_scene("pylon")
+    steps = play(replace(cart, filter="ekf"))
+    motion, u = next((s.entry.given.motion, s.entry.given.u) for s in steps if s.prediction is not None)
+    n, (θ, before) = len(cart.world.layout.names), cart.world.layout.headings
+    P = 1e-4 * np.eye(n)
+    P[θ, θ] = math.radians(degrees) ** 2
+    x = np.zeros(n)
+    right, _ = EKF(headings=(θ, before)).predict(Gaussian(x, P), motion, u)
+    belief, _ = UKF(headings=(θ, before)).predict(Gaussian(x, P), motion, u)
+    assert belief.covariance[θ, θ] == pytest.approx(right.covariance[θ, θ], rel=1e-6)
+    assert belief.covariance[before, before] == pytest.approx(P[θ, θ], rel=1e-6)
