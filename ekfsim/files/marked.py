@@ -23,6 +23,7 @@ from ekfsim.printable import quoted, short
 MAX_VALUES = 1_000_000
 MAX_DEPTH = 64
 LARGE = 2.0**53  # from there on a float does not tell which whole number was written
+OLD_BREAKS = "\x85\u2028\u2029"
 LONG = 2_000_000  # characters, which can be as many values
 TOO_MANY = "the file holds more than 1 000 000 values, aliases written out"
 VALUES = (yaml.ScalarEvent, yaml.CollectionStartEvent)
@@ -190,9 +191,11 @@ class Tree:
         self.mistakes: list[Mistake] = []
         self.open: list[Open] = []
         self.anchors: dict[str, Node] = {}
+        self.came_back: dict[int, str] = {}  # the sign that stands in for a break → that break
 
     def grow(self, text: str, loader: Any) -> None:
         """Grow by the first document of a text. Raises YAMLError where it is none."""
+        text = self.without_breaks(text)
         if len(text) > LONG:
             self.count(text, loader)
         for event in yaml.parse(text, Loader=loader):
@@ -201,6 +204,18 @@ class Tree:
                 self.refuse(mark_of(event), "a second document begins here", right)
                 break
             self.take(event)
+
+    def without_breaks(self, text: str) -> str:
+        """The text with other signs for those that end a line in YAML 1.1 alone, neither in YAML 1.2 nor in an editor.
+
+        They come back in the values; so lines are counted as whoever wrote the file sees them.
+        """
+        if breaks := [sign for sign in OLD_BREAKS if sign in text]:
+            free = (sign for sign in map(chr, range(0xE000, 0xF900)) if sign not in text)
+            stand_ins = dict(zip(breaks, free, strict=False))
+            self.came_back = {ord(stand_in): sign for sign, stand_in in stand_ins.items()}
+            return text.translate({ord(sign): stand_in for sign, stand_in in stand_ins.items()})
+        return text
 
     def count(self, text: str, loader: Any) -> None:
         """Raises InputError where a text holds too many values, sooner than a tree of them would be made."""
@@ -212,6 +227,8 @@ class Tree:
         """Grow by one event. A long file has a million: what is rare is seen in a word before it is looked into."""
         if isinstance(event, yaml.ScalarEvent):
             text, quoted = event.value, not event.implicit[0]
+            if self.came_back:
+                text = text.translate(self.came_back)
             node = Node(mark_of(event), text if quoted else scalar(text), text, quoted)
             if event.tag is not None:
                 self.check_tag(event, node)

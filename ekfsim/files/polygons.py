@@ -51,10 +51,16 @@ def crossing(polygon: shapely.Polygon) -> str:
 
 
 def pair(point: Sequence[float]) -> str:
-    """A point as it is written: [4, 3.5]."""
-    return f"[{point[0]:.6g}, {point[1]:.6g}]"
+    """A point as it is written, in a map's grid to 0.1 mm.
+
+    >>> pair([4, 3.5]), pair([388097.25, 5632217.123456])
+    ('[4, 3.5]', '[388097.25, 5632217.1235]')
+    """
+    x, y = (f"{value:.6g}" if abs(value) < FINE else f"{round(value, 4):.15g}" for value in point)
+    return f"[{x}, {y}]"
 
 
+FINE = 100  # m, up to which six digits tell 0.1 mm
 MOST_IN_THE_WAY = 5  # obstacles that are told of one place
 
 

@@ -1,5 +1,7 @@
 """What a YAML parser says, in words that help."""
 
+import re
+
 import yaml
 
 from ekfsim.errors import Mistake, Place
@@ -78,5 +80,5 @@ def words_for(problem: str, char: str) -> tuple[str, str]:
 
 def character_at(text: str, line: int, column: int) -> str:
     """The character at a place, "" behind the end of its line."""
-    lines = text.splitlines()
+    lines = re.split("\r\n|\r|\n", text)
     return lines[line - 1][column - 1 : column] if line <= len(lines) else ""

@@ -27,6 +27,7 @@ def get_ready() -> None:
     named = os.environ.get("MPLBACKEND")
     os.environ["MPLBACKEND"] = "agg"  # read once, as matplotlib is imported
     logging.getLogger("matplotlib").addFilter(_of_no_backend)
+    logging.getLogger("matplotlib").addFilter(_of_no_folder)  # to the end: it looks for one now and again
     try:
         import matplotlib  # noqa: F401 (to see whether it can be)
     except ValueError as refusal:
@@ -42,3 +43,10 @@ def get_ready() -> None:
 def _of_no_backend(record: logging.LogRecord) -> bool:
     """Whether matplotlib's warning is of another setting than the backend of a matplotlibrc."""
     return "Key backend: " not in record.getMessage()
+
+
+def _of_no_folder(record: logging.LogRecord) -> bool:
+    """Whether matplotlib's warning is of another thing than its folder: without a writable home it uses another."""
+    return not any(
+        words in record.getMessage() for words in ("mkdir -p failed", "writable directory", "cache directory")
+    )

@@ -177,3 +177,8 @@ def test_files_are_drawn_whatever_backend_of_windows_the_settings_name(place):
     assert drawn.err == 3 * "ekfsim: world.yaml: this is a file; name a folder\n"  # what is asked when all can be drawn
     for result in ("frames/frame-0000.png", "frames.gif", "again/frame-0000.png", "out/current.png"):
         assert (place / result).exists()
+
+
+def test_a_home_that_cannot_be_written_is_no_matter(place):
+    told = process("render", "short.yaml", "-o", "out", HOME="/proc/nowhere", XDG_CONFIG_HOME="", XDG_CACHE_HOME="")
+    assert (told.status, told.err) == (0, "")

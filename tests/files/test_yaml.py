@@ -177,3 +177,20 @@ def test_what_is_refused_leaves_the_rest_to_be_checked():
     assert len(mistakes) == 6
     assert set(root.keys) == {"a", "c", "e"}
     assert root.at(("a",)).faulty
+
+
+@pytest.mark.parametrize("sign", ["\x85", "\u2028", "\u2029"])
+def test_lines_are_counted_as_editors_count_them(sign):
+    root, mistakes = parse(f"name: a{sign}b\n# c{sign}d\ntext: 'e{sign}f'\nname: g\n\ue000: h\n", "f.yaml")
+    assert root.plain() == {"name": f"a{sign}b", "text": f"e{sign}f", "\ue000": "h"}
+    assert [str(mistake.place) for mistake in mistakes] == ["f.yaml:4:1"]
+    assert root.keys["\ue000"] == (5, 1)
+    with pytest.raises(InputError) as refused:
+        parse(f"name: a{sign}b\nlist: @\n", "f.yaml")
+    assert str(refused.value).startswith("f.yaml:2:7: a value cannot begin with '@'")
+
+
+def test_an_escaped_half_of_a_sign_is_told_with_the_way_out():
+    with pytest.raises(InputError) as refused:
+        parse('name: "\\ud83e\\udd16"\n', "f.yaml")
+    assert "write the sign itself" in str(refused.value)
