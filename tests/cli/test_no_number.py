@@ -101,3 +101,14 @@ def test_what_is_written_beside_pictures(system, filter):
         words = [narrate(view, scene), title(view, 9), *notes(view, scene, seen), spread(view, 0.954)]
         words.append(json.dumps(line_of(view.step, scene, 0.954), allow_nan=False))
         assert not NO_NUMBER.search("\n".join(words))
+
+
+def test_a_search_that_was_cut_off_is_told_in_narrative_trace_and_study(tmp_path):
+    for steps, told in ((1, True), (50, False)):
+        cut = ("--filter", "iekf", "--set", f"filter.iterations={steps}")
+        texts = dict(outputs(tmp_path / str(steps), "tour", *cut))
+        lines = [line.get("settled", True) for line in sense_lines(texts["trace"])]
+        assert (texts["narrative"].count("did not settle") > 0) == told
+        assert texts["narrative"].count("did not settle") == lines.count(False)
+        done = ekfsim("study", "tour", *cut, "--runs", 4)
+        assert ("readings the search for the most probable state did not settle" in done.out) == told, done.err
