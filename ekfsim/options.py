@@ -150,8 +150,8 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
                      help="A recorded log in place of the one that COMMANDS names."),
         READING,
         click.option("--filter", "filter_name", metavar="NAME,…",
-                     help="In place of the file's filter: kf, ekf, iekf, ukf or pf. Several are put side by side; the "
-                     "name of each then stands before the ending of its files."),
+                     help="In place of the file's filter: kf, kf-nominal, ekf, iekf, ukf, ukf-augmented or pf. "
+                     "Several are put side by side; the name of each then stands before the ending of its files."),
         GATE,
         GUARD,
         SET,

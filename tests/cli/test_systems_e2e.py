@@ -217,7 +217,7 @@ def test_pictures_of_a_run(place, name):
         (["pylon_log.yaml", "--log", "gnss-log/gnss.csv"], "gnss-log/gnss.csv:1:1: 3 columns stand in this row; "),
         (["gnss.yaml", "--log", "gnss-log"], "gnss.yaml:3:8: drive: the file has 'drive', not a recording; "),
         (["gnss_log.yaml", "--world", "mower-world.yaml"], "gnss_log.yaml:2:21: recording.format: a 'gnss' log is of "),
-        (["gnss.yaml", "--filter", "lkf"], "ekfsim: --filter lkf: there is no such filter; known: kf, "),
+        (["gnss.yaml", "--filter", "lkf"], "ekfsim: --filter lkf: there is no such filter; did you mean 'kf'?"),
     ],
 )
 def test_a_log_of_another_kind_is_refused_in_a_line(place, args, told):
