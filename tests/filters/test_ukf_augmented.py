@@ -11,6 +11,8 @@ from ekfsim.filters.ukf import UKF
 from ekfsim.filters.ukf_augmented import AugmentedUKF, augmented
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.laser import Laser
+from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.yaw import Yaw
 
 
 def by_hand(mean, P, function):
@@ -111,3 +113,14 @@ def test_a_bearing_at_the_turn_of_the_circle():
     posterior, correction = AugmentedUKF().update(prior, landmark(-3.0, 0.0), np.array([3.0, -3.1]))
     assert abs(correction.innovation[1]) == pytest.approx(math.pi - 3.1, abs=1e-6)
     assert definite(posterior.covariance, 1e-12)
+
+
+@pytest.mark.parametrize("degrees", [60, 104, 120, 180, 360])
+def test_an_unknown_heading_stays_unknown_until_it_is_read(degrees):
+    """Standing still without noise leaves P as it is, however wide; a compass then tells the heading."""
+    P = np.diag([0.05, 0.05, math.radians(degrees)]) ** 2
+    stood, _ = AugmentedUKF().predict(Gaussian(np.zeros(3), P), MoveTurn(0.1, 0.1), np.zeros(2))
+    assert stood.covariance == pytest.approx(P, rel=1e-9, abs=1e-12)
+    told, _ = AugmentedUKF().update(stood, Yaw(0.0, math.radians(1)), np.array([2.0]))
+    assert told.mean[2] == pytest.approx(2.0, abs=1e-3)
+    assert math.sqrt(told.covariance[2, 2]) == pytest.approx(math.radians(1), rel=1e-3)
