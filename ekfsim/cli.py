@@ -169,8 +169,9 @@ def check(files: tuple[str, ...]) -> None:
             continue
         warn(warning for warning in found.warnings if warning not in warned)
         warned.update(found.warnings)
-        new = [mistake for mistake in found.mistakes if mistake.placed_alike not in before]
-        before.update(mistake.placed_alike for mistake in new)
+        new = [mistake for mistake in found.mistakes if not before or mistake.placed_alike not in before]
+        if len(files) > 1:
+            before.update(mistake.placed_alike for mistake in new)
         all_told = in_a_line(f"{file}: {'what is wrong with it is told above' if found.mistakes else 'ok'}")
         click.echo("\n".join(told(new)) or all_told)
         wrong = wrong or bool(found.mistakes)
