@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ekfsim.filters.algebra import symmetric
 from ekfsim.filters.belief import Belief, Gaussian
+from ekfsim.filters.conditioning import covariance
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.protocols import Motion
@@ -31,7 +31,7 @@ def stretch(belief: Belief, motion: Motion, U: Array) -> Gaussian:
     W = G @ motion.M(U) @ G.mT + motion.Q(U)
     from_start = P.T[..., None] + np.cumsum(_sheared(np.ascontiguousarray(W.T), -way), axis=-1)
     mean = np.stack([x[..., 0].T[..., None] + way[0], x[..., 1].T[..., None] + way[1], θ])
-    return Gaussian(mean.T, symmetric(_sheared(from_start, way).T))
+    return Gaussian(mean.T, covariance(_sheared(from_start, way).T))
 
 
 def _sheared(P: Array, way: Array) -> Array:

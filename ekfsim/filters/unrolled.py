@@ -10,6 +10,7 @@ import numpy as np
 from ekfsim.filters.algebra import SHARP
 from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.filters.chi_square import quantile
+from ekfsim.filters.conditioning import covariance as as_covariance
 from ekfsim.filters.correcting import Linearized, corrected
 from ekfsim.geometry import Array, Booleans, backend
 from ekfsim.geometry.angles import wrap
@@ -35,7 +36,7 @@ def predicted(P: Array, F: Array, G: Array, M: Array, Q: Array | float) -> Array
     if np.ndim(Q):
         Q = np.asarray(Q)
         new += front(Q) if Q.ndim == 3 else Q[..., None]
-    return back(new)
+    return as_covariance(back(new))
 
 
 def _propagated(P: Array, F: Array, G: Array, M: Array) -> Array | None:
@@ -86,12 +87,12 @@ def updated(
         refused[nis > quantile(gate, 1)] = Refused.GATE
     if skip is not False:
         refused[np.broadcast_to(skip, refused.shape)] = Refused.GUARD
-    posterior = Gaussian(back(mean, 1), back(covariance))
+    with np.errstate(invalid="ignore"):  # those that are not clear are done again below
+        posterior = Gaussian(back(mean, 1), as_covariance(back(covariance)))
     correction = Correction(h, ν, R, s[:, None, None], H, back(K, 1)[..., None], nis, refused)
     kept = refused != Refused.NOT
     if kept.any():
-        np.copyto(mean, x, where=kept)
-        np.copyto(covariance, P, where=kept)
+        posterior.mean[kept], posterior.covariance[kept] = prior.mean[kept], prior.covariance[kept]
     if not clear.all():
         _with_care(~clear, prior, reading, skip, gate, heading, posterior, correction)
     return posterior, correction

@@ -13,7 +13,10 @@ from scenes import DESK, scene
 from ekfsim import play
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.conditioning import covariance
+from ekfsim.filters.stretch import stretch
 from ekfsim.geometry.backend import using
+from ekfsim.localization import first_belief
+from ekfsim.models.move_turn import MoveTurn
 from ekfsim.models.protocols import Quantity
 from ekfsim.records import Move, Sense
 from ekfsim.world import Noise
@@ -208,6 +211,29 @@ def test_a_covariance_stays_one_in_every_world(name, hard):
     made = replace(made, world=replace(made.world, told=replace(made.world.told, sigma=np.array(sigma))))
     for step in play(made, np.arange(256)):
         sound(step.posterior.covariance)
+
+
+@pytest.mark.parametrize(("name", "backend"), [*((name, "numpy") for name in EXACT), ("ekf", BACKENDS[-1])])
+@pytest.mark.parametrize("off", [1e-3, 1e-6, 1e-8])
+def test_the_way_back_leaves_a_covariance(name, backend, off):
+    """Where an unsure heading moved the place and moves it back, what is left of σ_xx is rounding, of σ_xθ is not."""
+    course = (
+        Move(1.0, math.pi + off),
+        Move(1.0, 0.3),
+        Sense(0.2),
+        Move(0.5, math.pi - off),
+        Move(0.5, 0.1),
+        Sense(1.0),
+    )
+    made = scene(*course, start=(3, 3, 0.7), noise=Noise(0, 0, 0, 0, 0.3), guard="off", filter=name)
+    made = replace(made, world=replace(made.world, told=replace(made.world.told, sigma=np.array([0, 0, 1.0]))))
+    with using(backend):
+        for step in play(made, np.arange(MANY)):
+            sound(step.posterior.covariance)
+    for step in play(made):
+        sound(step.posterior.covariance)
+    moves = np.array([(move.distance, move.angle) for move in course if isinstance(move, Move)])
+    sound(stretch(first_belief(made), MoveTurn(0.0, 0.0), moves).covariance)
 
 
 @pytest.mark.parametrize("runs", [None, np.arange(3)])
