@@ -25,23 +25,23 @@ def fault_of(points: Sequence[Sequence[float]]) -> Fault | None:
             f"the last point {pair(points[0])} repeats the first",
             "delete it: an outline closes by itself",
         )
-    corners = np.array(points, dtype=float)
-    if without_area(corners):
+    if without_area(points):
         return None, "the polygon has no area: its points lie on one line", "move a point off that line"
-    polygon = shapely.Polygon(corners)
+    polygon = shapely.Polygon(points)
     if not polygon.is_valid:
         return None, f"the outline crosses or touches itself{crossing(polygon)}", "give the corners in order, around it"
     return None
 
 
-def without_area(corners: Array) -> bool:
-    """Whether all points lie on one line, to rounding. corners : (n, 2) m"""
-    corners = corners - corners[0]  # far from the origin, products of coordinates have no digit left for an area
-    least = 1e-12 * float(np.ptp(corners, axis=0).max()) ** 2
-    x, y = corners.T
-    if abs(float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))) / 2 > least:
+def without_area(points: Sequence[Sequence[float]]) -> bool:
+    """Whether all points lie on one line, to rounding. In plain floats: a file may hold thousands of small polygons."""
+    x_0, y_0 = points[0]  # far from the origin, products of coordinates have no digit left for an area
+    x, y = [point[0] - x_0 for point in points], [point[1] - y_0 for point in points]
+    least = 1e-12 * max(max(x) - min(x), max(y) - min(y)) ** 2
+    twice = sum(a * d - b * c for a, b, c, d in zip(x, y, x[1:], y[1:], strict=False))  # the last edge ends at 0, 0
+    if abs(twice) / 2 > least:
         return False  # the area that it encloses is at most that of its hull
-    return bool(shapely.MultiPoint(corners).convex_hull.area <= least)
+    return bool(shapely.MultiPoint(list(zip(x, y, strict=True))).convex_hull.area <= least)
 
 
 def crossing(polygon: shapely.Polygon) -> str:
