@@ -13,6 +13,7 @@ from ekfsim.filters.listing import ListingEKF
 from ekfsim.localization import filter_of, play
 from ekfsim.models.layout import SPEED_POSE
 from ekfsim.models.position import Position
+from ekfsim.models.yaw import Yaw
 from ekfsim.records import Control, Entry, Reading
 from ekfsim.simulation.interpolation import stretched
 
@@ -57,6 +58,29 @@ def test_of_several_runs_each_has_its_own_fixes():
     z = np.array([entry.given.z for entry in readings(stretched(log))])
     assert z.shape == (20, 2, 2)
     assert np.array_equal(z[:, 0], -z[:, 1])
+
+
+def test_readings_of_other_instruments_stay_where_they_are():
+    log = speeds(12, 3).log.entries
+    north = Reading(Yaw(0.0, 0.1), np.array([0.5]), "compass")
+    seen = [*log[:9], Entry(0, north, t=log[8].t), *log[9:]]
+    made = list(stretched(seen))
+    assert [entry.index for entry in made] == list(range(len(made)))
+    assert [entry.given for entry in made if entry.given is north] == [north]
+    fixes = [
+        [e.given.z.tolist() for e in readings(stretched(entries)) if e.given.name == "gnss"] for entries in (log, seen)
+    ]
+    assert fixes[0] == fixes[1]
+    assert len(fixes[0]) == 12
+
+
+@pytest.mark.parametrize("fixes", ["0.003,1,2\n0.011,3,4", "-5,1,2\n70,3,4", "0.01,1,2\n0.01,3,4"])
+def test_a_log_has_all_its_fixes_whatever_their_stamps_and_no_row_cut_in_two(tmp_path, fixes):
+    (tmp_path / "wheelspeeds-1.csv").write_text("time,vr,vl\n0,0,0\n0.005,1,1\n0.01,1,1\n0.01,1,2\n0.02,1,1\n")
+    (tmp_path / "gnss-1.csv").write_text(f"t,x,y\n{fixes}\n")
+    made = list(stretched(load_scene("gnss_log", log=tmp_path, reading="coded").log.entries))
+    assert [entry.given.u[2] for entry in controls(made)] == pytest.approx([0.005, 0.005, 0, 0.01])
+    assert [entry.given.z.tolist() for entry in readings(made)] == [[1.5, 2.5], [2, 3], [2.5, 3.5], [3, 4]]
 
 
 def test_without_a_fix_there_is_nothing_to_interpolate():
