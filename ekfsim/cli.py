@@ -98,7 +98,7 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
             together(steps_of(first), map(steps_of, others)), scene, extent, out,
             look=Look(confidence, conditional), every=every, force=force, progress=made_one,
         )  # fmt: skip
-    click.echo(f"{shown(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
+    click.echo(f"{in_a_line(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
 
 
 @ekfsim.command()
@@ -148,8 +148,8 @@ def record(out: Path, force: bool, confidence: float, **chosen: Any) -> None:
 
     scene = scene_of(**chosen)
     for remark in write_log(scene, simulate(scene), out, force):
-        say(f"{shown(out)}: {remark}")
-    click.echo(f"{shown(out)}: a {scene.world.system} log; run the filter on it with --log")
+        say(f"{out}: {remark}")
+    click.echo(f"{in_a_line(out)}: a {scene.world.system} log; run the filter on it with --log")
 
 
 @ekfsim.command(short_help="Validate FILES: every mistake with its place, or ok.")
@@ -201,7 +201,7 @@ def list_packaged(name: str | None, worlds: bool) -> None:
     if name is not None:
         is_world = worlds or (name in packaged("worlds") and name not in packaged("commands"))
         kind: Folder = "worlds" if is_world else "commands"
-        click.echo(shown(described(resolve(name, kind))))
+        click.echo(shown(described(resolve(name, kind)) or in_a_line(f"{name}: has no description")))
         return
     for title, files in [("worlds", packaged("worlds"))] if worlds else grouped():
         click.echo(f"{title}:")
@@ -226,7 +226,7 @@ def new(file: Path, kind: str | None, force: bool) -> None:
     )
     with whole_text(file, force) as out:
         out.write(template(told))
-    click.echo(shown(f"{file}: a {told} file to start from; ekfsim check {file} validates it"))
+    click.echo(in_a_line(f"{file}: a {told} file to start from; ekfsim check {file} validates it"))
 
 
 @ekfsim.command(epilog=DOCUMENTS, short_help="Draw the figures and tables of a document.")
@@ -251,7 +251,7 @@ def figures(
     commands = simulated or (name if log is None else f"{name}_log")
     scene = scene_of(commands, log=log, reading=reading, seed=seed)
     written = draw_figures(name, scene, out, formats, force)
-    click.echo(shown(f"{out}: {len(written)} files, read captions.md first"))
+    click.echo(in_a_line(f"{out}: {len(written)} files, read captions.md first"))
 
 
 @ekfsim.command(short_help="Run COMMANDS many times: is the filter honest?")

@@ -58,7 +58,10 @@ class Word(click.Choice[str]):
 
 
 class Source(click.Path):
-    """The name of something that is to be read."""
+    """The name of something that is to be read. Whether it may be, its reader finds out, and tells in a line."""
+
+    def __init__(self) -> None:
+        super().__init__(readable=False)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """A name. Fails for the empty one that an unset variable leaves: it would be the folder one stands in."""
@@ -93,7 +96,7 @@ class Result(click.Path):
     """Where a result is to be written."""
 
     def __init__(self) -> None:
-        super().__init__(path_type=Path)
+        super().__init__(path_type=Path, readable=False)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """A path. Fails for a name that an unset variable leaves, and for the dash that other programs know."""

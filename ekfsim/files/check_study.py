@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from ekfsim.errors import InputError
+from ekfsim.errors import MOST_TOLD, InputError, Mistake
 from ekfsim.files import load
 from ekfsim.files.load import Loaded
-from ekfsim.files.load_study import FILTER, read_request
+from ekfsim.files.load_study import FILTER, SWEEP, read_request
 from ekfsim.scene import Scene
 from ekfsim.world import World
 
@@ -29,6 +29,8 @@ def check_study(path: str | Path) -> Loaded[Scene]:
         request = read_request(str(path))
     except InputError as error:
         return Loaded[Scene](mistakes=error.mistakes)
+    if request.excess and (place := request.sweep[0][0].place) is not None:
+        return Loaded[Scene](mistakes=[Mistake(place, SWEEP, *request.excess)])
     sides = (tuple(one for one in side if one.key != FILTER) for side in (request.a, request.b))
     for more in ((), *((one,) for values in request.sweep for one in values), *sides):
         settings = request.overruled(more, ()).settings
@@ -39,4 +41,8 @@ def check_study(path: str | Path) -> Loaded[Scene]:
         found.mistakes += [mistake for mistake in loaded.mistakes if mistake not in found.mistakes]
         found.warnings += [warning for warning in loaded.warnings if warning not in found.warnings]
         found.value = loaded.value
+        if more and more[0].place is not None and len(found.mistakes) >= MOST_TOLD:  # each value takes a whole scene
+            unread = Mistake(more[0].place, SWEEP, "what stands from here on was not looked at", "mend the above first")
+            found.mistakes[MOST_TOLD - 1 :] = [unread]
+            break
     return found

@@ -1,5 +1,6 @@
 """Study files and commands files → what is asked of a study."""
 
+import math
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -23,6 +24,7 @@ from ekfsim.systems.document import DocumentReading
 SIDES = ("a", "b")  # of a comparison
 FILTER = "filter"  # a key that only they have
 SWEEP = "sweep"
+MOST_ROWS = 10_000  # of a table
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,13 @@ class Request:
         kept = tuple(one for one in self.settings if one.key not in keys)
         swept = tuple(values for values in self.sweep if values[0].key not in keys)
         return replace(self, settings=kept + settings, sweep=swept + sweep)
+
+    @property
+    def excess(self) -> tuple[str, str] | None:
+        """Why its table, a row for each cell and filter, is too long, and what to do about it; None where it is not."""
+        rows = math.prod(map(len, self.sweep)) * max(len(self.filters), 1)
+        wrong = f"the table would have {rows} rows, more than {MOST_ROWS}"
+        return (wrong, "sweep fewer values") if rows > MOST_ROWS else None
 
     def checked(self) -> "Request":
         """The same request. Raises UsageError where a key is set twice, or set and swept."""

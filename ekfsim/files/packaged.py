@@ -89,11 +89,17 @@ def source_name(path: str | Path) -> str:
 
 def description_of(path: Path) -> str:
     """The first line of a file's description, "" where it has none or cannot be read."""
-    return described(path).partition("\n")[0]
+    try:
+        return described(path).partition("\n")[0]
+    except EkfsimError:
+        return ""
 
 
 def described(path: Path) -> str:
-    """A file's description, "" where it has none or cannot be read. Reads no further than that."""
+    """A file's description, "" where it has none. Reads no further than that.
+
+    Raises UsageError where there is no such file to read.
+    """
     import yaml
 
     from ekfsim.files.marked import LOADER, Tree
@@ -106,6 +112,6 @@ def described(path: Path) -> str:
             if tree.open and (description := tree.open[0].node.get("description")):
                 text = description.value
                 break
-    except (EkfsimError, yaml.YAMLError):
+    except yaml.YAMLError:
         return ""
     return text.strip() if isinstance(text, str) else ""

@@ -3,7 +3,6 @@
 import functools
 import hashlib
 import itertools
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,8 +22,6 @@ from ekfsim.simulation.draws import BLOCK
 from ekfsim.study.block import run_block
 from ekfsim.study.tally import Tally
 from ekfsim.version import VERSION
-
-MOST_CASES = 10_000
 
 
 class Task(NamedTuple):
@@ -67,9 +64,8 @@ class Plan:
         keys = read(request.commands, str(request.commands), "commands").keys
         if isinstance(keys, CommandsKeys) and keys.recording is not None:
             raise UsageError(f"{request.commands_name}: a recording is one run only; study a simulated one")
-        rows = math.prod(map(len, request.sweep)) * max(len(request.filters), 1)
-        if rows > MOST_CASES:
-            raise UsageError(f"the table would have {rows} rows, more than {MOST_CASES}; sweep fewer values")
+        if request.excess:
+            raise UsageError("; ".join(request.excess))
         cases, warnings = list[Case](), dict[str, None]()
         if request.written_by not in ("", VERSION):
             told = f"{request.name}: the study was written by ekfsim {request.written_by}, this is {VERSION}"

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from ekfsim.printable import in_a_line
 from ekfsim.study.comparison import Comparison, Difference, of_means, of_shares
 from ekfsim.study.pairs import Pairs
 from ekfsim.study.plan import Plan
@@ -50,7 +51,7 @@ def conclude(comparison: Comparison, found: Pairs, width: int | None = None) -> 
     request = comparison.request
     what = f"{found.a.runs} runs of seed {comparison.a.seed}, each under either setting on the same draws"
     head = (
-        f"{request.commands_name}: {what}",
+        f"{in_a_line(request.commands_name)}: {what}",
         f"  a: {settings(comparison.a, comparison)}",
         f"  b: {settings(comparison.b, comparison)}",
     )

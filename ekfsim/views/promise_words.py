@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 
+from ekfsim.printable import in_a_line
 from ekfsim.study.expectation import Finding
 from ekfsim.study.plan import Plan
 from ekfsim.views.study_words import shared
@@ -22,7 +23,7 @@ def verify(plan: Plan, findings: Sequence[Finding]) -> str:
 
 def _lines(plan: Plan, findings: Sequence[Finding]) -> Iterator[str]:
     request = plan.request
-    yield f"{request.commands_name}: {request.runs} runs of seed {plan.seed}, filter {plan.cases[0].filter}"
+    yield f"{in_a_line(request.commands_name)}: {request.runs} runs of seed {plan.seed}, filter {plan.cases[0].filter}"
     for found in findings:
         yield f"{found.name}: {'kept' if found.kept else 'NOT kept'}: {_measured(found)}, {_promise(found)} promised"
 

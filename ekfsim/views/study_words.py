@@ -5,6 +5,7 @@ import shlex
 from collections.abc import Sequence
 
 from ekfsim.files.filter_checks import unread
+from ekfsim.printable import in_a_line
 from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
 from ekfsim.study.verdict import COVERED, MEDIAN, MOST_LOST, NIS, AtEnd, Measure, OnTheWay, Verdict, Word
@@ -24,7 +25,9 @@ def conclude(plan: Plan, results: Sequence[Result], width: int | None = None) ->
     """All that is printed when a study is over. width : of the terminal; None where there is none"""
     request = plan.request
     lines = [
-        *folded(f"{request.commands_name}: {request.runs} runs of seed {plan.seed}, at the last step", width),
+        *folded(
+            f"{in_a_line(request.commands_name)}: {request.runs} runs of seed {plan.seed}, at the last step", width
+        ),
         *folded("(RMSE in m and degrees; NEES above quantiles of χ², and the other shares, in %)", width),
         *aligned([[*plan.keys, *HEAD], *map(_row, results)], len(plan.keys) + 1, width),
     ]
@@ -215,4 +218,4 @@ def played(plan: Plan, result: Result, run: int) -> str:
     others = unread(settings, [scene.filter])  # what only another filter of the study reads: `play` would refuse it
     for one in settings:
         words += [] if one in others else ["--set", str(one)]
-    return shlex.join(words)
+    return in_a_line(shlex.join(words))

@@ -122,6 +122,22 @@ def test_what_a_file_names_and_cannot_be_read_is_told_at_its_place(place, name):
             assert "no such" not in line or not why, line
 
 
+def test_what_is_there_and_may_not_be_read_is_told_in_a_line(place):
+    (place / "mine.yaml").write_text("")
+    (place / "mine.yaml").chmod(0)
+    for source in ("locked", "mine.yaml"):
+        for words in ("run gnss_log.yaml --log", "figures gnss -o out --log", "study short.yaml --runs 1 -o", "list"):
+            assert source in told(*words.split(), source)
+    for option in ("--trace", "--csv", "--summary"):
+        assert told("run", "short.yaml", "-q", option, "mine.yaml").startswith("ekfsim: mine.yaml: ")
+
+
+def test_list_tells_where_there_is_nothing_to_tell(place):
+    assert told("list", "zzz.yaml") == "ekfsim: zzz.yaml: no such file"
+    assert told("list", "loop").startswith("ekfsim: loop: cannot be read: ")
+    assert ekfsim("list", "short.yaml").out == "short.yaml: has no description\n"
+
+
 def test_names_of_odd_bytes_are_no_obstacle(place):
     for name in ("world.yaml", "short.yaml"):
         shutil.copy(name, f"{ODD}{name}")
@@ -141,6 +157,7 @@ def test_names_of_odd_bytes_are_no_obstacle(place):
         how = ekfsim(*words)
         assert how.status == 0, (words, how)
         assert not set("\x1b\udcff") & set(how.out + how.err)
+        assert how.out.count("\\xff") == how.out.count("\\xff\\x1b\\x0a")  # no name goes on in another line
         assert "\n\n" not in how.err
 
 

@@ -5,7 +5,7 @@ import difflib
 import pytest
 
 from ekfsim.errors import MOST_TOLD, InputError, UsageError, first_of
-from ekfsim.files import polygons
+from ekfsim.files import check_study, polygons
 from ekfsim.files.check_study import check
 from ekfsim.files.load import load_scene
 from ekfsim.files.load_study import read_request
@@ -69,6 +69,23 @@ def test_of_very_many_mistakes_the_first_are_told_and_the_others_counted(place, 
     assert max(map(len, told)) < 400
     places = [tuple(map(int, line.split(":")[1:3])) for line in told]
     assert places == sorted(places)
+
+
+def test_of_very_many_swept_values_those_after_the_fiftieth_mistake_are_not_looked_at(place, monkeypatch):
+    read = []
+    scene = check_study.load.read_scene
+    monkeypatch.setattr(check_study.load, "read_scene", lambda *args: read.append(args) or scene(*args))
+    told = told_of(f"study: scene.yaml\nsweep: {{gate: [0.5, {lines('1{0}, ')}]}}\n")
+    assert len(told) == MOST_TOLD
+    assert len(read) < 3 * MOST_TOLD
+    assert told[-1].endswith("sweep: what stands from here on was not looked at; mend the above first")
+
+
+def test_a_table_of_too_many_rows_is_told_before_anything_is_read(place, monkeypatch):
+    monkeypatch.setattr(check_study.load, "read_scene", lambda *_: pytest.fail("a scene is read"))
+    values = ", ".join(map(str, range(5001)))
+    told = told_of(f"study: scene.yaml\nfilters: [ekf, ukf]\nsweep: {{noise.rangeSigmaRatio: [{values}]}}\n")
+    assert told == ["f.yaml:3:34: sweep: the table would have 10002 rows, more than 10000; sweep fewer values"]
 
 
 def test_all_are_counted(place):
