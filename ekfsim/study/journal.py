@@ -4,6 +4,7 @@ A JSON Lines file: first what decides the numbers of the study, then a line for 
 was never finished; its block is done again.
 """
 
+import hashlib
 import json
 import os
 from collections.abc import Iterator, Mapping
@@ -12,9 +13,11 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from ekfsim.errors import UsageError
+from ekfsim.files.packaged import PACKAGE
 from ekfsim.files.writing import told
 from ekfsim.study.plan import Plan, Task
 from ekfsim.study.tally import Tally
+from ekfsim.version import VERSION
 
 NAME = "journal.jsonl"
 FORMAT = 1
@@ -122,7 +125,7 @@ def _begun(file: BinaryIO, plan: Plan, path: Path) -> dict[tuple[int, int], tupl
     file.seek(end)
     file.truncate()
     if end == 0:
-        file.write(_line({"journal": FORMAT, "study": plan.identity()}))
+        file.write(_line({"journal": FORMAT, "program": program(), "study": plan.identity()}))
         file.flush()
     return places
 
@@ -140,6 +143,19 @@ def _compare(head: Mapping[str, Any], plan: Plan, path: Path) -> None:
                 else f"{name} was {was.get(name) or 'not given'}, and is now {value or 'not given'}"
             )
             raise UsageError(f"{path.parent}: was begun as another study: {what}; begin anew with --force")
+    if head.get("program") != program():
+        raise UsageError(
+            f"{path.parent}: was begun by a program that was not this one to the letter, though of version {VERSION}, "
+            "too; its numbers may be others: begin anew with --force"
+        )
+
+
+def program() -> str:
+    """The program itself as a word: between two releases its numbers change, and its version does not."""
+    whole = hashlib.sha256()
+    for path in sorted(PACKAGE.rglob("*.py")):
+        whole.update(path.read_bytes())
+    return whole.hexdigest()[:16]
 
 
 def _held(line: bytes) -> Mapping[str, Any] | None:

@@ -18,7 +18,7 @@ from ekfsim.errors import RunError, UsageError
 from ekfsim.files.load_study import read_request
 from ekfsim.filters import FILTERS
 from ekfsim.geometry import backend
-from ekfsim.study import engines
+from ekfsim.study import engines, journal
 from ekfsim.study.plan import Plan
 from ekfsim.views import study_folder
 
@@ -419,7 +419,7 @@ def alive(pid):
         return False
 
 
-def test_another_study_is_not_gone_on_with(place):
+def test_another_study_is_not_gone_on_with(place, monkeypatch):
     running = started(*BLOCKS)
     wait_for(journal_holds(place, 1), running)
     kill(running)
@@ -433,6 +433,11 @@ def test_another_study_is_not_gone_on_with(place):
     ):
         told = ekfsim(*BLOCKS, *more, "--resume")
         assert (told.status, told.err) == (2, f"{begun}{what}; begin anew with --force\n")
+    with monkeypatch.context() as changed:
+        changed.setattr(journal, "PACKAGE", place)  # another program of the same version
+        told = ekfsim(*BLOCKS, "--resume")
+        assert told.status == 2
+        assert told.err.startswith("ekfsim: out.partial: was begun by a program that was not this one to the letter, ")
     (place / "world.yaml").write_text(WORLD.replace("0.05", "0.06"))
     assert "the world file was another" in ekfsim(*BLOCKS, "--resume").err
     (place / "many.yaml").write_text(SHORT)

@@ -85,7 +85,7 @@ def test_a_table_of_too_many_rows_is_told_before_anything_is_read(place, monkeyp
     monkeypatch.setattr(check_study.load, "read_scene", lambda *_: pytest.fail("a scene is read"))
     values = ", ".join(map(str, range(5001)))
     told = told_of(f"study: scene.yaml\nfilters: [ekf, ukf]\nsweep: {{noise.rangeSigmaRatio: [{values}]}}\n")
-    assert told == ["f.yaml:3:34: sweep: the table would have 10002 rows, more than 10000; sweep fewer values"]
+    assert told == ["f.yaml:3:33: sweep: the table would have 10002 rows, more than 10000; sweep fewer values"]
 
 
 def test_all_are_counted(place):
