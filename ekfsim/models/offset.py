@@ -28,7 +28,7 @@ def from_global(z: Array, θ: Array | float) -> Array:
     """What `to_global` turned, turned back into the lidar's frame : (…, 2) m
 
     >>> from_global(np.array([7.0, 0.0]), 0.0).tolist()
-    [-0.0, 7.0]
+    [0.0, 7.0]
     """
     east, north, s, c = z[..., 0], z[..., 1], np.sin(θ), np.cos(θ)
     return np.stack([east * s - north * c, east * c + north * s], axis=-1)
