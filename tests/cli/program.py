@@ -21,7 +21,7 @@ from ekfsim import cli
 try: cli.main()
 finally: print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, file=sys.stderr)
 """  # tells the most memory that the program ever held, in kB
-PATIENCE = 60  # s after which a process that does not end is a failure
+PATIENCE = 300  # s after which a process that does not end is a failure, on a busy machine, too
 ENDINGS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 WORLD = """\

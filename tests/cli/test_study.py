@@ -28,7 +28,7 @@ MANY = """\
 world: world.yaml
 seed: 5
 commands:
-  - repeat: {times: 80, commands: [{sense: {angle: 40}}, {move: {distance: 0.5, angle: 100}}]}
+  - repeat: {times: 25, commands: [{sense: {angle: 40}}, {move: {distance: 0.5, angle: 100}}]}
 """  # takes a while
 
 
@@ -138,7 +138,7 @@ def test_a_sweep_is_a_grid_with_a_row_for_each_cell_and_filter():
 
 
 def test_the_worst_run_is_the_one_that_play_shows(place):
-    (place / "few.yaml").write_text(MANY.replace("80", "6"))
+    (place / "few.yaml").write_text(MANY.replace("25", "6"))
     ekfsim("study", "few.yaml", "--runs", 40, "--set", "noise.rangeSigmaRatio=0.003", "-o", "out")
     (row,) = rows("out/summary.csv")
     last = []
