@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
+from ekfsim.filters.ekf import EKF
 from ekfsim.filters.protocol import Beginning, Filter
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion, Sensor
@@ -19,8 +20,8 @@ class ShadowsAlone:
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:
-        """It stands around a filter that has begun, and does not begin by itself."""
-        raise NotImplementedError
+        """Around an EKF; around another filter it is put once that has begun."""
+        return cls(EKF.begin(beginning))
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Belief, Prediction]:
         """P⁻ of the filter within, its two cross covariances dropped."""
