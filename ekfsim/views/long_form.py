@@ -101,11 +101,12 @@ class LongForm(Form):
             return ""
         told, (x, P) = "", posed(step.prior, step.layout)
         arms = REACH * np.sqrt(np.maximum(np.linalg.eigvalsh(P), 0.0))
+        rounded = 2 * float(np.spacing(np.abs(x)).max())  # of a place at map coordinates
         for i in others_met(walls_of(step), sighting):
             wall, arm = int(sighting.probe_walls[i]), float(arms[i % 3])
             away = float(np.linalg.norm(sighting.probes[i] - x))
             back = ""
-            if away < ON_ITS_ARM * arm:
+            if away < ON_ITS_ARM * arm - rounded:
                 back = f", drawn back to {number(away / arm)} of its arm, where the robot can stand"
             met = wall_name(step, wall) if wall < 0 else f"{wall_name(step, wall)}, {corners(step, wall)}"
             after = "" if wall < 0 else f", after {fine(float(sighting.probe_ranges[i]))}"

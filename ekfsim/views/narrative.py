@@ -10,7 +10,7 @@ from ekfsim.scene import Scene
 from ekfsim.views import driven_narrative
 from ekfsim.views.driven_narrative import REFUSED
 from ekfsim.views.long_form import SHORT, Form, LongForm
-from ekfsim.views.numbers import fill, fine, number, pose, turn
+from ekfsim.views.numbers import fill, fill_vector, fine, number, pose, turn
 from ekfsim.views.opening import opening, plain
 from ekfsim.views.playback import View
 from ekfsim.views.told_beams import doubts, expected_wall
@@ -117,7 +117,7 @@ def _update(view: View, probability: float, form: Form) -> str:
         _expected(step, c, form)
         + _innovation(c, form)
         + REFUSED[Refused(int(c.refused))]
-        + (crowd(step.posterior) or f"{fill(GAIN, *c.K[:, 0].tolist())}{by('gain')}\n" if used else "")
+        + (crowd(step.posterior) or f"{fill_vector(GAIN, *c.K[:, 0].tolist())}{by('gain')}\n" if used else "")
         + rest(c)
         + f"Revised state estimate: (x, y, theta) = {pose(x.tolist())}{by('revised')}\n"
         + f"Revised covariance matrix is:{by('revised_covariance')}\n{_matrix(P)}"
@@ -135,7 +135,7 @@ def _expected(step: Step, c: Correction, form: Form) -> str:
         + expected_wall(step)
         + form.expected(step)
         + f"The derivatives are:{form.by('derivatives')}\n"
-        + fill(DERIVATIVES, *c.H[0].tolist())
+        + fill_vector(DERIVATIVES, *c.H[0].tolist())
         + form.noise(c)
     )
 

@@ -11,7 +11,7 @@ from ekfsim.models.protocols import Quantity
 
 NOISE = 1e-15  # what is smaller is a rounding error of metres, radians or their squares
 GRAIN = 1e-11  # m, degrees: of a pose, what is smaller is what sums of many steps make of 0
-ROUNDING = 1e-14  # of the largest number of a matrix: the same of its others
+ROUNDING = 1e-10  # of the largest number beside it, or of σᵢ σⱼ: the same of a number in a vector or matrix
 LARGE = 100.0  # m, degrees: of less, six digits are fine enough
 HUGE = 1e12  # m, degrees: beyond, a float itself is coarser
 MANY = 8  # numbers of a reading, rows and columns of a matrix; of more only so many are told
@@ -25,6 +25,16 @@ def fill(template: str, *values: float) -> str:
     'x=0.333333, y=0, z=0'
     """
     return template % tuple([0.0 if -NOISE < value < NOISE else value for value in values])
+
+
+def fill_vector(template: str, *values: float) -> str:
+    """The same with the numbers of one vector, none of which is told where it is the rounding of another.
+
+    >>> fill_vector("dh/dx = %.6g, dh/dy = %.6g, dh/dth = %.6g", -1.0, 0.0, -2.2e-15)
+    'dh/dx = -1, dh/dy = 0, dh/dth = 0'
+    """
+    slight = ROUNDING * max(map(abs, values))
+    return fill(template, *[0.0 if abs(value) < slight else value for value in values])
 
 
 def number(value: float) -> str:
@@ -145,11 +155,29 @@ def matrix(A: Array) -> str:
     [0.25 0.333333]]
     >>> print(matrix(np.array([[1.0, -6.97e-15]])), end="")
     [[1 0]]
+
+    Of a covariance a small variance beside a large one is no rounding:
+
+    >>> print(matrix(np.diag([1e12, 1e-6])), end="")
+    [[1e+12 0]
+    [0 1e-06]]
     """
     rows, columns = A.shape
-    A = np.where(np.abs(A) < ROUNDING * np.nanmax(np.abs(A), initial=0.0), 0.0, A)
+    A = np.where(np.abs(A) < ROUNDING * _beside(A), 0.0, A)
     lines = [
         f"[{' '.join([*map(number, row[:MANY]), *(['…'] if columns > MANY else [])])}]" for row in A[:MANY].tolist()
     ]
     told = "\n".join([*lines, "…"] if rows > MANY else lines)
     return f"[{told}]\n"
+
+
+def _beside(A: Array) -> Array:
+    """What each number of a matrix is small beside: of a covariance σᵢ σⱼ, else the largest of its row and column."""
+    if A.shape[0] == A.shape[1] and (A.diagonal() >= 0).all():
+        σ = np.sqrt(A.diagonal())
+        σσ: Array = np.outer(σ, σ)
+        if (np.abs(A - A.T) <= ROUNDING * σσ).all():
+            return σσ
+    size: Array = np.nan_to_num(np.abs(A))
+    largest: Array = np.maximum(size.max(axis=0, initial=0.0), size.max(axis=1, keepdims=True, initial=0.0))
+    return largest

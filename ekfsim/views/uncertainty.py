@@ -7,7 +7,7 @@ from ekfsim.filters.belief import Belief, Correction, Gaussian, Particles
 from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse
 from ekfsim.records import Nees, Step
-from ekfsim.views.numbers import fine, number, turn
+from ekfsim.views.numbers import fine, heading, number, turn
 
 
 def uncertainty(pose: Gaussian, probability: float) -> str:
@@ -18,7 +18,7 @@ def uncertainty(pose: Gaussian, probability: float) -> str:
         "Uncertainty ellipse is:\n"
         f"  minor radius is {fine(float(drawn.minor))}\n"
         f"  major radius is {fine(float(drawn.major))}\n"
-        f"  orientation is {turn(float(drawn.orientation))} degrees\n"
+        f"  orientation is {heading(float(drawn.orientation))} degrees\n"
         f"  {factor:.4g}*sigma_theta is {turn(halfwidth)} degrees\n"
     )
 

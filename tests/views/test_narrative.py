@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scenes import DESK, NOISE, ROOM, rich, scene, told, unbounded
+from scenes import DESK, NOISE, ROOM, SILENT, rich, scene, told, unbounded
 
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Correction, Gaussian, Prediction, Refused
@@ -271,6 +271,35 @@ def test_no_rounding_error_and_no_minus_zero_is_printed():
     assert re.findall(r"(?<![\w*])-?0(?![\w.*])", told).count("-0") == 0
     assert "e-1" not in told
     assert "[[0 0 0]\n[0 0 0]\n[0 0 0]]" in told
+
+
+@pytest.mark.parametrize("filter", ["ekf", "ukf", "ukf-augmented"])
+def test_derivatives_that_are_rounding_are_told_as_none(filter):
+    made = scene(Sense(math.radians(180)), start=(1, 1, math.pi), sigma=(0.1, 0.1, 0.1), boundary=None, filter=filter,
+                 obstacles=(replace(DESK, points=np.array([[9, -90], [9, 90], [9.5, 0]])),))  # fmt: skip
+    text = "".join(narrate(view, made, explain=True) for view in views(play(made)))
+    assert re.search(r"  dh/dx = -1(\.\d+)?, dh/dy = 0, dh/dth = 0\n", text)
+    assert re.search(r"\(x, y, th\) = \(-[\d.]+, 0, 0\)", text)
+    assert "e-1" not in text
+
+
+def test_a_small_variance_beside_a_large_one_is_told_in_the_long_form():
+    made = told(scene(Move(1.0, 0.5), noise=SILENT), sigma=np.array([1e6, 1e6, 1e-3]))
+    text = "".join(narrate(view, made, explain=True) for view in views(play(made)))
+    carried = re.search(r"J_x P J_x' is:\n(.*?\]\])", text, re.DOTALL).group(1)
+    assert carried == "[[1e+12 0 -5e-07]\n[0 1e+12 8.66025e-07]\n[-5e-07 8.66025e-07 1e-06]]"
+
+
+def test_a_pose_at_map_coordinates_is_not_drawn_back_by_rounding():
+    here = np.array([5e6, 9.9e7, 0.0])
+    desk = replace(DESK, points=np.array([[9, 3.9], [9.5, 3.9], [9.5, 4.1], [9, 4.1]]) + here[:2])
+    for σ in (0.2, 0.23, 0.26, 0.29, 0.32):
+        made = scene(
+            Sense(0.0), start=np.add(here, (5, 4, 0)), boundary=ROOM + here[:2], sigma=(0.1, σ, 0), obstacles=(desk,)
+        )
+        text = "".join(narrate(view, made, explain=True) for view in views(play(made)))
+        assert "it would meet edge" in text
+        assert "drawn back" not in text
 
 
 def test_at_map_coordinates_tenths_of_a_millimetre_are_told():
