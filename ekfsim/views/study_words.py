@@ -113,7 +113,7 @@ def where_and_why(way: OnTheWay, last: AtStep) -> str:
 
 
 def stretch(steps: Sequence[AtStep], last: AtStep) -> str:
-    """From which step to which, and how many of them where some between are not meant."""
+    """From the first of some steps to the last; how many there are is told with the evidence."""
     first, final = steps[0], steps[-1]
     if len(steps) == 1:
         return f"at {when(first)}"
