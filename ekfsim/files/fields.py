@@ -20,6 +20,7 @@ class Strict(BaseModel):
         strict=True,
         allow_inf_nan=False,
         frozen=True,
+        defer_build=True,  # a model is built where the first file asks for it: most are of other robots
         model_title_generator=lambda model: model.__name__.removesuffix("Keys").lower(),
     )
 
