@@ -3,20 +3,18 @@
 import math
 
 from ekfsim.filters.belief import Correction, Refused
-from ekfsim.geometry import Array
 from ekfsim.printable import shown
 from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense, Step
 from ekfsim.scene import Scene
 from ekfsim.views import driven_narrative
 from ekfsim.views.driven_narrative import REFUSED
 from ekfsim.views.long_form import SHORT, Form, LongForm
-from ekfsim.views.numbers import fill, fill_vector, fine, number, pose, turn
+from ekfsim.views.numbers import fill, fill_vector, fine, matrix, number, pose, turn
 from ekfsim.views.opening import opening, plain
 from ekfsim.views.playback import View
 from ekfsim.views.told_beams import doubts, expected_wall
 from ekfsim.views.uncertainty import crowd, judged, rest, surprise, uncertainty
 
-MATRIX = "[[%.6g %.6g %.6g]\n[%.6g %.6g %.6g]\n[%.6g %.6g %.6g]]\n"
 DERIVATIVES = "  dh/dx = %.6g, dh/dy = %.6g, dh/dth = %.6g\n"
 INNOVATION = "The innovation is %.6g, its standard deviation %.6g; NIS is %.6g"
 CERTAIN = "The innovation is %.6g; nothing is uncertain, so NIS is undefined and the gain is 0"
@@ -61,7 +59,7 @@ def _start(view: View, scene: Scene, probability: float) -> str:
     x, P = view.belief
     return (
         f"First state estimate is (x, y, theta) = {pose(x.tolist())}\n"
-        f"First state covariance matrix is:\n{_matrix(P)}\n"
+        f"First state covariance matrix is:\n{matrix(P)}\n"
         + _truth(view.step)
         + uncertainty(view.pose, probability)
         + judged(view.step, view.pose, probability)
@@ -81,7 +79,7 @@ def _move(view: View, move: Move, scene: Scene, probability: float, form: Form) 
         + form.carried(view)
         + f"Current state estimate is (x, y, th) = {pose(step.prior.mean.tolist())}\n"
         + f"New state estimate is (x, y, theta) = {pose(x.tolist())}{form.by('state')}\n"
-        + f"New state covariance matrix is:{form.by('covariance')}\n{_matrix(P)}\n"
+        + f"New state covariance matrix is:{form.by('covariance')}\n{matrix(P)}\n"
         + _truth(step)
         + uncertainty(view.pose, probability)
         + judged(step, view.pose, probability)
@@ -120,7 +118,7 @@ def _update(view: View, probability: float, form: Form) -> str:
         + (crowd(step.posterior) or f"{fill_vector(GAIN, *c.K[:, 0].tolist())}{by('gain')}\n" if used else "")
         + rest(c)
         + f"Revised state estimate: (x, y, theta) = {pose(x.tolist())}{by('revised')}\n"
-        + f"Revised covariance matrix is:{by('revised_covariance')}\n{_matrix(P)}"
+        + f"Revised covariance matrix is:{by('revised_covariance')}\n{matrix(P)}"
         + uncertainty(view.pose, probability)
         + judged(step, view.pose, probability)
     )
@@ -148,10 +146,6 @@ def _innovation(c: Correction, form: Form) -> str:
         return f"{fill(CERTAIN, ν)}{form.by('innovation')}\n"
     told = f"{fill(INNOVATION, ν, math.sqrt(S), nis)}{form.by('innovation')}\n"
     return told + surprise("NIS", nis, len(c.innovation))
-
-
-def _matrix(P: Array) -> str:
-    return fill(MATRIX, *P.ravel().tolist())
 
 
 def _truth(step: Step) -> str:

@@ -290,6 +290,15 @@ def test_a_small_variance_beside_a_large_one_is_told_in_the_long_form():
     assert carried == "[[1e+12 0 -5e-07]\n[0 1e+12 8.66025e-07]\n[-5e-07 8.66025e-07 1e-06]]"
 
 
+def test_a_covariance_that_is_rounding_is_told_as_none():
+    """A wide belief leaves it: after the beam σ_x = 1 cm and σ_θ = 720°, and σ_xθ = 2e-12."""
+    made = told(scene(Sense(0.0), start=(1, 1, math.pi), noise=replace(SILENT, range=0.01)),
+                sigma=np.array([1e6, 1e-6, 4 * math.pi]))  # fmt: skip
+    *_, view = views(play(made))
+    assert view.pose.covariance[0, 2] != 0
+    assert "Revised covariance matrix is:\n[[0.0001 0 0]\n[0 1e-12 0]\n[0 0 157.914]]\n" in narrate(view, made)
+
+
 def test_a_pose_at_map_coordinates_is_not_drawn_back_by_rounding():
     here = np.array([5e6, 9.9e7, 0.0])
     desk = replace(DESK, points=np.array([[9, 3.9], [9.5, 3.9], [9.5, 4.1], [9, 4.1]]) + here[:2])
