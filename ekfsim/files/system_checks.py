@@ -15,7 +15,7 @@ from ekfsim.files.fields import aliases
 from ekfsim.files.marked import Path
 from ekfsim.files.schema import schema_at
 from ekfsim.files.sensor_file import SensorKeys
-from ekfsim.files.system_file import ODOMETRY, RobotKeys, ToldRobotKeys, fields_of, robot_fields
+from ekfsim.files.system_file import ODOMETRY, RobotKeys, ToldRobotKeys, fields_of, not_carried, robot_fields
 from ekfsim.files.telling import at, example, meant, one_of
 from ekfsim.files.told_file import FaultKeys
 from ekfsim.systems import SYSTEMS
@@ -59,6 +59,7 @@ def check_system(file: Sound) -> Iterator[Mistake]:
         yield from check_faults(file, f"the robot of the system '{system}'", faults_of(system))
         for path in (("belief", "sensors"), ("faults", "sensors")):
             yield from check_carried(file, system, path)
+        yield from check_carriable(file, system)
     yield from check_sensors(file)
 
 
@@ -143,6 +144,22 @@ def check_carried(file: Sound, system: str, path: Path) -> Iterator[Mistake]:
         if kind in aliases(SensorKeys).values() and kind not in carried:
             wrong = f"the world has no sensor '{kind}'"
             yield file.mistake((*path, kind), wrong, f"it has: {', '.join(carried) or 'none'}")
+
+
+def check_carriable(file: Sound, system: str) -> Iterator[Mistake]:
+    """Sensors that the robot of a system cannot carry."""
+    for index in range(file.count("sensors")):
+        item = file.root.at(("sensors", index))
+        for kind in item.keys if item and len(item.keys) == 1 else ():
+            if kind in not_carried(system):
+                wrong = f"the robot of the system '{system}' cannot carry the sensor '{kind}'"
+                able = one_of([name for name in SYSTEMS if kind not in not_carried(name)])
+                right = (
+                    "write lidar, which no measured yaw has to turn"
+                    if kind == Pylon.name
+                    else f"the robot of {able} can"
+                )
+                yield file.mistake(("sensors", index, kind), wrong, right)
 
 
 def check_sensors(file: Sound) -> Iterator[Mistake]:

@@ -7,7 +7,10 @@ from typing import Annotated, Any, ClassVar, Literal, get_args, get_type_hints
 from pydantic import Field
 
 from ekfsim.files.fields import PartKeys, Positive, Rate, Ratio, Scale, Spread, Turn
+from ekfsim.models.layout import POSE
 from ekfsim.systems import SYSTEMS
+from ekfsim.systems.instruments import Infrared, Pylon, Ultrasonic
+from ekfsim.systems.robots import PylonCart
 
 SystemName = Literal["classroom", "mower", "pioneer", "gnss", "pylon", "landmarks", "ranges"]
 Row = Annotated[
@@ -33,6 +36,16 @@ def of_robots(name: str, what: str, is_angle: bool = False) -> str:
 def robot_fields(system: str) -> list[str]:
     """The names of what a file may tell of the robot of a system, in their order."""
     return fields_of(type(SYSTEMS[system].robot))
+
+
+def not_carried(system: str) -> tuple[str, ...]:
+    """The kinds of sensors that the robot of a system cannot carry.
+
+    The pylon's offset is turned by the yaw that its cart measures, and beams meet walls from a state that is a pose.
+    """
+    robot = SYSTEMS[system].robot
+    turned = () if isinstance(robot, PylonCart) else (Pylon.name,)
+    return turned if robot.layout == POSE else (*turned, Ultrasonic.name, Infrared.name)
 
 
 def fields_of(part: Any) -> list[str]:

@@ -20,7 +20,7 @@ from ekfsim.files.fields import (
     aliases,
 )
 from ekfsim.files.sensor_file import MARKERS, SensorKeys
-from ekfsim.files.system_file import ODOMETRY, RobotKeys, SystemName, ToldRobotKeys, robot_fields
+from ekfsim.files.system_file import ODOMETRY, RobotKeys, SystemName, ToldRobotKeys, not_carried, robot_fields
 from ekfsim.files.told_file import FaultKeys, ToldSensorsKeys
 from ekfsim.systems import SYSTEMS
 from ekfsim.world import Faults
@@ -50,6 +50,7 @@ def of_system(system: str) -> JsonDict:
         "robot": {**only(robot, RobotKeys), **turning},
         "faults": only((*SYSTEMS[system].robot.faults, "sensors"), FaultKeys),
         "belief": {"properties": told},
+        "sensors": {"items": {"properties": dict.fromkeys(not_carried(system), False)}},
     }
 
 

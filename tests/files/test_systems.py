@@ -186,7 +186,7 @@ def mistakes_in(model, name, example):
 def test_a_bias_has_a_key_for_each_number_that_a_sensor_tells_in_their_order(world, name):
     """Beside the outliers and the delay of every sensor, which come first."""
     around = "landmarks: [{id: 1, x: 2, y: 3}]\nboundary: [[0, 0], [4, 0], [4, 4], [0, 4]]\n"
-    system = "pylon" if name == "lidar" else "mower"
+    system = "pylon" if name in ("pylon", "lidar") else "mower"
     (attribute,) = (one for one, key in aliases(FaultySensorsKeys).items() if key == name)
     keys = next(one for one in get_args(FaultySensorsKeys.model_fields[attribute].annotation) if one is not type(None))
     biases = [key for key in aliases(keys).values() if key.lower().endswith("bias")]
@@ -219,6 +219,7 @@ def test_the_schema_says_which_keys_go_together():
                 "robot": {"propertyNames": {"enum": ["forwardSigma", "lateralSigma", "yawSigma"]}},
             }
         },
+        "sensors": {"items": {"properties": {"ultrasonic": False, "infrared": False}}},
     }
     of_mower = next(other["then"] for other in others if other["if"]["properties"]["system"]["const"] == "mower")
     for robot in (of_mower["properties"]["robot"], of_mower["properties"]["belief"]["properties"]["robot"]):
@@ -347,8 +348,8 @@ ROOMS = {
         ],
     ),
     "numbers of a sensor": (
-        GNSS
-        + "sensors:\n  - markers: {views: [[30, -30], [0, 361], [0, 0], [-180, 190], [1]], range: 0, azimuthSigma: -1, rate: 0}\n"
+        HEAD
+        + "system: mower\nsensors:\n  - markers: {views: [[30, -30], [0, 361], [0, 0], [-180, 190], [1]], range: 0, azimuthSigma: -1, rate: 0}\n"
         "  - gnss: {sigma: .nan}\n  - infrared: {colour: pink, bearings: [], nearest: 0}\n  - bearing: {views: []}\n",
         [
             "5:23: sensors[0].markers.views[0]: 30 is not less than -30; write the bearing to its right first, e.g. [-30, 30]",
@@ -366,8 +367,17 @@ ROOMS = {
             "8:22: sensors[3].bearing.views: an empty list stands here; write e.g. [[-35, 35]]",
         ],
     ),
+    "sensors that cannot be carried": (
+        GNSS + "sensors:\n  - pylon: {}\n  - ultrasonic: {}\n  - infrared: {}\n  - lidar: {}\n",
+        [
+            "5:12: sensors[0].pylon: the robot of the system 'gnss' cannot carry the sensor 'pylon'; write lidar, which no measured yaw has to turn",
+            "6:17: sensors[1].ultrasonic: the robot of the system 'gnss' cannot carry the sensor 'ultrasonic'; the robot of mower, pioneer, landmarks or ranges can",
+            "7:15: sensors[2].infrared: the robot of the system 'gnss' cannot carry the sensor 'infrared'; the robot of mower, pioneer, landmarks or ranges can",
+        ],
+    ),
     "two of a kind": (
-        GNSS + "sensors:\n  - gnss: {}\n  - markers: {}\n  - gnss: {sigma: 1}\n  - markers: {}\n  - ultrasonic: {}\n"
+        HEAD
+        + "system: mower\nsensors:\n  - gnss: {}\n  - markers: {}\n  - gnss: {sigma: 1}\n  - markers: {}\n  - ultrasonic: {}\n"
         "  - {ultrasonic: {rate: -1}}\n",
         [
             "7:11: sensors[2].gnss: the sensor 'gnss' on line 5 goes by the same name; keep one of them",
