@@ -27,7 +27,7 @@ PERFECT = (
 
 def opening(scene: Scene) -> str:
     """What is run, the noise and the start, and what should be known of the filter and of the document's reading."""
-    told = [told_in_a_line(scene), plain(scene.description), "", *_numbers(scene)]
+    told = [told_in_a_line(scene), *filter(None, [plain(scene.description)]), "", *_numbers(scene)]
     if remark := FILTERS[scene.filter].remark:
         told.append(f"The filter {scene.filter}: {remark}")
     if FILTERS[scene.filter] is PF:

@@ -332,6 +332,7 @@ def test_at_map_coordinates_tenths_of_a_millimetre_are_told():
 
 def test_the_head_tells_the_ratios_and_the_start_and_what_the_filter_is_told_otherwise():
     plain = narrate(next(views(play(PLACE))), PLACE)
+    assert "\n\n\n" not in plain
     ratios = "executionDstSigmaRatio=0.05, executionAngSigmaRatio=0.04, odometryDstSigmaRatio=0.02, "
     assert f"\nThe noise ratios: {ratios}odometryAngSigmaRatio=0.03, rangeSigmaRatio=0.01\n" in plain
     assert "\nThe robot starts at (x, y, th) = (1, 1, 30)\n" in plain
