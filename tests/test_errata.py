@@ -11,8 +11,10 @@ from documents import equation, text_of
 from ekfsim.filters.conditioning import square_root
 from ekfsim.filters.unscented import sigma_points, unscented_transform, weights
 from ekfsim.geometry.ellipse import ellipse, radius_factor
+from ekfsim.models.layout import SPEED_POSE
 from ekfsim.models.move_turn import MoveTurn
 from ekfsim.models.polar import cartesian, cartesian_moments
+from ekfsim.models.position import Position
 from ekfsim.options import DOCUMENTS
 from ekfsim.simulation.bench import sigma_of
 from ekfsim.systems.echo import Pair, flight_bound
@@ -181,6 +183,31 @@ def test_erratum_pioneer_figure_5_means_a_low_ratio():
     pair = Pair()
     loud, quiet = (flight_bound(pair.typical, sigma_of(snr), pair) for snr in (30.0, 10.0))
     assert quiet > 4 * loud
+
+
+def test_erratum_mower_has_its_markers_in_a_tenth_of_their_area():
+    """Document 000, section 1 says so of 10 m²; section 2 has one marker in each square of roughly six metres."""
+    text = text_of("000")
+    assert "three to four markers per 10 m^2" in text
+    assert "28 markers placed at roughly six meter intervals" in text
+    assert 10 / 6**2 < 0.3
+    assert 2.5 < 100 / 6**2 < 4
+
+
+def test_erratum_gnss_figure_2_names_fixes_that_have_no_heading():
+    """Document 003: the caption of figure 2, which draws φ, names the detections of figure 1."""
+    assert re.search(r"Figure 2: [^:]*the GNSS detections, and the estimated \S*(phi|ϕ|φ)", text_of("003"))
+    heading = np.eye(4)[1]  # of the state (V, φ, x, y)
+    _, H, _ = Position(0.1, 0.1, SPEED_POSE).linearize(np.zeros(4))
+    assert not np.any(H @ heading)
+
+
+def test_erratum_pylon_eq_1_predicts_at_a_state_that_nothing_defines():
+    """Document 004, eq. 1: h(x̄), where the algorithm has a predicted mean μ̄."""
+    text = text_of("004")
+    assert text.count(r"h(\bar{x}_t)") == 1
+    assert text.count(r"\bar{x}") == 1
+    assert r"\bar{\mu}_t &= g(\mu_{t-1}, u_t)" in text
 
 
 def test_erratum_pylon_tells_variances_in_metres():
