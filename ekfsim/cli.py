@@ -9,7 +9,7 @@ import click
 
 from ekfsim import process
 from ekfsim.asked import engine_of, scene_of
-from ekfsim.errors import Mistake, RunError, UsageError, told
+from ekfsim.errors import MOST_TOLD, Mistake, RunError, UsageError, told
 from ekfsim.options import (
     DOCUMENTS,
     EXPLAIN,
@@ -167,9 +167,10 @@ def check(files: tuple[str, ...]) -> None:
             say(str(missing))
             wrong = True
             continue
-        warn(warning for warning in found.warnings if warning not in warned)
-        warned.update(found.warnings)
         new = [mistake for mistake in found.mistakes if not before or mistake.placed_alike not in before]
+        odd = (warning for warning in found.warnings if warning not in warned)
+        warn(odd, MOST_TOLD - len(told(new)))  # together no more than anybody reads
+        warned.update(found.warnings)
         if len(files) > 1:
             before.update(mistake.placed_alike for mistake in new)
         all_told = in_a_line(f"{file}: {'what is wrong with it is told above' if found.mistakes else 'ok'}")

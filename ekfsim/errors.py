@@ -81,9 +81,11 @@ def told(mistakes: Sequence[Mistake]) -> list[str]:
     return [*lines, in_a_line(f"{mistakes[len(lines)].place}: and {more} more mistakes from here on")]
 
 
-def first_of(warnings: Iterable[str]) -> list[str]:
+def first_of(warnings: Iterable[str], most: int = MOST_TOLD) -> list[str]:
     """The same for warnings, whose lines there are already."""
     lines = list(warnings)
-    if len(lines) <= MOST_TOLD:
+    if len(lines) <= most:
         return lines
-    return [*lines[: MOST_TOLD - 1], f"and {len(lines) - MOST_TOLD + 1:,} more warnings".replace(",", " ")]
+    if most < 1:
+        return []
+    return [*lines[: most - 1], f"and {len(lines) - most + 1:,} more warnings".replace(",", " ")]

@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 
 import click
 
-from ekfsim.errors import EkfsimError, first_of
+from ekfsim.errors import MOST_TOLD, EkfsimError, first_of
 from ekfsim.printable import in_a_line
 from ekfsim.printable import shown as shown
 
@@ -112,9 +112,9 @@ def say(*lines: str) -> None:
         click.echo("\n".join(line if _placed(line) else f"ekfsim: {line}" for line in told), err=True)
 
 
-def warn(warnings: Iterable[str]) -> None:
+def warn(warnings: Iterable[str], most: int = MOST_TOLD) -> None:
     """Tell the user what is odd, a line each, and of very much only the first."""
-    for line in first_of(warnings):
+    for line in first_of(warnings, most):
         say(line)
 
 

@@ -230,3 +230,12 @@ def test_a_log_where_nothing_was_recorded():
     told = ekfsim("run", "short.yaml", "--reading", "spoken")
     assert told.status == 2
     assert "'printed', 'coded', 'corrected'" in told.err
+
+
+def test_mistakes_and_warnings_of_a_file_are_together_what_anybody_reads(tmp_path):
+    move = "  - move: {distance: 1, angle: 400, slip: 2}\n"  # in degrees a great many, and more slip than there is
+    for count, warnings in ((60, 0), (40, 10)):
+        (tmp_path / "many.yaml").write_text("world: room\ncommands:\n" + move * count)
+        told = ekfsim("check", tmp_path / "many.yaml")
+        assert len(told.out.splitlines()) == min(count, 50)
+        assert len(told.err.splitlines()) == warnings

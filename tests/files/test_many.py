@@ -97,6 +97,8 @@ def test_all_are_counted(place):
 def test_many_warnings_are_few_lines():
     assert len(first_of(map(str, range(MANY)))) == MOST_TOLD
     assert first_of(["a", "b"]) == ["a", "b"]
+    assert first_of(map(str, range(7)), 3) == ["0", "1", "and 5 more warnings"]
+    assert first_of(map(str, range(7)), 0) == []
 
 
 @pytest.mark.parametrize(
