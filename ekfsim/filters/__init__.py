@@ -12,8 +12,9 @@
 
 The filters know no robot and no sensor: f, F, G, M, Q and h, H, R come from the models (see models/protocols.py).
 
-Three files are speed alone; tests hold each equal to the EKF as ekf.py and correcting.py have it:
+Four files are speed alone; tests hold each equal to what ekf.py, correcting.py and conditioning.py have:
 
+    conditioning_one.py  one robot, in plain floats
     unrolled.py    many runs side by side, a state of three and a reading of one number: entry by entry
     compiled.py    the same by Numba, where geometry/backend.py has been told to use it
     stretch.py     many predictions of one run in a row, for planar odometry

@@ -4,17 +4,14 @@ P is carried as P = L Lᵀ. A sum of squares has no negative variance and no cor
 leaves of a wide prior, R of it, is a product here, not the difference of two numbers that agree in all their digits.
 """
 
-import math
-from operator import mul
 from typing import NamedTuple
 
 import numpy as np
 
 from ekfsim.filters.algebra import ROUNDING, symmetric
-from ekfsim.geometry import Array
+from ekfsim.filters.conditioning_one import conditioned_one, is_covariance_one
+from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.lanes import back, front
-
-Rows = list[list[float]]
 
 
 class Conditioned(NamedTuple):
@@ -22,7 +19,7 @@ class Conditioned(NamedTuple):
 
     root: Array  # L of the posterior, P = L Lᵀ : (…, n, n)
     K: Array  # (…, n, k)
-    unmixed: Array  # T : (…, k, k), lower triangular; e = T ν are innovations that have nothing in common
+    unmixed: Array  # T : (…, k, k); e = T ν are innovations that have nothing in common
     variances: Array  # of e : (…, k), S = T⁻¹ diag(s) T⁻ᵀ; 0 where nothing was uncertain
 
     def nis(self, innovation: Array) -> Array:
@@ -47,7 +44,7 @@ def covariance(P: Array) -> Array:
     Symmetric, no variance below 0, no correlation beyond ±1. The one place where that is forced.
     """
     P = symmetric(P)
-    if P.ndim == 2 and _is_covariance(P.tolist()):
+    if P.ndim == 2 and is_covariance_one(P.tolist()):
         return P
     variances = np.diagonal(P, axis1=-2, axis2=-1)
     square = variances[..., :, None] * variances[..., None, :]
@@ -56,18 +53,6 @@ def covariance(P: Array) -> Array:
     σ = np.sqrt(np.maximum(variances, 0.0))
     limit = σ[..., :, None] * σ[..., None, :]
     return np.clip(P, -limit, limit)
-
-
-def _is_covariance(P: Rows) -> bool:
-    """Whether one symmetric matrix needs no force."""
-    for i, row in enumerate(P):
-        variance = row[i]
-        if not variance >= 0:
-            return False
-        for j in range(i):
-            if row[j] * row[j] > variance * P[j][j]:
-                return False
-    return True
 
 
 def square_root(P: Array, seen: Array | None = None) -> Array:
@@ -109,8 +94,9 @@ def conditioned(L: Array, D: Array, R: Array, h: Array) -> Conditioned:
     """P⁻ = L Lᵀ and a reading of k numbers, S = D Dᵀ + R      K = L Dᵀ S⁻¹      P = L (I + Dᵀ R⁻¹ D)⁻¹ Lᵀ
 
     L : (…, n, n), D : (…, k, n), R : (…, k, k), h : (…, k), the reading that is predicted. One number is taken after
-    the other: from the later ones is taken what they have in common with it, in the noise and in the belief. A number
-    whose deviation is below the rounding of h itself tells nothing.
+    the other, the dullest first where their noises have something in common: from the later ones is taken what they
+    have in common with it, in the noise and in the belief. A number whose deviation is below the rounding of h itself
+    tells nothing.
 
     Carlson, Fast triangular formulation of the square root filter, AIAA Journal, 1973.
     """
@@ -125,6 +111,10 @@ def conditioned(L: Array, D: Array, R: Array, h: Array) -> Conditioned:
     T, K, s = np.zeros((k, k, *axes)), np.zeros((n, k, *axes)), np.zeros((k, *axes))
     for i in range(k):
         T[i, i] = 1.0
+    if any(R[i, m].any() for i in range(k) for m in range(i)):
+        dullest = np.argsort(-_dullness(R, A[n:]), axis=0, kind="stable")
+        A[n:], T, R, h = (np.take_along_axis(M, _rows_of(dullest, M), axis=0) for M in (A[n:], T, R, h))
+        R = np.take_along_axis(R, dullest[None], axis=1)
     for i in range(k):
         r, f = R[i, i], A[n + i]
         for m in range(i + 1, k):
@@ -157,6 +147,18 @@ def _widened(M: Array, axes: tuple[int, ...], inner: int) -> Array:
     return M.reshape(M.shape[:inner] + (1,) * (len(axes) + inner - M.ndim) + M.shape[inner:])
 
 
+def _dullness(R: Array, D: Array) -> Array:
+    """How much noisier than the belief each number is : (k, …), ∞ where that knows it. R : (k, k, …), D : (k, n, …)"""
+    known = np.sum(np.square(D), axis=1)
+    dullness: Array = np.divide(np.einsum("ii...->i...", R), known, out=np.full(known.shape, np.inf), where=known > 0)
+    return dullness
+
+
+def _rows_of(order: Integers, M: Array) -> Integers:
+    """An order of rows : (k, …) as wide as those of M : (k, m, …) are."""
+    return order if M.ndim == order.ndim else order[:, None]
+
+
 def _share(part: Array, whole: Array) -> Array:
     """part / whole, 0 where the whole is none."""
     some = whole > 0
@@ -183,119 +185,3 @@ def _carlson(A: Array, f: Array, r: Array) -> tuple[Array, Array, Array]:
         b += f[j] * A[:, j]
         α = more
     return left, b, α
-
-
-def square_root_one(P: Rows, H: Rows) -> Rows:
-    """`square_root` of one robot in plain floats, held equal to it by a test."""
-    n = len(P)
-    seen = [-sum([row[i] * row[i] for row in H]) * P[i][i] for i in range(n)]
-    order = sorted(range(n), key=seen.__getitem__)
-    L = [[0.0] * n for _ in range(n)]
-    for j, p in enumerate(order):
-        P_p, L_p = P[p], L[p]
-        pivot = P_p[p]
-        for m in range(j):
-            pivot -= L_p[m] * L_p[m]
-        if pivot > ROUNDING * P_p[p]:
-            L_p[j] = root = math.sqrt(pivot)
-            for q in order[j + 1 :]:
-                L_q, rest = L[q], P_p[q]
-                for m in range(j):
-                    rest -= L_q[m] * L_p[m]
-                L_q[j] = rest / root
-    return L
-
-
-def slope_one(H: Rows, L: Rows) -> Rows:
-    """`slope` of one robot."""
-    n, D = len(L), []
-    for row in H:
-        f = []
-        for j in range(n):
-            d = terms = 0.0
-            for h, L_i in zip(row, L, strict=True):
-                term = h * L_i[j]
-                d += term
-                terms += abs(term)
-            f.append(d if abs(d) > ROUNDING * terms else 0.0)
-        D.append(f)
-    return D
-
-
-def conditioned_one(L: Rows, D: Rows, R: Rows, h: list[float]) -> tuple[Rows, Rows, Rows, list[float]]:
-    """`conditioned` of one robot: the root of P, K, T and s."""
-    n, k = len(L), len(D)
-    if k == 1:
-        left, b, s_1 = _carlson_one(L, D[0], R[0][0])
-        if s_1 <= (ROUNDING * h[0]) ** 2:
-            return L, [[0.0]] * n, [[1.0]], [0.0]
-        return left, [[b_q / s_1 if s_1 > 0 else 0.0] for b_q in b], [[1.0]], [s_1]
-    A, R = [*map(list, L), *map(list, D)], [*map(list, R)]
-    T, s, K = [[float(i == j) for j in range(k)] for i in range(k)], [0.0] * k, [[0.0] * k for _ in range(n)]
-    for i in range(k):
-        f, r, T_i = A[n + i], R[i][i], T[i]
-        for m in range(i + 1, k):
-            if r > 0 and R[m][i]:
-                common = R[m][i] / r
-                A[n + m] = [a - common * f_j for a, f_j in zip(A[n + m], f, strict=True)]
-                T[m] = [t - common * t_i for t, t_i in zip(T[m], T_i, strict=True)]
-                R[m] = [x - common * y for x, y in zip(R[m], R[i], strict=True)]
-        left, b, s_i = _carlson_one(A, f, r)
-        if s_i <= (ROUNDING * h[i]) ** 2:
-            continue
-        A, s[i] = left, s_i
-        if s_i > 0:
-            for row, b_q in zip(K, b, strict=False):
-                share = b_q / s_i
-                for m in range(i + 1):
-                    row[m] += share * T_i[m]
-            for m in range(i + 1, k):
-                share = b[n + m] / s_i
-                T[m] = [t - share * t_i for t, t_i in zip(T[m], T_i, strict=True)]
-    return A[:n], K, T, s
-
-
-def _carlson_one(A: Rows, f: list[float], r: float) -> tuple[Rows, list[float], float]:
-    """`_carlson` of one robot."""
-    α, turns = r, []
-    for f_j in reversed(f):
-        more = α + f_j * f_j
-        if α > 0:
-            turns.append((f_j, math.sqrt(α / more), f_j / math.sqrt(α * more)))
-        else:
-            turns.append((f_j, 0.0 if more > 0 else 1.0, 0.0))
-        α = more
-    left, sums, last = [], [], len(f) - 1
-    for row in A:
-        new, b, j = [0.0] * len(f), 0.0, last
-        for f_j, kept, turned in turns:
-            a = row[j]
-            kept_a, turned_b = kept * a, turned * b
-            rest = kept_a - turned_b
-            new[j] = rest if abs(rest) > ROUNDING * abs(kept_a) else 0.0
-            b += f_j * a
-            j -= 1
-        left.append(new)
-        sums.append(b)
-    return left, sums, α
-
-
-def nis_one(T: Rows, s: list[float], innovation: list[float]) -> float:
-    """`Conditioned.nis` of one robot."""
-    if len(s) == 1:
-        return innovation[0] * innovation[0] / s[0] if s[0] > 0 else math.nan
-    if not any(s) or any(map(math.isnan, s)):
-        return math.nan
-    e: list[float] = [sum(map(mul, row, innovation)) for row in T]
-    return sum(e_i * e_i / s_i for e_i, s_i in zip(e, s, strict=True) if s_i > 0)
-
-
-def squared_one(L: Rows, before: Rows) -> Rows:
-    """`squared` of one robot."""
-    n = len(L)
-    P = [[0.0] * n for _ in range(n)]
-    for i, row in enumerate(L):
-        P[i][i] = min(sum(map(mul, row, row)), before[i][i])
-        for j in range(i):
-            P[i][j] = P[j][i] = sum(map(mul, row, L[j]))
-    return P

@@ -7,18 +7,8 @@ import numpy as np
 
 from ekfsim.filters.algebra import SHARP, refusal, refusal_one, wrapped
 from ekfsim.filters.belief import Correction, Gaussian, Refused
-from ekfsim.filters.conditioning import (
-    Conditioned,
-    conditioned,
-    conditioned_one,
-    nis_one,
-    slope,
-    slope_one,
-    square_root,
-    square_root_one,
-    squared,
-    squared_one,
-)
+from ekfsim.filters.conditioning import Conditioned, conditioned, slope, square_root, squared
+from ekfsim.filters.conditioning_one import conditioned_one, nis_one, slope_one, square_root_one, squared_one
 from ekfsim.geometry import Array, Booleans, Integers
 
 

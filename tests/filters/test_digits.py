@@ -119,6 +119,27 @@ def test_an_update_is_right_to_six_digits_however_sharp_the_sensor(n, k):
                 sound(P_told)
 
 
+@pytest.mark.parametrize("seed", [2555, 3128, 4472, 4619, *range(10)])  # the first four had no six digits once
+def test_an_update_is_right_to_six_digits_where_noises_have_much_in_common(seed):
+    random = np.random.default_rng(seed)
+    n, k = random.integers(1, 4), random.integers(2, 4)
+    A = random.normal(size=(n, n))
+    P = A @ A.T * 10 ** random.uniform(-1, 1)
+    B = random.normal(size=(k, k))
+    R = B @ B.T + 0.05 * np.eye(k)
+    noisy = 10 ** random.uniform(-12, 12, size=k)
+    R *= np.outer(noisy, noisy)
+    H = random.normal(size=(k, n))
+    S, K, P_new = oracle(P, H, R)
+    unit = np.sqrt(np.diag(P))[:, None] / np.sqrt(np.diag(S))
+    for first in (Gaussian(np.zeros(n), P), Gaussian(np.zeros((2, n)), np.tile(P, (2, 1, 1)))):
+        posterior, correction = begun("ekf", first, headings=()).update(first, Straight(H, R), np.zeros(k))
+        assert np.diagonal(posterior.covariance, axis1=-2, axis2=-1) == pytest.approx(
+            np.broadcast_to(np.diag(P_new), first.mean.shape), rel=1e-6
+        )
+        assert (np.abs(correction.K - K) <= 1e-6 * unit).all()
+
+
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_the_twin_of_many_runs_is_right_to_six_digits(backend):
     random = np.random.default_rng(5)
