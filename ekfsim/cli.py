@@ -81,9 +81,12 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
     from ekfsim.files.outputs import kept
     from ekfsim.localization import play as steps_of
     from ekfsim.views import animation, limits
+    from ekfsim.views.captions import texts
+    from ekfsim.views.lettering import boxes
     from ekfsim.views.playback import Tally, together
 
     scene, tally = scene_of(**chosen), Tally()
+    warn(boxes(texts(scene)))
     first, *others = scene.alone()
     runs = (kept(steps_of(first), [tally.write]), *map(steps_of, others))
     extent = limits.of_all(scene, runs, confidence)

@@ -1,11 +1,12 @@
 """The words in a picture: the command, what is to be seen of it, and what made the picture."""
 
 import math
+from collections.abc import Iterable, Iterator
 
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse, radius_factor
 from ekfsim.models.infrared import InfraredBeam
-from ekfsim.records import Entry, Kidnap, Move, Reading, Say, Sense, Step
+from ekfsim.records import Command, Entry, Kidnap, Move, Reading, Repeat, Say, Sense, Step
 from ekfsim.scene import Scene
 from ekfsim.views.beams import Beam, called, length
 from ekfsim.views.lettering import shortened
@@ -141,6 +142,22 @@ def source(scene: Scene) -> str:
     log = "recorded" if scene.log is not None else ""
     origin = ", ".join(filter(None, (log, drawn, scene.filter, *scene.beside)))
     return f"{shortened(scene.world.name, 30)} — {origin}{gate}{guard}{reading}"
+
+
+def texts(scene: Scene) -> Iterator[str]:
+    """Whatever of a person's own words a scene's pictures show."""
+    yield scene.world.name
+    yield from (obstacle.name for obstacle in (*scene.world.map.obstacles, *scene.world.told.map.obstacles))
+    yield from _said(scene.commands)
+
+
+def _said(commands: Iterable[Command]) -> Iterator[str]:
+    """The text of each say, of one that is repeated once."""
+    for command in commands:
+        if isinstance(command, Say):
+            yield command.text
+        elif isinstance(command, Repeat):
+            yield from _said(command.commands)
 
 
 def ellipse_label(probability: float) -> str:

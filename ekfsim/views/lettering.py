@@ -7,6 +7,8 @@ from functools import cache
 
 from matplotlib.font_manager import FontProperties, fontManager, get_font
 
+from ekfsim.printable import some
+
 FAMILY = "DejaVu Sans"  # comes with matplotlib
 OTHERS = (  # for the signs it lacks, where one of them is installed
     "Noto Sans CJK JP",
@@ -52,6 +54,14 @@ def drawable(text: str) -> str:
     if text.isascii():
         return text
     return "".join(sign if sign.isspace() or _has_glyph(sign) else _substitute(sign) for sign in text)
+
+
+def boxes(texts: Iterable[str]) -> list[str]:
+    """That pictures of these texts have boxes, and what would be there instead: a line, or none."""
+    signs = dict.fromkeys(sign for text in texts if not text.isascii() for sign in text)
+    boxed = [sign for sign in signs if drawable(sign) == MISSING != sign]
+    right = "install one that has them, such as Noto Sans CJK or Noto Emoji"
+    return [f"no font here has {some(boxed)}: in the picture {MISSING} stands for each; {right}"] if boxed else []
 
 
 @cache

@@ -4,8 +4,9 @@ import os
 import signal
 
 import pytest
-from program import LONG, MEASURED, ekfsim, ended, lay_out, left_in, process, started, wait_for
+from program import LONG, MEASURED, SHORT, WORLD, ekfsim, ended, lay_out, left_in, process, started, wait_for
 
+from ekfsim.views import lettering
 from ekfsim.views.png import SIGNATURE
 
 PUT_IN = ["long.yaml", "short.yaml", "world.yaml"]
@@ -27,6 +28,18 @@ def test_a_picture_for_every_view_in_a_folder(place):
     drawn = ekfsim("render", "short.yaml", "-o", "new/frames")
     assert (drawn.status, drawn.out, drawn.err) == (0, "new/frames: 5 pictures\n", "")
     assert pictures(place / "new/frames") == FRAMES
+
+
+def test_signs_that_no_font_has_are_told(place, monkeypatch):
+    monkeypatch.setattr(lettering, "families", lambda: [lettering.FAMILY])
+    lettering._has_glyph.cache_clear()
+    (place / "world.yaml").write_text(WORLD.replace("name: desk", "name: 書桌"))
+    (place / "short.yaml").write_text(SHORT.replace("The end.", "完 ±2 σ"))
+    drawn = ekfsim("render", "short.yaml", "-o", "frames")
+    assert drawn.status == 0
+    right = "install one that has them, such as Noto Sans CJK or Noto Emoji"
+    assert drawn.err == f"ekfsim: no font here has 書, 桌, 完: in the picture □ stands for each; {right}\n"
+    lettering._has_glyph.cache_clear()
 
 
 def test_every_n_th_and_the_last(place):
