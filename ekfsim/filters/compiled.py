@@ -28,6 +28,11 @@ def revised(
     return *new, clear
 
 
+def sound(P: Array) -> bool:
+    """Whether no variance is negative and no correlation beyond ±1."""
+    return bool(_is_sound(np.ascontiguousarray(P)))
+
+
 def squares(e: Array, P: Array, tiny: float, sure: float) -> tuple[Array, Booleans]:
     """eᵀ P⁻¹ e of three entries : (N,), and where P is clearly of full rank, as in consistency.py"""
     value, clear = np.empty(e.shape[1:]), np.empty(e.shape[1:], bool)
@@ -102,6 +107,18 @@ def _revise(
             mean[i, n] = x[i, n] + K[i, n] * ν[n]
     for n in range(N):
         nis[n] *= ν[n] * ν[n]
+
+
+@compiled
+def _is_sound(P: Array) -> bool:
+    """The same, counted without a branch."""
+    beyond = 0
+    for n in range(P.shape[2]):
+        a, d, v = P[0, 0, n], P[1, 1, n], P[2, 2, n]
+        b, c, e = P[0, 1, n], P[0, 2, n], P[1, 2, n]
+        fine = (a >= 0) & (d >= 0) & (v >= 0) & (b * b <= a * d) & (c * c <= a * v) & (e * e <= d * v)
+        beyond += not fine
+    return beyond == 0
 
 
 @compiled

@@ -36,7 +36,7 @@ def predicted(P: Array, F: Array, G: Array, M: Array, Q: Array | float) -> Array
     if np.ndim(Q):
         Q = np.asarray(Q)
         new += front(Q) if Q.ndim == 3 else Q[..., None]
-    return as_covariance(back(new))
+    return back(_forced(new))
 
 
 def _propagated(P: Array, F: Array, G: Array, M: Array) -> Array | None:
@@ -87,12 +87,13 @@ def updated(
         refused[nis > quantile(gate, 1)] = Refused.GATE
     if skip is not False:
         refused[np.broadcast_to(skip, refused.shape)] = Refused.GUARD
-    with np.errstate(invalid="ignore"):  # those that are not clear are done again below
-        posterior = Gaussian(back(mean, 1), as_covariance(back(covariance)))
+    covariance = _forced(covariance)  # of those that are not clear nan may be in it: they are done again below
+    posterior = Gaussian(back(mean, 1), back(covariance))
     correction = Correction(h, ν, R, s[:, None, None], H, back(K, 1)[..., None], nis, refused)
     kept = refused != Refused.NOT
     if kept.any():
-        posterior.mean[kept], posterior.covariance[kept] = prior.mean[kept], prior.covariance[kept]
+        np.copyto(mean, x, where=kept)
+        np.copyto(covariance, P, where=kept)
     if not clear.all():
         _with_care(~clear, prior, reading, skip, gate, heading, posterior, correction)
     return posterior, correction
@@ -110,6 +111,22 @@ def _revised(
         per_s = 1 / s
         K = PHt * per_s
         return s, K, x + K * ν, P - PHt[:, None] * PHt * per_s, ν * ν * per_s, clear
+
+
+def _forced(P: Array) -> Array:
+    """P as a covariance must be : (3, 3, N), see conditioning.covariance; mostly all are, which is soon seen."""
+    sound = _sound
+    if backend.used() == "numba":
+        from ekfsim.filters.compiled import sound
+    with np.errstate(invalid="ignore"):
+        return P if sound(P) else front(as_covariance(back(P)))
+
+
+def _sound(P: Array) -> bool:
+    """Whether no variance is negative and no correlation beyond ±1."""
+    (a, b, c), (_, d, e), (_, _, v) = P
+    none_beyond = (a >= 0) & (d >= 0) & (v >= 0) & (b * b <= a * d) & (c * c <= a * v) & (e * e <= d * v)
+    return bool(none_beyond.all())
 
 
 def _with_care(
