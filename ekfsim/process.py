@@ -1,5 +1,7 @@
 """How the process begins and ends: streams, signals, exit statuses, and mistakes told in sentences."""
 
+import atexit
+import gc
 import os
 import shutil
 import signal
@@ -18,6 +20,8 @@ from ekfsim.printable import shown as shown
 INTERRUPTED = 130
 _ending: list[int] = []  # the signal that is to end us, once it has come
 _parting: list[str] = []  # what is left to say where we are ended
+
+atexit.register(gc.freeze)  # to look through a long file's tree once more takes as long as to read it
 
 
 def run(program: click.Group) -> NoReturn:
