@@ -32,6 +32,8 @@ class UKF:
     Noise is added (eqs 21, 24); eq. 22 draws it into the sigma points, as ukf_augmented.py does. Headings, and readings
     that are angles, are averaged as turns from where the mean goes, so that a heading may be as uncertain as one likes.
     As they come, α, β and κ give Julier's points, and no weight is negative.
+
+    A point whose heading would lie more than a quarter of a turn away is taken there, see unscented.reach.
     """
 
     remark: ClassVar[str] = ""
@@ -57,7 +59,13 @@ class UKF:
         x, P = belief
         _, F, G, M, Q = motion.linearize(x, u)
         moved = unscented_transform(
-            x, P, lambda X: motion.f(X, u[..., None, :]), self._weights(x), self.headings, self._turning(F)
+            x,
+            P,
+            lambda X: motion.f(X, u[..., None, :]),
+            self._weights(x),
+            self.headings,
+            self._turning(F),
+            self.headings,
         )
         P_new = self._definite(x, covariance(moved.covariance + G @ M @ G.mT + Q))
         return Gaussian(moved.mean, P_new), Prediction(statistical_slope(moved.slope, moved.root), G)
@@ -77,7 +85,7 @@ class UKF:
         x, P = prior
         _, H, R = sensor.linearize(x)
         directions = angles(sensor.outputs)
-        seen = unscented_transform(x, P, sensor.h, self._weights(x), directions, self._turning(H))
+        seen = unscented_transform(x, P, sensor.h, self._weights(x), directions, self._turning(H), self.headings)
         D, noise = seen.slope, self._definite(x, seen.bend + R)
         innovation = sensor.residual(z, seen.mean)
         learnt = conditioned(seen.root, D, noise, seen.mean)

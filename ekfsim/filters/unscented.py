@@ -12,6 +12,8 @@ from ekfsim.filters.conditioning import square_root
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 
+QUARTER = math.pi / 2  # of a turn
+
 
 class Weights(NamedTuple):
     """How far the sigma points of n numbers lie from the mean, and how much each of the 2n + 1 counts."""
@@ -51,11 +53,25 @@ def weights(n: int, alpha: float = 1.0, beta: float = 0.0, kappa: float | None =
     return Weights(math.sqrt(scale), np.append(first, outer), np.append(first + 1 - alpha**2 + beta, outer))
 
 
-def sigma_points(mean: Array, L: Array, spread: float) -> Array:
-    """x̄, x̄ + √(n+λ) Lᵢ, x̄ − √(n+λ) Lᵢ, Lᵢ the columns of the root of P : (…, 2n + 1, n)          eq. 14"""
-    arms = spread * L.mT
+def sigma_points(mean: Array, L: Array, spread: float | Array) -> Array:
+    """x̄, x̄ + √(n+λ) Lᵢ, x̄ − √(n+λ) Lᵢ, Lᵢ the columns of the root of P : (…, 2n + 1, n)          eq. 14
+
+    spread : one for all columns, or (…, n)
+    """
+    arms = np.asarray(spread)[..., None] * L.mT
     points: Array = mean[..., None, :] + np.concatenate([np.zeros_like(arms[..., :1, :]), arms, -arms], axis=-2)
     return points
+
+
+def reach(L: Array, spread: float, headings: tuple[int, ...]) -> Array:
+    """How far along each column of L the sigma points lie : (…, n), the spread, or less where a heading turns with it.
+
+    None turns by more than a quarter of a turn. Two that are a turn apart are the same place, and one beyond half a
+    turn tells of the wrong side: a robot whose heading nobody knows would learn from its fixes that it is a sure one.
+    """
+    turns = np.abs(L[..., np.array(headings, int), :]).max(axis=-2, initial=0.0)
+    wide = spread * turns > QUARTER
+    return np.where(wide, np.divide(QUARTER, turns, out=np.zeros_like(turns), where=wide), spread)
 
 
 def weighted_mean(points: Array, weights: Array, angles: tuple[int, ...] = (), about: Array | None = None) -> Array:
@@ -81,6 +97,7 @@ def unscented_transform(
     weights: Weights,
     angles: tuple[int, ...] = (),
     turning: Array | None = None,
+    headings: tuple[int, ...] = (),
 ) -> Transformed:
     """ȳ = Σ Wᵢᵐ yᵢ      P_yy = Σ Wᵢᶜ (yᵢ − ȳ)(yᵢ − ȳ)ᵀ      P_xy = Σ Wᵢᶜ (xᵢ − x̄)(yᵢ − ȳ)ᵀ          eqs 15 to 17
 
@@ -92,13 +109,18 @@ def unscented_transform(
     large numbers,
 
         D = [dᵢ] / √(n+λ)      Ω = W₀ᶜ δ̄ δ̄ᵀ + Σ 2 Wᵢ sᵢ sᵢᵀ      P_yy = D Dᵀ + Ω      P_xy = L Dᵀ
+
+    Which entries of x are `headings` is told for `reach`: where it is less than √(n+λ) it stands in its place in D, the
+    slope of a shorter chord; the weights stay.
     """
     n, L = mean.shape[-1], square_root(covariance)
-    X = sigma_points(mean, L, weights.spread)
+    far = reach(L, weights.spread, headings)
+    X = sigma_points(mean, L, far)
     y = function(X)
     δ = y - y[..., :1, :]
     if angles:
-        arms = weights.spread * np.concatenate([np.zeros_like(L[..., :1]), L, -L], axis=-1)  # X − x̄, never wrapped
+        arms = L * far[..., None, :]
+        arms = np.concatenate([np.zeros_like(L[..., :1]), arms, -arms], axis=-1)  # X − x̄, never wrapped
         turned = np.zeros_like(δ) if turning is None else (turning @ arms).mT
         for i in angles:
             δ[..., i] = turned[..., i] + wrap(δ[..., i] - turned[..., i])
@@ -108,7 +130,7 @@ def unscented_transform(
         y_mean[..., i] = wrap(y_mean[..., i])
     δ = δ - δ_mean[..., None, :]
     ahead, behind = δ[..., 1 : n + 1, :], δ[..., n + 1 :, :]
-    D = ((ahead - behind) / (2 * weights.spread)).mT
+    D = ((ahead - behind) / (2 * far[..., None])).mT
     s = np.concatenate([δ[..., :1, :], (ahead + behind) / 2], axis=-2)
     W = np.append(weights.covariance[0], 2 * weights.covariance[1 : n + 1])
     bend = s.mT @ (W[:, None] * s)

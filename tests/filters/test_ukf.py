@@ -6,11 +6,15 @@ import pytest
 from filterpy.kalman import JulierSigmaPoints, MerweScaledSigmaPoints, UnscentedKalmanFilter
 from numerics import covariance, definite
 from problems import close, landmark, problem
+from systems_scenes import gnss
 
 from ekfsim.files.load import load_scene
 from ekfsim.filters.belief import Gaussian, Refused
+from ekfsim.filters.chi_square import quantile
+from ekfsim.filters.conditioning import square_root
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.ukf import UKF
+from ekfsim.filters.unscented import reach
 from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
 from ekfsim.models.laser import Laser
@@ -171,6 +175,31 @@ def test_an_unknown_heading_stays_unknown_until_something_is_read(system, degree
             break
         i = step.layout.headings[0]
         assert math.sqrt(step.posterior.covariance[i, i]) == pytest.approx(sigma[2], rel=0.02)
+
+
+@pytest.mark.parametrize("name", ["ukf", "ukf-augmented"])
+@pytest.mark.parametrize("degrees", [90, 135, 180, 270])
+def test_fixes_tell_a_heading_that_nobody_knew(name, degrees):
+    """Points further than half a turn told of the wrong side: of σ 90° and 270° all runs were lost, of 180° a third."""
+    made = gnss(filter=name)
+    σ = np.array([0.05, 0.05, math.radians(degrees)])
+    world = replace(made.world, start_sigma=σ, told=replace(made.world.told, sigma=σ))
+    *_, last = play(replace(made, world=world), np.arange(24))
+    limit = np.array([quantile(0.999, int(dof)) for dof in last.nees.dof])
+    assert np.mean(last.nees.value > limit) <= 1 / 24
+    assert not last.nees.impossible.any()
+
+
+@pytest.mark.parametrize("spread", [0.5, 1.7, 4.0])
+def test_no_point_lies_further_than_a_quarter_of_a_turn(spread):
+    random = np.random.default_rng(3)
+    L = square_root(covariance(random, 50, 4) * 10.0 ** random.uniform(-4, 3, (50, 1, 1)))
+    far = reach(L, spread, (1, 3))
+    turns = np.abs(far[..., None, :] * L)[:, [1, 3]].max(axis=1)
+    assert (turns <= math.pi / 2 + 1e-12).all()
+    assert (far <= spread).all()
+    np.testing.assert_allclose(far[turns < math.pi / 2 - 1e-9], spread)
+    assert np.array_equal(reach(L, spread, ()), np.full((50, 4), spread))
 
 
 @pytest.mark.parametrize("degrees", [30, 150, 360])
