@@ -1,7 +1,9 @@
-"""The mower's whole run, 54 900 predictions at 100 Hz and two markers every two seconds, against filterpy in a loop.
+"""The mower's whole run, 54 900 predictions at 100 Hz and two markers every two seconds, against
+filterpy in a loop.
 
-Ours takes each stretch between two readings at once. filterpy is handed f and F as plain floats, Q = G M Gᵀ + Q and H
-by the same formulas, and predicts and updates one by one. Both see the same inputs and readings.
+Ours takes each stretch between two readings at once. filterpy is handed f and F as plain floats, Q
+= G M Gᵀ + Q and H by the same formulas, and predicts and updates one by one. Both see the same
+inputs and readings.
 
 python benchmarks/filters.py [--quick]
 """
@@ -18,8 +20,8 @@ from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.stretch import stretch
 from ekfsim.geometry import Array
-from ekfsim.models.landmarks import MarkerAngles
-from ekfsim.models.wheels import GyroWheels
+from ekfsim.models.motions.wheels import GyroWheels
+from ekfsim.models.sensors.landmarks import MarkerAngles
 
 STEPS, EVERY, MARKERS = 54_900, 200, 2
 WIDTH, WHEEL, HEIGHT, AZIMUTH, ELEVATION = 0.5, 0.0016, 0.226, 0.048, 0.006
@@ -42,9 +44,14 @@ def main() -> None:
     ours, other = at_readings(log), theirs()
     difference = ours - other
     difference[:, 2] = np.arctan2(np.sin(difference[:, 2]), np.cos(difference[:, 2]))
-    print(f"{steps} predictions, {MARKERS} markers every {EVERY}; largest difference {np.abs(difference).max():.1e}")
+    print(
+        f"{steps} predictions, {MARKERS} markers every {EVERY}; largest difference "
+        f"{np.abs(difference).max():.1e}"
+    )
     for ratio in ratios(
-        lambda: at_readings(log), {"filterpy, predict and update in a loop": theirs}, 3 if quick else 7
+        lambda: at_readings(log),
+        {"filterpy, predict and update in a loop": theirs},
+        3 if quick else 7,
     ):
         print(ratio)
 
@@ -68,7 +75,9 @@ def recorded(steps: int) -> Log:
 
 
 def at_readings(log: Log) -> Array:
-    """Our estimate after each instant with readings : (N, 3); that of every step stands in the stretches."""
+    """Our estimate after each instant with readings : (N, 3); that of every step stands in the
+    stretches.
+    """
     U, readings = log
     filter, belief, estimates = EKF(), FIRST, []
     for k, seen in enumerate(readings):
@@ -116,7 +125,9 @@ def peer(log: Log) -> Callable[[], Array]:
             for u in inputs[k * EVERY : (k + 1) * EVERY]:
                 mower.predict(u)
             for sensor, z in seen:
-                mower.update(z, lambda x, sensor=sensor: sensor.linearize(x)[1], sensor.h, residual=residual)
+                mower.update(
+                    z, lambda x, sensor=sensor: sensor.linearize(x)[1], sensor.h, residual=residual
+                )
             estimates.append(mower.x)
         return np.array(estimates)
 

@@ -1,9 +1,11 @@
-"""How long one picture takes as a PNG file of 900 × 700 pixels: ours against ir-sim's, of a like scene.
+"""How long one picture takes as a PNG file of 900 × 700 pixels: ours against ir-sim's, of a like
+scene.
 
     python benchmarks/frames.py
 
-The scene: a room with 30 obstacles, a robot with a beam, and the path of 200 corners behind it. ir-sim steps, renders
-and saves its figure at the same size; it draws no ellipse, no cone, no legend and no close-up.
+The scene: a room with 30 obstacles, a robot with a beam, and the path of 200 corners behind it.
+ir-sim steps, renders and saves its figure at the same size; it draws no ellipse, no cone, no legend
+and no close-up.
 """
 
 import math
@@ -26,10 +28,10 @@ from timing import optional, ratios
 from ekfsim.localization import play
 from ekfsim.records import Move, Sense
 from ekfsim.scene import Scene
-from ekfsim.views import limits
-from ekfsim.views.frames import Frame, Picture
-from ekfsim.views.look import STANDARD
-from ekfsim.views.playback import views
+from ekfsim.views.picture import limits
+from ekfsim.views.picture.frames import Frame, Picture
+from ekfsim.views.picture.look import STANDARD
+from ekfsim.views.terminal.playback import views
 from ekfsim.world import Map, Noise, Obstacle, Told, World
 
 SIDE = 10.0  # m
@@ -46,20 +48,34 @@ def main() -> None:
         frame, coming, target = Frame(scene, extent), cycle(shown), Path("ours.png")
         peers = {"a new matplotlib figure each": anew(scene, extent, cycle(shown)), **by_irsim()}
         print("How many times as long as ours a picture takes:")
-        for ratio in ratios(lambda: target.write_bytes(frame.png(next(coming))), peers, rounds=15, seconds=0.2):
+        for ratio in ratios(
+            lambda: target.write_bytes(frame.png(next(coming))), peers, rounds=15, seconds=0.2
+        ):
             print(ratio)
 
 
 def classroom() -> Scene:
     """A room with 30 desks, and a robot that goes round them."""
     desks = tuple(Obstacle(f"desk {i}", rectangle(x, y)) for i, (x, y) in enumerate(DESKS))
-    plan, noise = Map(SIDE * np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]), desks), Noise(0.01, 0.01, 0.01, 0.01, 0.01)
+    plan, noise = (
+        Map(SIDE * np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]), desks),
+        Noise(0.01, 0.01, 0.01, 0.01, 0.01),
+    )
     start, sigma = np.array([0.4, 0.4, 0.0]), np.array([0.1, 0.1, 0.05])
     side = [Move(9 / (CORNERS / 4), 0.0)] * (CORNERS // 4)
-    course = [*side, Move(0.0, math.pi / 2), *side, Move(0.0, math.pi / 2), *side, Move(0.0, math.pi / 2), *side]
+    course = [
+        *side,
+        Move(0.0, math.pi / 2),
+        *side,
+        Move(0.0, math.pi / 2),
+        *side,
+        Move(0.0, math.pi / 2),
+        *side,
+    ]
     beams = [Sense(math.radians(angle)) for angle in range(0, 360, 30)]
     return Scene(
-        World("classroom", plan, start, np.zeros(3), noise, Told(start, sigma, noise, plan)), (*course, *beams)
+        World("classroom", plan, start, np.zeros(3), noise, Told(start, sigma, noise, plan)),
+        (*course, *beams),
     )
 
 
@@ -86,13 +102,15 @@ def by_irsim() -> dict[str, Callable[[], object]]:
     """ir-sim's own way, without a window."""
     os.environ["MPLBACKEND"] = "Agg"
     sys.path.insert(0, os.getcwd())  # its pictures go to a folder in the first of these
-    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # it looks for windows, and says so
+    # it looks for windows, and says so
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
         irsim: Any = optional("irsim")
     if irsim is None:
         print("skipped: irsim is not installed", file=sys.stderr)
         return {}
     obstacles = [
-        {"shape": {"name": "polygon", "vertices": rectangle(x, y).tolist()}, "state": [0, 0, 0]} for x, y in DESKS
+        {"shape": {"name": "polygon", "vertices": rectangle(x, y).tolist()}, "state": [0, 0, 0]}
+        for x, y in DESKS
     ]
     sensor = {"name": "lidar2d", "range_min": 0, "range_max": 15, "angle_range": 0.01, "number": 1}
     robot = {
@@ -105,7 +123,9 @@ def by_irsim() -> dict[str, Callable[[], object]]:
         "plot": {"show_trajectory": True},
     }
     world = {"height": SIDE, "width": SIDE, "collision_mode": "unobstructed"}
-    Path("world.yaml").write_text(yaml.safe_dump({"world": world, "robot": robot, "obstacle": obstacles}))
+    Path("world.yaml").write_text(
+        yaml.safe_dump({"world": world, "robot": robot, "obstacle": obstacles})
+    )
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
         environment = irsim.make("world.yaml", disable_all_plot=False, log_level="ERROR")
     environment._env_plot.fig.set_size_inches(9, 7)

@@ -1,8 +1,10 @@
-"""One beam, a scan, and beams from different places: ekfsim, ir-sim's lidar and shapely side by side.
+"""One beam, a scan, and beams from different places: ekfsim, ir-sim's lidar and shapely side by
+side.
 
 python benchmarks/rays.py [--quick] [one|scan|places ...]
 
-Many beams are timed with NumPy alone and, where it is installed, with Numba (the extra `fast`). All on one processor.
+Many beams are timed with NumPy alone and, where it is installed, with Numba (the extra `fast`). All
+on one processor.
 """
 
 import argparse
@@ -13,7 +15,8 @@ from itertools import cycle
 from types import SimpleNamespace
 from typing import Any
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")  # before NumPy is there: what two threads do is no one's merit
+# before NumPy is there: what two threads do is no one's merit
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 import shapely
@@ -27,7 +30,8 @@ REACH = 150.0  # m, more than the map's diagonal: the peers' beams have an end
 CORNERS = 5
 DIFFERENT = 64  # beams that take turns
 SCAN = 360  # beams of a scan
-SOME = {400: 1000, 40: 2000}  # by the number of walls, of 100 000 beams those that a slow peer is timed with, else 200
+# by the number of walls, of 100 000 beams those that a slow peer is timed with, else 200
+SOME = {400: 1000, 40: 2000}
 
 Beam = tuple[float, float, float]  # x, y in m, heading in rad
 Cast = Callable[[float, float, float], float]
@@ -35,8 +39,15 @@ Cast = Callable[[float, float, float], float]
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="fewer and shorter rounds, and not the largest maps")
-    parser.add_argument("what", nargs="*", default=["one", "scan", "places"], help="one, scan, places; all if not said")
+    parser.add_argument(
+        "--quick", action="store_true", help="fewer and shorter rounds, and not the largest maps"
+    )
+    parser.add_argument(
+        "what",
+        nargs="*",
+        default=["one", "scan", "places"],
+        help="one, scan, places; all if not said",
+    )
     options = parser.parse_args()
     effort = (3, 0.005) if options.quick else (9, 0.02)
     if "one" in options.what:
@@ -50,7 +61,15 @@ def main() -> None:
             places(count, beams, effort)
 
 
-PLACES = ((40, 1000), (400, 1000), (40, 7000), (400, 7000), (40, 100_000), (400, 100_000), (40_000, 100_000))
+PLACES = (
+    (40, 1000),
+    (400, 1000),
+    (40, 7000),
+    (400, 7000),
+    (40, 100_000),
+    (400, 100_000),
+    (40_000, 100_000),
+)
 
 
 def one_beam(count: int, effort: tuple[int, float]) -> None:
@@ -58,7 +77,11 @@ def one_beam(count: int, effort: tuple[int, float]) -> None:
     rings = world(count)
     walls = Walls.of(rings)
     beams = free_beams(rings)
-    casts = {"shapely STRtree": by_tree(walls), "shapely, one union": by_union(walls), **by_irsim(rings)}
+    casts = {
+        "shapely STRtree": by_tree(walls),
+        "shapely, one union": by_union(walls),
+        **by_irsim(rings),
+    }
     check(walls, casts, beams)
     print(f"one beam, {count} walls")
     peers = {name: turns(cast, beams) for name, cast in casts.items()}
@@ -79,7 +102,9 @@ def scan(count: int, effort: tuple[int, float]) -> None:
         peers[f"ir-sim Lidar2D.step, {SCAN} beams"] = lambda: lidar.step(pose)
         lidar.step(pose)
         agree(walls.cast(np.array([x, y]), heading + lidar.angle_list).range, lidar.range_data)
-    compare(f"a scan of {SCAN} beams, {count} walls", walls, np.array([x, y]), angles, peers, {}, effort)
+    compare(
+        f"a scan of {SCAN} beams, {count} walls", walls, np.array([x, y]), angles, peers, {}, effort
+    )
 
 
 def places(count: int, beams: int, effort: tuple[int, float]) -> None:
@@ -93,7 +118,9 @@ def places(count: int, beams: int, effort: tuple[int, float]) -> None:
     edges = shapely.linestrings(walls.segments)
     tree = shapely.STRtree(edges)
     casts: dict[str, Callable[[], Array]] = {
-        "shapely STRtree, all beams in one query": lambda: all_by_tree(tree, edges, origins[:some], angles[:some])
+        "shapely STRtree, all beams in one query": lambda: all_by_tree(
+            tree, edges, origins[:some], angles[:some]
+        )
     }
     module: Any = optional("irsim.lib.algorithm.ray_casting_2d")
     if module is not None:
@@ -124,7 +151,9 @@ def compare(
         hit = walls.cast(origins, angles)
         np.testing.assert_allclose(hit.range, plain.range, rtol=1e-12, atol=1e-12)
         print(f"{title}, {name}")
-        for ratio in ratios(lambda: walls.cast(origins, angles), peers, *effort, calls, len(angles)):
+        for ratio in ratios(
+            lambda: walls.cast(origins, angles), peers, *effort, calls, len(angles)
+        ):
             print(ratio)
     backend.use("numpy")
 
@@ -135,7 +164,9 @@ def agree(ours: Array, theirs: Array) -> None:
 
 
 def world(count: int) -> dict[str, Array]:
-    """`count` walls: star-shaped pentagons, one in each cell of a lattice, so that none touches another."""
+    """`count` walls: star-shaped pentagons, one in each cell of a lattice, so that none touches
+    another.
+    """
     random, pieces = np.random.default_rng(0), count // CORNERS
     lattice = math.ceil(math.sqrt(pieces))
     pitch = SIDE / lattice
@@ -184,7 +215,9 @@ def check(walls: Walls, casts: dict[str, Cast], beams: list[Beam]) -> None:
 
 
 def line(x: float, y: float, heading: float) -> shapely.LineString:
-    return shapely.LineString([(x, y), (x + REACH * math.cos(heading), y + REACH * math.sin(heading))])
+    return shapely.LineString(
+        [(x, y), (x + REACH * math.cos(heading), y + REACH * math.sin(heading))]
+    )
 
 
 def by_tree(walls: Walls) -> Cast:
@@ -222,11 +255,15 @@ def all_by_tree(tree: shapely.STRtree, edges: Any, origins: Array, angles: Array
     return ranges
 
 
-def by_kernel(kernel: Callable[..., tuple[Array, Array]], walls: Walls, origins: Array, angles: Array) -> Array:
+def by_kernel(
+    kernel: Callable[..., tuple[Array, Array]], walls: Walls, origins: Array, angles: Array
+) -> Array:
     """ir-sim's kernel knows one origin at a time."""
     directions = np.stack([np.cos(angles), np.sin(angles)], -1)[:, None]
     a, b = walls.segments[:, 0], walls.segments[:, 1]
-    return np.array([kernel(o, d, a, b, REACH)[0][0] for o, d in zip(origins, directions, strict=True)])
+    return np.array(
+        [kernel(o, d, a, b, REACH)[0][0] for o, d in zip(origins, directions, strict=True)]
+    )
 
 
 def by_irsim(rings: dict[str, Array]) -> dict[str, Cast]:
@@ -243,7 +280,9 @@ def by_irsim(rings: dict[str, Array]) -> dict[str, Cast]:
 
 
 def irsim_lidar(rings: dict[str, Array], beams: int) -> Any:
-    """ir-sim's own lidar in an environment reduced to what that lidar asks of it; None where it is not installed."""
+    """ir-sim's own lidar in an environment reduced to what that lidar asks of it; None where it is
+    not installed.
+    """
     module: Any = optional("irsim.world.sensors.lidar2d")
     if module is None:
         return None
@@ -251,11 +290,15 @@ def irsim_lidar(rings: dict[str, Array], beams: int) -> Any:
     for polygon in polygons:
         shapely.prepare(polygon)
     objects = [
-        SimpleNamespace(_id=i, _geometry=polygon, _geometry_valid=True, unobstructed=False, shape="polygon")
+        SimpleNamespace(
+            _id=i, _geometry=polygon, _geometry_valid=True, unobstructed=False, shape="polygon"
+        )
         for i, polygon in enumerate(polygons, start=1)
     ]
     parameters = SimpleNamespace(objects=objects, GeometryTree=shapely.STRtree(polygons))
-    lidar = module.Lidar2D(np.zeros((3, 1)), obj_id=0, range_max=REACH, number=beams, angle_range=2 * np.pi)
+    lidar = module.Lidar2D(
+        np.zeros((3, 1)), obj_id=0, range_max=REACH, number=beams, angle_range=2 * np.pi
+    )
     lidar.parent = SimpleNamespace(_env=SimpleNamespace(_env_param=parameters))
     return lidar
 

@@ -1,7 +1,9 @@
-"""`ekfsim run`, narrative included, against filterpy's predict and update with a range from shapely, per command.
+"""`ekfsim run`, narrative included, against filterpy's predict and update with a range from
+shapely, per command.
 
-As many moves as beams, among more and more walls. filterpy draws no random number, judges nothing and writes no
-narrative. Its Jacobian is given to it, or taken by differences from three more ranges, as shapely tells no wall.
+As many moves as beams, among more and more walls. filterpy draws no random number, judges nothing
+and writes no narrative. Its Jacobian is given to it, or taken by differences from three more
+ranges, as shapely tells no wall.
 
 python benchmarks/run.py [--quick]
 """
@@ -19,9 +21,9 @@ from ekfsim.localization import play
 from ekfsim.records import Move, Repeat, Sense
 from ekfsim.scene import Scene
 from ekfsim.summary import Summary
-from ekfsim.views.closing import conclude
-from ekfsim.views.narrative import narrate
-from ekfsim.views.playback import views
+from ekfsim.views.terminal.playback import views
+from ekfsim.views.words.closing import conclude
+from ekfsim.views.words.narrative import narrate
 from ekfsim.world import Map, Noise, Obstacle, Told, World
 
 COMMANDS = 1000
@@ -34,7 +36,9 @@ Jacobian = Callable[[Array], Array]
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="fewer rounds, and not the largest world")
+    parser.add_argument(
+        "--quick", action="store_true", help="fewer rounds, and not the largest world"
+    )
     quick = parser.parse_args().quick
     with_filterpy = optional("filterpy") is not None
     for pillars in (30, 250) if quick else (30, 250, 1000):
@@ -46,13 +50,20 @@ def main() -> None:
             for name, cast in casts.items()
             for how, jacobian in (("H given", given), ("H by differences", differences))
         }
-        print(f"{COMMANDS} commands among {pillars} obstacles, {len(scene.world.map.walls.segments)} walls")
-        for ratio in ratios(lambda s=scene: narrative(s), peers if with_filterpy else {}, 3 if quick else 7, 0.5):
+        print(
+            f"{COMMANDS} commands among {pillars} obstacles, "
+            f"{len(scene.world.map.walls.segments)} walls"
+        )
+        for ratio in ratios(
+            lambda s=scene: narrative(s), peers if with_filterpy else {}, 3 if quick else 7, 0.5
+        ):
             print(ratio)
 
 
 def furnished(pillars: int) -> Scene:
-    """A room of 20 m by 16 m with square pillars in two corners, and a robot that drives round a square beside them."""
+    """A room of 20 m by 16 m with square pillars in two corners, and a robot that drives round a
+    square beside them.
+    """
     lattice = math.ceil(math.sqrt(pillars / 2))
     pitch = 5 / lattice
     places = [
@@ -60,7 +71,9 @@ def furnished(pillars: int) -> Scene:
         for i in range(pillars)
     ]
     corners = pitch / 2 * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-    obstacles = tuple(Obstacle(f"pillar {n}", np.array(place) + corners) for n, place in enumerate(places))
+    obstacles = tuple(
+        Obstacle(f"pillar {n}", np.array(place) + corners) for n, place in enumerate(places)
+    )
     room = Map(np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 16.0], [0.0, 16.0]]), obstacles)
     start = np.array([4.0, 8.0, 0.0])
     world = World("pillars", room, start, np.zeros(3), NOISE, Told(start, np.zeros(3), NOISE, room))
@@ -69,7 +82,9 @@ def furnished(pillars: int) -> Scene:
 
 
 def narrative(scene: Scene) -> int:
-    """What `ekfsim run` does: every step, every line of the narrative, the verdict. How many characters that is."""
+    """What `ekfsim run` does: every step, every line of the narrative, the verdict. How many
+    characters that is.
+    """
     characters, summary = 0, Summary()
     for view in views(play(scene)):
         characters += len(narrate(view, scene))
@@ -79,7 +94,9 @@ def narrative(scene: Scene) -> int:
 
 
 def peer(cast: Cast, jacobian: Jacobian) -> Callable[[], object]:
-    """As many predicts and updates with filterpy as there are commands, each with a range of shapely's."""
+    """As many predicts and updates with filterpy as there are commands, each with a range of
+    shapely's.
+    """
     from filterpy.kalman import ExtendedKalmanFilter
 
     controls = np.array([[1.0], [math.pi / 2]])
@@ -87,7 +104,9 @@ def peer(cast: Cast, jacobian: Jacobian) -> Callable[[], object]:
     class Robot(ExtendedKalmanFilter):  # type: ignore[misc]
         def predict_x(self, u: Array = controls) -> None:
             x, y, θ = self.x[:, 0]
-            self.x = np.array([[x + u[0, 0] * math.cos(θ)], [y + u[0, 0] * math.sin(θ)], [θ + u[1, 0]]])
+            self.x = np.array(
+                [[x + u[0, 0] * math.cos(θ)], [y + u[0, 0] * math.sin(θ)], [θ + u[1, 0]]]
+            )
 
     def predicted(x: Array) -> Array:
         return np.array([[cast(*x[:, 0])]])
@@ -121,11 +140,15 @@ def differences(cast: Cast) -> Jacobian:
 
 
 def by_union(rings: list[shapely.LinearRing]) -> Cast:
-    """The first thing one writes: the distance to the beam's intersection with the union of all walls."""
+    """The first thing one writes: the distance to the beam's intersection with the union of all
+    walls.
+    """
     walls = shapely.unary_union(rings)
 
     def cast(x: float, y: float, heading: float) -> float:
-        beam = shapely.LineString([(x, y), (x + REACH * math.cos(heading), y + REACH * math.sin(heading))])
+        beam = shapely.LineString(
+            [(x, y), (x + REACH * math.cos(heading), y + REACH * math.sin(heading))]
+        )
         return float(shapely.Point(x, y).distance(beam.intersection(walls)))
 
     return cast
@@ -136,9 +159,13 @@ def by_tree(rings: list[shapely.LinearRing]) -> Cast:
     tree = shapely.STRtree(rings)
 
     def cast(x: float, y: float, heading: float) -> float:
-        beam = shapely.LineString([(x, y), (x + REACH * math.cos(heading), y + REACH * math.sin(heading))])
+        beam = shapely.LineString(
+            [(x, y), (x + REACH * math.cos(heading), y + REACH * math.sin(heading))]
+        )
         near = tree.geometries.take(tree.query(beam, predicate="intersects"))
-        return float(np.min(shapely.distance(shapely.Point(x, y), shapely.intersection(beam, near))))
+        return float(
+            np.min(shapely.distance(shapely.Point(x, y), shapely.intersection(beam, near)))
+        )
 
     return cast
 

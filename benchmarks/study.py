@@ -1,13 +1,15 @@
-"""1 000 runs side by side, 100 predictions and updates each, against filterpy in a Python loop over the runs.
+"""1 000 runs side by side, 100 predictions and updates each, against filterpy in a Python loop over
+the runs.
 
-Without rays both are handed the same odometry, readings and truth: a range of a landmark after every move; both judge
-every prediction and every update by its NEES. Ours makes a Step of each, filterpy keeps nothing but a sum.
-With rays both play the classroom's game among 400 walls: draw, drive, measure, predict, update, judge. filterpy's
-ranges come from shapely's STRtree, its Jacobian from the wall that was hit; it does not look whether a wall stands in
-the robot's way, which ours does.
+Without rays both are handed the same odometry, readings and truth: a range of a landmark after
+every move; both judge every prediction and every update by its NEES. Ours makes a Step of each,
+filterpy keeps nothing but a sum. With rays both play the classroom's game among 400 walls: draw,
+drive, measure, predict, update, judge. filterpy's ranges come from shapely's STRtree, its Jacobian
+from the wall that was hit; it does not look whether a wall stands in the robot's way, which ours
+does.
 
-The peers are timed on a part of the runs: a loop over all of them takes as much longer. Ours is timed with NumPy, and
-with compiled code where the extra `fast` is installed.
+The peers are timed on a part of the runs: a loop over all of them takes as much longer. Ours is
+timed with NumPy, and with compiled code where the extra `fast` is installed.
 
 python benchmarks/study.py [--quick]
 """
@@ -27,8 +29,8 @@ from ekfsim.filters.ekf import EKF
 from ekfsim.geometry import Array, backend
 from ekfsim.geometry.angles import wrap_one
 from ekfsim.localization import localize, play
-from ekfsim.models.landmarks import RangeOnly
-from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.motions.move_turn import MoveTurn
+from ekfsim.models.sensors.landmarks import RangeOnly
 from ekfsim.records import Control, Entry, Log, Move, Reading, Repeat, Sense, Step
 from ekfsim.scene import Scene
 from ekfsim.world import Map, Noise, Obstacle, Told, World
@@ -56,15 +58,28 @@ def main() -> None:
             continue
         backend.use(name)
         *_, last = localize(log.entries, EKF(), log.first)
-        difference = max(np.abs(last.posterior.mean[run] - filtered(log, run)[0]).max() for run in some)
-        print(f"{name}, no rays; largest difference from filterpy {difference:.1e}")
-        compare(lambda: every(localize(log.entries, EKF(), log.first)), lambda: filter_all(log, some), some, quick)
-        *_, last = play(scene, all_runs)
-        ours, theirs = np.median(last.nees.value), np.median([played(scene, trees, run)[1] for run in range(100)])
-        print(
-            f"{name}, {len(scene.world.map.walls.segments)} walls; median NEES at the end {ours:.1f} and {theirs:.1f}"
+        difference = max(
+            np.abs(last.posterior.mean[run] - filtered(log, run)[0]).max() for run in some
         )
-        compare(lambda: every(play(scene, all_runs)), lambda: play_all(scene, trees, some), some, quick)
+        print(f"{name}, no rays; largest difference from filterpy {difference:.1e}")
+        compare(
+            lambda: every(localize(log.entries, EKF(), log.first)),
+            lambda: filter_all(log, some),
+            some,
+            quick,
+        )
+        *_, last = play(scene, all_runs)
+        ours, theirs = (
+            np.median(last.nees.value),
+            np.median([played(scene, trees, run)[1] for run in range(100)]),
+        )
+        print(
+            f"{name}, {len(scene.world.map.walls.segments)} walls; median NEES at the end "
+            f"{ours:.1f} and {theirs:.1f}"
+        )
+        compare(
+            lambda: every(play(scene, all_runs)), lambda: play_all(scene, trees, some), some, quick
+        )
 
 
 def compare(ours: Task, peer: Task, some: list[int], quick: bool) -> None:
@@ -87,21 +102,33 @@ def recorded() -> Log:
     entries.append(Entry(0, None, truth))
     for k in range(STEPS):
         u = np.array([1.0, 0.08])
-        truth = motion.f(truth, u * (1 + NOISE.odometry_distance * random.standard_normal((RUNS, 2))))
-        entries.append(Entry(2 * k + 1, Control(motion, np.broadcast_to(u, (RUNS, 2)).copy()), truth))
+        truth = motion.f(
+            truth, u * (1 + NOISE.odometry_distance * random.standard_normal((RUNS, 2)))
+        )
+        entries.append(
+            Entry(2 * k + 1, Control(motion, np.broadcast_to(u, (RUNS, 2)).copy()), truth)
+        )
         sensor = RangeOnly(*BEACONS[k % len(BEACONS)], BEACON_SIGMA)
         z = sensor.h(truth) + BEACON_SIGMA * random.standard_normal((RUNS, 1))
         entries.append(Entry(2 * k + 2, Reading(sensor, z), truth))
-    return Log(tuple(entries), Gaussian(np.tile(FIRST.mean, (RUNS, 1)), np.tile(FIRST.covariance, (RUNS, 1, 1))))
+    return Log(
+        tuple(entries),
+        Gaussian(np.tile(FIRST.mean, (RUNS, 1)), np.tile(FIRST.covariance, (RUNS, 1, 1))),
+    )
 
 
 def among_pillars() -> Scene:
-    """99 square pillars in a hall of 100 m by 100 m, 400 walls, and a robot that drives a square in the lanes."""
+    """99 square pillars in a hall of 100 m by 100 m, 400 walls, and a robot that drives a square in
+    the lanes.
+    """
     random = np.random.default_rng(5)
     corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     middles = [(LANE * (i + 0.5), LANE * (j + 0.5)) for i in range(10) for j in range(10)][1:]
     obstacles = tuple(
-        Obstacle(f"pillar {n}", np.array(middle) + random.uniform(-1, 1, 2) + corners * random.uniform(1, 2.5))
+        Obstacle(
+            f"pillar {n}",
+            np.array(middle) + random.uniform(-1, 1, 2) + corners * random.uniform(1, 2.5),
+        )
         for n, middle in enumerate(middles)
     )
     room = Map(np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]]), obstacles)
@@ -111,7 +138,10 @@ def among_pillars() -> Scene:
     side = tuple(
         command
         for k in range(int(SIDE))
-        for command in (Move(1.0, math.pi / 2 if k == SIDE - 1 else 0.0), Sense(looks[k % len(looks)]))
+        for command in (
+            Move(1.0, math.pi / 2 if k == SIDE - 1 else 0.0),
+            Sense(looks[k % len(looks)]),
+        )
     )
     return Scene(world, (Repeat(STEPS // int(SIDE), side),), gate=GATE)
 
@@ -130,7 +160,13 @@ def robot() -> Any:
             self.x = np.array([x + d * c, y + d * s, wrap_one(θ + a)])
             self.F = np.array([[1.0, 0.0, -d * s], [0.0, 1.0, d * c], [0.0, 0.0, 1.0]])
             D = ratio_d * d * d
-            self.Q = np.array([[D * c * c, D * c * s, 0.0], [D * c * s, D * s * s, 0.0], [0.0, 0.0, ratio_a * a * a]])
+            self.Q = np.array(
+                [
+                    [D * c * c, D * c * s, 0.0],
+                    [D * c * s, D * s * s, 0.0],
+                    [0.0, 0.0, ratio_a * a * a],
+                ]
+            )
 
     return Robot(dim_x=3, dim_z=1)
 
@@ -203,7 +239,10 @@ def played(scene: Scene, trees: Trees, run: int) -> tuple[float, float]:
     x, y, θ = (world.start + world.start_sigma * np.array(random[0][:3])).tolist()
     for k, (n1, n2, n3, n4, n5) in enumerate(random):
         move, sense = commands[2 * k], commands[2 * k + 1]
-        d, a = move.distance * (1 + noise.execution_distance * n1), move.angle * (1 + noise.execution_angle * n2)
+        d, a = (
+            move.distance * (1 + noise.execution_distance * n1),
+            move.angle * (1 + noise.execution_angle * n2),
+        )
         x, y, θ = x + d * math.cos(θ), y + d * math.sin(θ), wrap_one(θ + a)
         one.predict((d * (1 + noise.odometry_distance * n3), a * (1 + noise.odometry_angle * n4)))
         truth = np.array([x, y, θ])

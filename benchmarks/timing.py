@@ -1,4 +1,5 @@
-"""Timing side by side: every candidate in every round, so that what slows the computer down slows all of them alike.
+"""Timing side by side: every candidate in every round, so that what slows the computer down slows
+all of them alike.
 
 Only ratios are worth printing: times differ from computer to computer and from minute to minute.
 """
@@ -11,7 +12,9 @@ from statistics import median
 from time import process_time
 from types import MappingProxyType, ModuleType
 
-SLICE = 0.02  # s that a candidate runs in each round: long against the clock's tick, short against a neighbour's burst
+# s that a candidate runs in each round: long against the clock's tick, short against a neighbour's
+# burst
+SLICE = 0.02
 
 Task = Callable[[], object]
 
@@ -21,12 +24,16 @@ class Ratio:
     """How one peer compares."""
 
     peer: str
-    ratio: float  # the peer's time over ours, median over the rounds: 10 says that we are ten times as fast
+    # the peer's time over ours, median over the rounds: 10 says that we are ten times as fast
+    ratio: float
     seconds: float  # s that the peer takes for the same work, median
     ours: float  # s that one call of ours takes, median
 
     def __str__(self) -> str:
-        return f"{self.ratio:9.1f} × {self.peer:50s} {self.seconds * 1e6:12.3f} µs, ours {self.ours * 1e6:10.3f} µs"
+        return (
+            f"{self.ratio:9.1f} × {self.peer:50s} {self.seconds * 1e6:12.3f} µs, ours "
+            f"{self.ours * 1e6:10.3f} µs"
+        )
 
 
 def ratios(
@@ -37,11 +44,12 @@ def ratios(
     calls: Mapping[str, float] = MappingProxyType({}),
     parts: int = 1,
 ) -> list[Ratio]:
-    """Time `ours` and each of the peers in turn, `rounds` times over, and compare within each round.
+    """Time `ours` and each of the peers in turn, `rounds` times over, and compare within each
+    round.
 
-    Each is called once to warm up, then as often in a round as fills `seconds` of processor time. `calls` tells how
-    many calls of a peer do the work of one of ours, where it is not one; `parts`, of how many alike that work is made:
-    the times are those of a part.
+    Each is called once to warm up, then as often in a round as fills `seconds` of processor time.
+    `calls` tells how many calls of a peer do the work of one of ours, where it is not one; `parts`,
+    of how many alike that work is made: the times are those of a part.
     """
     weights = [1 / parts, *(calls.get(peer, 1.0) / parts for peer in peers)]
     tasks = [ours, *peers.values()]
@@ -50,7 +58,10 @@ def ratios(
     gc.disable()
     try:
         times = [
-            [weight * _time(task, n) for task, n, weight in zip(tasks, repeats, weights, strict=True)]
+            [
+                weight * _time(task, n)
+                for task, n, weight in zip(tasks, repeats, weights, strict=True)
+            ]
             for _ in range(rounds)
         ]
     finally:

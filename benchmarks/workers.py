@@ -1,4 +1,5 @@
-"""A study on two processes against one, in turn, on the same machine: python benchmarks/workers.py [RUNS]
+"""A study on two processes against one, in turn, on the same machine: python benchmarks/workers.py
+[RUNS]
 
 Other programs disturb it: run it where two cores are idle.
 """
@@ -8,7 +9,7 @@ import sys
 import time
 from dataclasses import replace
 
-from ekfsim.files.load_study import read_request
+from ekfsim.files.scenes.load_study import read_request
 from ekfsim.study.doing import total
 from ekfsim.study.engines import Engine, pool, serial
 from ekfsim.study.plan import Plan
@@ -31,7 +32,10 @@ def main() -> None:
     for _ in range(ROUNDS):
         one, two = seconds(plan, serial), seconds(plan, pool(2))
         ratios.append(one / two)
-        print(f"{runs} runs of the tour: one process {one:.1f} s, two {two:.1f} s: {one / two:.2f} times as fast")
+        print(
+            f"{runs} runs of the tour: one process {one:.1f} s, two {two:.1f} s: {one / two:.2f} "
+            f"times as fast"
+        )
     print(f"median: {statistics.median(ratios):.2f} times as fast")
 
 

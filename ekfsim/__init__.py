@@ -9,34 +9,42 @@ A notebook needs no more than this module:
 >>> print(ekfsim.narrate(views[1], scene).splitlines()[0])
 ==>The robot moved: distance=3, angle=90
 
-and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes. `dataclasses.replace(scene, filter="ukf")`
-is the same scene for another of FILTERS; seed, gate, guard and the rest are fields of Scene, too, and so is
-`tuning=ekfsim.Tuning(particles=20_000)`, the numbers that a filter alone has. One level deeper, the two halves of
-`play`: `ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter, belief)` the Steps
-(what a filter made of them); for a filter of your own, see `ekfsim.filters.protocol`. Where only the beliefs matter,
-`ekfsim.stretch(belief, motion, U)` predicts thousands of inputs of planar odometry at once.
+and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes.
+`dataclasses.replace(scene, filter="ukf")` is the same scene for another of FILTERS; seed, gate,
+guard and the rest are fields of Scene, too, and so is `tuning=ekfsim.Tuning(particles=20_000)`, the
+numbers that a filter alone has. One level deeper, the two halves of `play`:
+`ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter,
+belief)` the Steps (what a filter made of them); for a filter of your own, see
+`ekfsim.filters.protocol`. Where only the beliefs matter, `ekfsim.stretch(belief, motion, U)`
+predicts thousands of inputs of planar odometry at once.
 
-Notation, letter for letter as in the code (Bar-Shalom, Särkkä, Barfoot; Thrun's book swaps Q and R):
+Notation, letter for letter as in the code (Bar-Shalom, Särkkä, Barfoot; Thrun's book swaps Q and
+R):
 
-    x  state                            P  its covariance             e  error of the pose: estimate − truth
+    x  state                            P  its covariance
+    e  error of the pose: estimate − truth
     u  motion input                     f  motion: x⁺ = f(x, u)       F  ∂f/∂x        G  ∂f/∂u
     M  covariance of the input's noise  Q  covariance of the process noise
-    z  reading                          h  sensor: z = h(x)           H  ∂h/∂x        R  covariance of its noise
+    z  reading                          h  sensor: z = h(x)           H  ∂h/∂x
+    R  covariance of its noise
     ν  innovation: z − h(x⁻)            S  its covariance             K  gain
-    NIS  νᵀ S⁻¹ ν                       NEES  eᵀ P⁺ e                 ⁻  before the reading, the prior
+    NIS  νᵀ S⁻¹ ν                       NEES  eᵀ P⁺ e
+    ⁻  before the reading, the prior
 
-In the classroom x is the pose x, y, θ in m, m, rad, and u is d, a in m, rad; its assignment's names for the rest are
-Φ = f, J_x = F, J_u = G, P_u = M, H[x] = h, J_H = H, C_v = R, r = ν. The other systems' states stand in
-`ekfsim.models.layout`, and which line is which equation of which document in `ekfsim.systems`.
+In the classroom x is the pose x, y, θ in m, m, rad, and u is d, a in m, rad; its assignment's names
+for the rest are Φ = f, J_x = F, J_u = G, P_u = M, H[x] = h, J_H = H, C_v = R, r = ν. The other
+systems' states stand in `ekfsim.models.layout`, and which line is which equation of which document
+in `ekfsim.systems`.
 
-Shapes: arrays carry leading axes (…): none for one run, (N,) for N runs side by side. x is (…, n), P is (…, n, n).
-x points east, y north, θ turns counter-clockwise from +x and lies in (−π, π]. Metres and radians inside, degrees where
-a person reads or writes.
+Shapes: arrays carry leading axes (…): none for one run, (N,) for N runs side by side. x is (…, n),
+P is (…, n, n). x points east, y north, θ turns counter-clockwise from +x and lies in (−π, π].
+Metres and radians inside, degrees where a person reads or writes.
 
-More names, each with a page of its own such as `help(ekfsim.Scene)`: Scene and World, what is to be played; Entry, Step
-and Playback, what was; Gaussian, Summary, Verdict and Evidence, what is believed and judged; EKF, and FILTERS by their
-names; MoveTurn and Laser, the classroom's models; Look, the options of a picture. Mistakes in files raise
-`ekfsim.InputError`, missing files `ekfsim.UsageError`; both are an `ekfsim.EkfsimError`.
+More names, each with a page of its own such as `help(ekfsim.Scene)`: Scene and World, what is to be
+played; Entry, Step and Playback, what was; Gaussian, Summary, Verdict and Evidence, what is
+believed and judged; EKF, and FILTERS by their names; MoveTurn and Laser, the classroom's models;
+Look, the options of a picture. Mistakes in files raise `ekfsim.InputError`, missing files
+`ekfsim.UsageError`; both are an `ekfsim.EkfsimError`.
 """
 
 from importlib import import_module
@@ -49,8 +57,8 @@ if TYPE_CHECKING:
     from ekfsim.errors import EkfsimError as EkfsimError
     from ekfsim.errors import InputError as InputError
     from ekfsim.errors import UsageError as UsageError
-    from ekfsim.files.load import load_scene as load_scene
-    from ekfsim.files.load import load_world as load_world
+    from ekfsim.files.scenes.load import load_scene as load_scene
+    from ekfsim.files.scenes.load import load_world as load_world
     from ekfsim.filters import FILTERS as FILTERS
     from ekfsim.filters.belief import Gaussian as Gaussian
     from ekfsim.filters.ekf import EKF as EKF
@@ -60,25 +68,25 @@ if TYPE_CHECKING:
     from ekfsim.localization import first_belief as first_belief
     from ekfsim.localization import localize as localize
     from ekfsim.localization import play as play
-    from ekfsim.models.laser import Laser as Laser
-    from ekfsim.models.move_turn import MoveTurn as MoveTurn
+    from ekfsim.models.motions.move_turn import MoveTurn as MoveTurn
+    from ekfsim.models.sensors.laser import Laser as Laser
     from ekfsim.records import Entry as Entry
     from ekfsim.records import Step as Step
     from ekfsim.scene import Scene as Scene
     from ekfsim.simulation import simulate as simulate
     from ekfsim.summary import Summary as Summary
-    from ekfsim.views.closing import conclude as conclude
-    from ekfsim.views.frames import draw as draw
-    from ekfsim.views.look import Look as Look
-    from ekfsim.views.narrative import narrate as narrate
-    from ekfsim.views.playback import Playback as Playback
+    from ekfsim.views.picture.frames import draw as draw
+    from ekfsim.views.picture.look import Look as Look
+    from ekfsim.views.terminal.playback import Playback as Playback
+    from ekfsim.views.words.closing import conclude as conclude
+    from ekfsim.views.words.narrative import narrate as narrate
     from ekfsim.world import World as World
 
 # Where each name lives. They are imported when first used: `ekfsim --help` must not wait for numpy.
 _HOMES = {
     "consistency": ("Evidence", "Verdict", "nees"),
     "errors": ("EkfsimError", "InputError", "UsageError"),
-    "files.load": ("load_scene", "load_world"),
+    "files.scenes.load": ("load_scene", "load_world"),
     "filters": ("FILTERS",),
     "filters.belief": ("Gaussian",),
     "filters.ekf": ("EKF",),
@@ -86,21 +94,22 @@ _HOMES = {
     "filters.tuning": ("Tuning",),
     "geometry.ellipse": ("ellipse",),
     "localization": ("first_belief", "localize", "play"),
-    "models.laser": ("Laser",),
-    "models.move_turn": ("MoveTurn",),
+    "models.sensors.laser": ("Laser",),
+    "models.motions.move_turn": ("MoveTurn",),
     "records": ("Entry", "Step"),
     "scene": ("Scene",),
     "simulation": ("simulate",),
     "summary": ("Summary",),
-    "views.closing": ("conclude",),
-    "views.frames": ("draw",),
-    "views.look": ("Look",),
-    "views.narrative": ("narrate",),
-    "views.playback": ("Playback",),
+    "views.words.closing": ("conclude",),
+    "views.picture.frames": ("draw",),
+    "views.picture.look": ("Look",),
+    "views.words.narrative": ("narrate",),
+    "views.terminal.playback": ("Playback",),
     "world": ("World",),
 }
 _HOME_OF = {name: f"ekfsim.{home}" for home, names in _HOMES.items() for name in names}
-# What `help(ekfsim)` tells at length; the classes have pages of their own, or it would run to a thousand lines.
+# What `help(ekfsim)` tells at length; the classes have pages of their own, or it would run to a
+# thousand lines.
 __all__ = sorted(name for name in _HOME_OF if name[0].islower())
 
 

@@ -13,22 +13,28 @@ if TYPE_CHECKING:
 
 def scene_of(
     commands: str, world: str | None = None, seed: int | None = None, run_number: int = 0,
-    filter_name: str | None = None, gate: float | Literal["off"] | None = None, guard: str | None = None,
-    log: str | None = None, reading: str = "corrected", settings: tuple[str, ...] = (), particles: int | None = None,
+    filter_name: str | None = None, gate: float | Literal["off"] | None = None,
+    guard: str | None = None,
+    log: str | None = None, reading: str = "corrected", settings: tuple[str, ...] = (),
+    particles: int | None = None,
 ) -> "Scene":  # fmt: skip
-    """The scene of a commands file, overruled by the options that were given. filter_name : one, or several: ekf,ukf"""
+    """The scene of a commands file, overruled by the options that were given. filter_name : one, or
+    several: ekf,ukf
+    """
     from dataclasses import replace
     from typing import cast
 
-    from ekfsim.files.filter_checks import refuse_unread
-    from ekfsim.files.load import read_scene
     from ekfsim.files.packaged import resolve
-    from ekfsim.files.settings import filters_in, particles_of, setting
+    from ekfsim.files.scenes.filter_checks import refuse_unread
+    from ekfsim.files.scenes.load import read_scene
+    from ekfsim.files.scenes.settings import filters_in, particles_of, setting
 
     names = () if filter_name is None else filters_in(filter_name)
     world_file = None if world is None else resolve(world, "worlds")
     overruling = [*(setting(text) for text in settings), *particles_of(particles)]
-    found = read_scene(resolve(commands, "commands"), world_file, log, cast("DocumentReading", reading), overruling)
+    found = read_scene(
+        resolve(commands, "commands"), world_file, log, cast("DocumentReading", reading), overruling
+    )
     warn(found.warnings)
     scene = found.get()
     refuse_unread(overruling, names or (scene.filter,))

@@ -1,4 +1,6 @@
-"""The command line: each command an outline of what it does. Heavy modules are imported where they are used."""
+"""The command line: each command an outline of what it does. Heavy modules are imported where they
+are used.
+"""
 
 import sys
 from contextlib import ExitStack
@@ -38,52 +40,75 @@ def main() -> NoReturn:
     process.run(ekfsim)
 
 
-@click.group(cls=Program, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.group(
+    cls=Program, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100}
+)
 @click.version_option(VERSION, message="%(prog)s %(version)s")
 def ekfsim() -> None:
-    """Simulate a robot that localizes itself with an extended Kalman filter, and read every calculation.
+    """Simulate a robot that localizes itself with an extended Kalman filter, and read every
+    calculation.
 
-    COMMANDS is a commands file, or the name of one that comes along: try `ekfsim play tour` and press n.
+    COMMANDS is a commands file, or the name of one that comes along: try `ekfsim play tour` and
+    press n.
     """
 
 
 @ekfsim.command(short_help="Step through COMMANDS with single keys.")
 @scene_options
-@click.option("--show", type=click.Choice(["auto", "window", "text", "files"]), default="auto", show_default=True,
-              help="Draw in a window, as text in the terminal, or into one file rewritten in place.")  # fmt: skip
+@click.option("--show", type=click.Choice(["auto", "window", "text", "files"]), default="auto",
+    show_default=True,
+              help="Draw in a window, as text in the terminal, or into one file rewritten in "
+                   "place.")  # fmt: skip
 @click.option("--out", "-o", type=Result(), default=Path("out"), show_default=True,
               help="Folder for the pictures of --show files and of the key s.")  # fmt: skip
-@click.option("--conditional", is_flag=True, help="Draw the ellipse for the heading at either edge of its cone, too.")
+@click.option(
+    "--conditional",
+    is_flag=True,
+    help="Draw the ellipse for the heading at either edge of its cone, too.",
+)
 @EXPLAIN
 @FORCE
 def play(
-    show: str, out: Path, conditional: bool, explain: bool, force: bool, confidence: float, **chosen: Any
+    show: str, out: Path, conditional: bool, explain: bool, force: bool, confidence: float,
+    **chosen: Any
 ) -> None:  # fmt: skip
     """Step through COMMANDS with single keys: n next, p back, q quit, ? for all of them."""
-    from ekfsim.views.interactive import play_interactively
-    from ekfsim.views.look import Look
+    from ekfsim.views.picture.look import Look
+    from ekfsim.views.terminal.interactive import play_interactively
 
     play_interactively(scene_of(**chosen), show, out, Look(confidence, conditional), force, explain)
 
 
 @ekfsim.command()
 @scene_options
-@click.option("--out", "-o", type=Result(), required=True,
-              help="A folder for numbered PNG files, or the name of a .gif or an .mp4.")  # fmt: skip
+@click.option(
+    "--out",
+    "-o",
+    type=Result(),
+    required=True,
+    help="A folder for numbered PNG files, or the name of a .gif or an .mp4.",
+)
 @click.option("--every", type=Whole(min=1), default=1, metavar="N", help="Only every N-th picture.")
-@click.option("--conditional", is_flag=True, help="Draw the ellipse for the heading at either edge of its cone, too.")
+@click.option(
+    "--conditional",
+    is_flag=True,
+    help="Draw the ellipse for the heading at either edge of its cone, too.",
+)
 @FORCE
-def render(out: Path, every: int, conditional: bool, force: bool, confidence: float, **chosen: Any) -> None:
+def render(
+    out: Path, every: int, conditional: bool, force: bool, confidence: float, **chosen: Any
+) -> None:
     """Draw every step of COMMANDS into files."""
-    from ekfsim.views.look import Look, get_ready
+    from ekfsim.views.picture.look import Look, get_ready
 
     get_ready()
-    from ekfsim.files.outputs import kept
+    from ekfsim.files.results.outputs import kept
     from ekfsim.localization import play as steps_of
-    from ekfsim.views import animation, limits
-    from ekfsim.views.captions import texts
-    from ekfsim.views.lettering import boxes
-    from ekfsim.views.playback import Tally, together
+    from ekfsim.views.film import animation
+    from ekfsim.views.picture import limits
+    from ekfsim.views.picture.lettering import boxes
+    from ekfsim.views.terminal.playback import Tally, together
+    from ekfsim.views.words.captions import texts
 
     scene, tally = scene_of(**chosen), Tally()
     warn(boxes(texts(scene)))
@@ -91,7 +116,9 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
     runs = (kept(steps_of(first), [tally.write]), *map(steps_of, others))
     extent = limits.of_all(scene, runs, confidence)
     pictures = animation.number_of_pictures(tally.views, every)
-    with click.progressbar(length=pictures, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
+    with click.progressbar(
+        length=pictures, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()
+    ) as bar:
 
         def made_one(made: int) -> None:
             heed()
@@ -114,16 +141,17 @@ def render(out: Path, every: int, conditional: bool, force: bool, confidence: fl
 @EXPLAIN
 @FORCE
 def run(
-    trace: Path | None, tum: Path | None, csv: Path | None, summary: Path | None, quiet: bool, explain: bool,
+    trace: Path | None, tum: Path | None, csv: Path | None, summary: Path | None, quiet: bool,
+    explain: bool,
     force: bool, confidence: float, **chosen: Any,
 ) -> None:  # fmt: skip
     """Narrate COMMANDS from the first step to the last, and sum up."""
-    from ekfsim.files.outputs import Outputs, kept
+    from ekfsim.files.results.outputs import Outputs, kept
     from ekfsim.localization import play as steps_of
     from ekfsim.summary import Summary
-    from ekfsim.views.closing import conclude_all
-    from ekfsim.views.narrative import narrate
-    from ekfsim.views.playback import together
+    from ekfsim.views.terminal.playback import together
+    from ekfsim.views.words.closing import conclude_all
+    from ekfsim.views.words.narrative import narrate
 
     scene = scene_of(**chosen)
     alone, outputs = scene.alone(), Outputs(trace, tum, csv, summary, force)
@@ -142,7 +170,9 @@ def run(
 
 @ekfsim.command(short_help="Write the simulated run of COMMANDS as a recorded log.")
 @scene_options
-@click.option("--out", "-o", type=Result(), required=True, help="A folder for the files of the log.")
+@click.option(
+    "--out", "-o", type=Result(), required=True, help="A folder for the files of the log."
+)
 @FORCE
 def record(out: Path, force: bool, confidence: float, **chosen: Any) -> None:
     """Write the simulated run of COMMANDS, a drive, as the files of a recorded log."""
@@ -159,24 +189,33 @@ def record(out: Path, force: bool, confidence: float, **chosen: Any) -> None:
 @click.argument("files", nargs=-1, required=True)
 def check(files: tuple[str, ...]) -> None:
     """Validate world and command FILES: every mistake with its place, or `ok`."""
-    from ekfsim.files.check_study import check as mistakes_in
     from ekfsim.files.packaged import packaged, resolve
+    from ekfsim.files.scenes.check_study import check as mistakes_in
 
-    wrong, before, warned = False, set[Mistake](), set[str]()  # of a world that other files name, too, told once
+    # of a world that other files name, too, told once
+    wrong, before, warned = False, set[Mistake](), set[str]()
     for file in files:
         try:
-            found = mistakes_in(resolve(file, "worlds" if file in packaged("worlds") else "commands"))
+            found = mistakes_in(
+                resolve(file, "worlds" if file in packaged("worlds") else "commands")
+            )
         except UsageError as missing:
             say(str(missing))
             wrong = True
             continue
-        new = [mistake for mistake in found.mistakes if not before or mistake.placed_alike not in before]
+        new = [
+            mistake
+            for mistake in found.mistakes
+            if not before or mistake.placed_alike not in before
+        ]
         odd = (warning for warning in found.warnings if warning not in warned)
         warn(odd, MOST_TOLD - len(told(new)))  # together no more than anybody reads
         warned.update(found.warnings)
         if len(files) > 1:
             before.update(mistake.placed_alike for mistake in new)
-        all_told = in_a_line(f"{file}: {'what is wrong with it is told above' if found.mistakes else 'ok'}")
+        all_told = in_a_line(
+            f"{file}: {'what is wrong with it is told above' if found.mistakes else 'ok'}"
+        )
         click.echo("\n".join(told(new)) or all_told)
         wrong = wrong or bool(found.mistakes)
     if wrong:
@@ -186,11 +225,13 @@ def check(files: tuple[str, ...]) -> None:
 @ekfsim.command(short_help="Print the JSON Schema by which editors check a file.")
 @click.argument("kind", type=click.Choice(["world", "commands", "study"]))
 def schema(kind: str) -> None:
-    """Print the JSON Schema from which editors complete and check a world, commands or study file."""
+    """Print the JSON Schema from which editors complete and check a world, commands or study
+    file.
+    """
     import json
     from typing import cast
 
-    from ekfsim.files.schema import Kind, json_schema
+    from ekfsim.files.yaml.schema import Kind, json_schema
 
     click.echo(json.dumps(json_schema(cast("Kind", kind)), indent=2, ensure_ascii=False))
 
@@ -205,7 +246,9 @@ def list_packaged(name: str | None, worlds: bool) -> None:
     if name is not None:
         is_world = worlds or (name in packaged("worlds") and name not in packaged("commands"))
         kind: Folder = "worlds" if is_world else "commands"
-        click.echo(shown(described(resolve(name, kind)) or in_a_line(f"{name}: has no description")))
+        click.echo(
+            shown(described(resolve(name, kind)) or in_a_line(f"{name}: has no description"))
+        )
         return
     for title, files in [("worlds", packaged("worlds"))] if worlds else grouped():
         click.echo(f"{title}:")
@@ -215,12 +258,14 @@ def list_packaged(name: str | None, worlds: bool) -> None:
 
 @ekfsim.command()
 @click.argument("file", type=Result())
-@click.option("--kind", type=click.Choice(["world", "commands"]), help="Where the name of FILE does not tell.")
+@click.option(
+    "--kind", type=click.Choice(["world", "commands"]), help="Where the name of FILE does not tell."
+)
 @FORCE
 def new(file: Path, kind: str | None, force: bool) -> None:
     """Write a commented world or commands FILE to start from."""
-    from ekfsim.files.template import template
-    from ekfsim.files.writing import whole_text
+    from ekfsim.files.results.writing import whole_text
+    from ekfsim.files.scenes.template import template
 
     name = file.stem.lower()
     if kind is None and ("world" in name) == ("command" in name):
@@ -235,18 +280,35 @@ def new(file: Path, kind: str | None, force: bool) -> None:
 
 @ekfsim.command(epilog=DOCUMENTS, short_help="Draw the figures and tables of a document.")
 @click.argument("name", type=Word(["classroom", "mower", "pioneer", "gnss", "pylon", "gallery"]))
-@click.option("--out", "-o", type=Result(), required=True, help="A folder for the figures, tables and captions.md.")
-@click.option("--format", "formats", type=click.Choice(["png", "svg", "pdf"]), multiple=True, default=("png",),
+@click.option(
+    "--out",
+    "-o",
+    type=Result(),
+    required=True,
+    help="A folder for the figures, tables and captions.md.",
+)
+@click.option("--format", "formats", type=click.Choice(["png", "svg", "pdf"]), multiple=True,
+    default=("png",),
               show_default=True, help="May be given several times.")  # fmt: skip
-@click.option("--log", type=Source(), metavar="PATH", help="A recorded log in place of the simulated twin.")
+@click.option(
+    "--log", type=Source(), metavar="PATH", help="A recorded log in place of the simulated twin."
+)
 @READING
 @click.option("--seed", type=Seed(), help="In place of the scene's seed.")
 @FORCE
 def figures(
-    name: str, out: Path, formats: tuple[str, ...], log: str | None, reading: str, seed: int | None, force: bool
+    name: str,
+    out: Path,
+    formats: tuple[str, ...],
+    log: str | None,
+    reading: str,
+    seed: int | None,
+    force: bool,
 ) -> None:
-    """Draw every figure and table of one of the five documents, or of the gallery, with captions."""
-    from ekfsim.views.look import get_ready
+    """Draw every figure and table of one of the five documents, or of the gallery, with
+    captions.
+    """
+    from ekfsim.views.picture.look import get_ready
 
     get_ready()
     from ekfsim.figures import draw_figures
@@ -261,17 +323,25 @@ def figures(
 @ekfsim.command(short_help="Run COMMANDS many times: is the filter honest?")
 @study_options
 def study(
-    out: Path | None, resume: bool, force: bool, workers: int, cluster: str | None, expect: bool, **asked: Any
+    out: Path | None,
+    resume: bool,
+    force: bool,
+    workers: int,
+    cluster: str | None,
+    expect: bool,
+    **asked: Any,
 ) -> None:
-    """Run COMMANDS, or what a study file tells, many times: how often is it lost, and is the filter honest?"""
+    """Run COMMANDS, or what a study file tells, many times: how often is it lost, and is the filter
+    honest?
+    """
     part_with()
-    from ekfsim.files import load_study
-    from ekfsim.files.filter_checks import refuse_unread
+    from ekfsim.files.scenes import load_study
+    from ekfsim.files.scenes.filter_checks import refuse_unread
     from ekfsim.study.doing import unkept
     from ekfsim.study.expectation import promised, verified
     from ekfsim.study.plan import Plan
-    from ekfsim.views.promise_words import broken, verify
-    from ekfsim.views.study_words import conclude
+    from ekfsim.views.study.promises import broken, verify
+    from ekfsim.views.study.words import conclude
 
     if out is None and resume:
         raise click.MissingParameter(param_hint="'--out' / '-o'", param_type="option")
@@ -287,7 +357,10 @@ def study(
     if not expect:
         click.echo(shown(conclude(plan, results, width())), nl=False)
         if out is None:
-            say("nothing of this is kept; -o FOLDER writes it with tables of every step, pictures, and what repeats it")
+            say(
+                "nothing of this is kept; -o FOLDER writes it with tables of every step, "
+                "pictures, and what repeats it"
+            )
         return
     found = verified(results[0])
     click.echo(shown(verify(plan, found)), nl=False)
@@ -298,23 +371,29 @@ def study(
 @ekfsim.command(short_help="Put two settings side by side, on the same draws.")
 @compare_options
 def compare(
-    a: str | None, b: str | None, out: Path | None, force: bool, workers: int, cluster: str | None, **asked: Any
+    a: str | None,
+    b: str | None,
+    out: Path | None,
+    force: bool,
+    workers: int,
+    cluster: str | None,
+    **asked: Any,
 ) -> None:
     """Put two settings of COMMANDS side by side, each run under both on the same draws."""
     part_with()
-    from ekfsim.files import load_study
-    from ekfsim.files.writing import refuse_existing_folder
+    from ekfsim.files.results.writing import refuse_existing_folder
+    from ekfsim.files.scenes import load_study
     from ekfsim.study.comparison import Comparison, with_sides
     from ekfsim.study.doing import total
-    from ekfsim.views.compare_words import conclude
+    from ekfsim.views.study.compare_words import conclude
 
     comparison = Comparison.of(with_sides(load_study.asked(**asked, sweeps=()), a, b))
     warn(comparison.warnings)
     if out is not None:
-        from ekfsim.views.look import get_ready
+        from ekfsim.views.picture.look import get_ready
 
         get_ready()
-        from ekfsim.views.compare_folder import FILES, write_comparison
+        from ekfsim.views.study.compare_folder import FILES, write_comparison
 
         refuse_existing_folder(out, *FILES, force=force)
     with blocks_bar(comparison.a.blocks) as done:

@@ -16,12 +16,15 @@ from ekfsim.records import Nees, Step
 
 RANK = 1e-10  # an eigenvalue of the correlation matrix above this counts towards the rank
 ROUNDING = 1e-12  # m, rad; a smaller standard deviation is what sin π leaves of none
-CLEAR = 1e-8  # a determinant of the correlation matrix above this needs no eigenvalues to tell the rank
+# a determinant of the correlation matrix above this needs no eigenvalues to tell the rank
+CLEAR = 1e-8
 MANY = 64  # runs from which on they are told apart by rank
-OUTSIDE = 1e-6  # m, rad; a longer part of the error outside the range of P makes the belief impossible
+# m, rad; a longer part of the error outside the range of P makes the belief impossible
+OUTSIDE = 1e-6
 LOST = 0.999  # NEES beyond this χ² quantile: lost
 BAND = 0.99  # the two-sided band that ΣNIS is held against
-SURPRISING = 0.99  # a single NIS or NEES beyond this χ² quantile is called so; below no quantile is it surprising
+# a single NIS or NEES beyond this χ² quantile is called so; below no quantile is it surprising
+SURPRISING = 0.99
 
 
 def error(belief: Belief, truth: Array) -> Array:
@@ -32,14 +35,23 @@ def error(belief: Belief, truth: Array) -> Array:
 
 
 def nees(belief: Belief, truth: Array, layout: Layout = POSE) -> Nees:
-    """Normalised estimation error squared of the pose, aware of the rank of its P. truth : (…, 3)"""
+    """Normalised estimation error squared of the pose, aware of the rank of its P. truth : (…,
+    3)
+    """
     pose = posed(belief, layout)
     value, rank, impossible = squared_error(error(pose, truth), pose.covariance)
-    return Nees(np.where(impossible, np.nan, value) if np.count_nonzero(impossible) else value, rank, impossible)
+    return Nees(
+        np.where(impossible, np.nan, value) if np.count_nonzero(impossible) else value,
+        rank,
+        impossible,
+    )
 
 
 def inside_ellipse(belief: Gaussian, truth: Array, probability: float) -> Booleans:
-    """Whether the true position lies inside the ellipse : (…)   eᵀ P⁺ e ≤ k² on the position's block"""
+    """Whether the true position lies inside the ellipse : (…)
+
+    eᵀ P⁺ e ≤ k² on the position's block
+    """
     e, P = error(belief, truth)[..., :2], belief.covariance[..., :2, :2]
     value, _, impossible = squared_error(e, P)
     return ~impossible & (value <= radius_factor(probability) ** 2)
@@ -55,10 +67,12 @@ def inside_cone(belief: Gaussian, truth: Array, probability: float) -> Booleans:
 def squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
     """eᵀ P⁺ e, the rank of P, and whether e has a part outside the range of P : (…) each
 
-    P is often singular: it starts at 0, and a straight move adds no heading noise. Metres and radians must not decide
-    the rank, so it is counted on the correlation matrix: with D = diag(P), rows that are zero but for rounding dropped,
+    P is often singular: it starts at 0, and a straight move adds no heading noise. Metres and
+    radians must not decide the rank, so it is counted on the correlation matrix: with D = diag(P),
+    rows that are zero but for rounding dropped,
 
-        C = D^{-1/2} P D^{-1/2} = V Λ Vᵀ      rank = #{λ > 1e-10}      B = D^{1/2} V spans the range of P
+        C = D^{-1/2} P D^{-1/2} = V Λ Vᵀ      rank = #{λ > 1e-10}
+        B = D^{1/2} V spans the range of P
         eᵀ P⁺ e = yᵀ Λ⁻¹ y      where B y is the part of e inside that range
     """
     if e.ndim == 1 and (value := _full_rank_square(e.tolist(), P.tolist())) is not None:
@@ -84,7 +98,9 @@ def _squared_error(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
 
 
 def _squared_errors(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
-    """The same for many runs, by P = L D Lᵀ where P is clearly of full rank. Held equal to the above by a test."""
+    """The same for many runs, by P = L D Lᵀ where P is clearly of full rank. Held equal to the
+    above by a test.
+    """
     n = e.shape[-1]
     if n == 3 and backend.used() == "numba":
         from ekfsim.filters.compiled import squares
@@ -101,7 +117,9 @@ def _squared_errors(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
 
 
 def _full_rank_squares(e: Array, P: Array) -> tuple[Array, Booleans]:
-    """eᵀ P⁻¹ e : (N,), and where P is clearly of full rank; e : (n, N), P : (n, n, N). See `_full_rank_square`."""
+    """eᵀ P⁻¹ e : (N,), and where P is clearly of full rank; e : (n, N), P : (n, n, N). See
+    `_full_rank_square`.
+    """
     a, b, d = P[0, 0], P[0, 1], P[1, 1]
     k = b / a
     D = d - k * b
@@ -121,10 +139,11 @@ def _full_rank_squares(e: Array, P: Array) -> tuple[Array, Booleans]:
 
 
 def _full_rank_square(e: list[float], P: list[list[float]]) -> float | None:
-    """The same for one P that is clearly of full rank, by P = L D Lᵀ in plain floats; None where it is not clear.
+    """The same for one P that is clearly of full rank, by P = L D Lᵀ in plain floats; None where it
+    is not clear.
 
-    det C = Π Dᵢ/Pᵢᵢ, and no eigenvalue of C (they sum to n ≤ 3) is smaller than det C / 2.25. Held equal to the above
-    by a test.
+    det C = Π Dᵢ/Pᵢᵢ, and no eigenvalue of C (they sum to n ≤ 3) is smaller than det C / 2.25. Held
+    equal to the above by a test.
     """
     (a, b), (c, d) = P[0][:2], P[1][:2]
     if not a > ROUNDING**2 < d:
@@ -148,7 +167,8 @@ def _full_rank_square(e: list[float], P: list[list[float]]) -> float | None:
 
 
 def _coordinates(e: Array, B: Array, kept: Booleans) -> tuple[Array, Array]:
-    """y, for which B y is the part of e in the span of the kept columns of B, and the length of the rest of e.
+    """y, for which B y is the part of e in the span of the kept columns of B, and the length of the
+    rest of e.
 
     The kept columns come last, as eigenvalues ascend. e : (…, n), B : (…, n, n) → (…, n), (…)
     """
@@ -207,7 +227,9 @@ class Evidence:
 
     @property
     def verdict(self) -> Verdict:
-        """Lost, else by ΣNIS against its band. NEES over time is correlated and never summed into a verdict."""
+        """Lost, else by ΣNIS against its band. NEES over time is correlated and never summed into a
+        verdict.
+        """
         low, high = self.nis_band
         if self.lost_from is not None:
             return Verdict.LOST

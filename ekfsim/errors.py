@@ -22,7 +22,9 @@ class Place:
 
 
 class EkfsimError(Exception):
-    """An error that is told to the user in a sentence, without a traceback; or in several, each a line of its own."""
+    """An error that is told to the user in a sentence, without a traceback; or in several, each a
+    line of its own.
+    """
 
     status = 1
 
@@ -53,7 +55,9 @@ class InputError(UsageError):
 
 @dataclass(frozen=True, slots=True)
 class Mistake:
-    """One mistake: where, in which field ("" for the file itself), what is wrong, and what would be right."""
+    """One mistake: where, in which field ("" for the file itself), what is wrong, and what would be
+    right.
+    """
 
     place: Place
     field: str
@@ -78,7 +82,10 @@ def told(mistakes: Sequence[Mistake]) -> list[str]:
         return [str(mistake) for mistake in mistakes]
     lines = [str(mistake) for mistake in mistakes[: MOST_TOLD - 1]]
     more = f"{len(mistakes) - len(lines):,}".replace(",", " ")
-    return [*lines, in_a_line(f"{mistakes[len(lines)].place}: and {more} more mistakes from here on")]
+    return [
+        *lines,
+        in_a_line(f"{mistakes[len(lines)].place}: and {more} more mistakes from here on"),
+    ]
 
 
 def first_of(warnings: Iterable[str], most: int = MOST_TOLD) -> list[str]:

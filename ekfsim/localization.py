@@ -13,8 +13,8 @@ from ekfsim.filters.listing import ListingEKF
 from ekfsim.filters.protocol import Beginning, Filter
 from ekfsim.filters.shadows import ShadowsAlone
 from ekfsim.geometry import Integers
-from ekfsim.models.laser_by_reading import by_reading
 from ekfsim.models.layout import POSE, Layout
+from ekfsim.models.sensors.laser_by_reading import by_reading
 from ekfsim.records import Control, Entry, Reading, Step
 from ekfsim.scene import Guard, Scene
 from ekfsim.simulation import simulate
@@ -22,11 +22,18 @@ from ekfsim.simulation.draws import particle_generators
 from ekfsim.simulation.interpolation import stretched
 from ekfsim.simulation.nominal import nominal_trajectory
 
-NO_PLAN = "a recording does not tell the way that was planned, which it is linearised about; take kf or ekf"
+NO_PLAN = (
+    "a recording does not tell the way that was planned, which it is linearised about; take "
+    "kf or ekf"
+)
 
 
 def localize(
-    entries: Iterable[Entry], filter: Filter, belief: Belief, guard: Guard = "warn", layout: Layout = POSE
+    entries: Iterable[Entry],
+    filter: Filter,
+    belief: Belief,
+    guard: Guard = "warn",
+    layout: Layout = POSE,
 ) -> Iterator[Step]:
     """Filter a log, simulated or recorded, one entry at a time."""
     for entry in entries:
@@ -35,10 +42,13 @@ def localize(
         yield step
 
 
-def advance(filter: Filter, belief: Belief, entry: Entry, guard: Guard = "warn", layout: Layout = POSE) -> Step:
+def advance(
+    filter: Filter, belief: Belief, entry: Entry, guard: Guard = "warn", layout: Layout = POSE
+) -> Step:
     """What the filter makes of one entry.
 
-    A single run is told all that the sensor knows of a beam; N runs side by side only what the guard needs to know.
+    A single run is told all that the sensor knows of a beam; N runs side by side only what the
+    guard needs to know.
     """
     prediction = correction = sighting = None
     posterior = belief
@@ -57,11 +67,15 @@ def advance(filter: Filter, belief: Belief, entry: Entry, guard: Guard = "warn",
 def first_belief(scene: Scene, axes: tuple[int, ...] = ()) -> Gaussian:
     """What the filter is told of the start : (…, n), (…, n, n)"""
     mean, P = scene.log.first if scene.log is not None else _told_first(scene)
-    return Gaussian(np.broadcast_to(mean, (*axes, *mean.shape)), np.broadcast_to(P, (*axes, *P.shape)))
+    return Gaussian(
+        np.broadcast_to(mean, (*axes, *mean.shape)), np.broadcast_to(P, (*axes, *P.shape))
+    )
 
 
 def _told_first(scene: Scene) -> Gaussian:
-    """The first belief of a simulation: the document's own; the world file may say how uncertain its pose is."""
+    """The first belief of a simulation: the document's own; the world file may say how uncertain
+    its pose is.
+    """
     world, told = scene.world, scene.world.told
     if world.told_robot is None:
         return Gaussian(told.start, np.diag(told.sigma**2))
@@ -79,7 +93,8 @@ def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
         raise UsageError(f"{scene.commands_source}: kf-nominal: {NO_PLAN}")
     beginning = Beginning(
         first_belief(scene), scene.world.layout.headings, scene.gate,
-        lambda: particle_generators(scene.seed, numbers), scene.tuning, lambda: nominal_trajectory(scene),
+        lambda: particle_generators(scene.seed, numbers), scene.tuning,
+        lambda: nominal_trajectory(scene),
     )  # fmt: skip
     if by_listing(scene):
         return ListingEKF.begin(beginning)
@@ -88,12 +103,20 @@ def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
 
 
 def by_listing(scene: Scene) -> bool:
-    """Whether readings are held against the state of before the motion, as the code of two documents does."""
-    return scene.filter == "ekf" and scene.world.system in ("mower", "gnss") and scene.reading == "coded"
+    """Whether readings are held against the state of before the motion, as the code of two
+    documents does.
+    """
+    return (
+        scene.filter == "ekf"
+        and scene.world.system in ("mower", "gnss")
+        and scene.reading == "coded"
+    )
 
 
 def noise_by_reading(entry: Entry) -> Entry:
-    """The same entry, its laser told to take C_v from the reading in place of the prediction: a counter-example."""
+    """The same entry, its laser told to take C_v from the reading in place of the prediction: a
+    counter-example.
+    """
     if not isinstance(entry.given, Reading):
         return entry
     sensor, z = entry.given.sensor, entry.given.z
@@ -103,7 +126,8 @@ def noise_by_reading(entry: Entry) -> Entry:
 def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
     """Localize in a scene: every Step of its run, or of N runs side by side. runs : (N,)"""
     entries = simulate(scene, runs) if scene.log is None else iter(scene.log.entries)
-    if scene.world.system == "gnss" and scene.reading == "coded":  # its authors have a fix at every motion input
+    # its authors have a fix at every motion input
+    if scene.world.system == "gnss" and scene.reading == "coded":
         entries = stretched(entries)
     if scene.tuning.range_variance == "reading":
         entries = map(noise_by_reading, entries)

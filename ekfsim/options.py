@@ -13,19 +13,37 @@ from ekfsim.seeds import MOST_SEED, REPEATS
 MOST = 2**63 - 1  # of runs' numbers
 MOST_RUNS = 10**9  # of a study
 MOST_PARTICLES = 10**6  # of a run
-READINGS = ("printed", "coded", "corrected")  # of a document; told here again, so that --help need not load them
-READING = click.option("--reading", type=click.Choice(READINGS), default="corrected", show_default=True,
-                       help="Which to follow where a document's print, its code and the truth differ.")  # fmt: skip
-SET = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
-                   help="Overrule a number of the world, e.g. noise.rangeSigmaRatio=0.02, or of the filter, e.g. "
-                   "filter.alpha=0.5; repeatable.")  # fmt: skip
-FAST = click.option("--fast", is_flag=True, help="Calculate with code that Numba compiles (the extra `fast`).")
-EXPLAIN = click.option("--explain", is_flag=True, help="Narrate in the long form: every matrix, every equation.")
+# of a document; told here again, so that --help need not load them
+READINGS = ("printed", "coded", "corrected")
+READING = click.option(
+    "--reading",
+    type=click.Choice(READINGS),
+    default="corrected",
+    show_default=True,
+    help="Which to follow where a document's print, its code and the truth differ.",
+)
+SET = click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Overrule a number of the world, e.g. noise.rangeSigmaRatio=0.02, or of "
+    "the filter, e.g. "
+    "filter.alpha=0.5; repeatable.",
+)
+FAST = click.option(
+    "--fast", is_flag=True, help="Calculate with code that Numba compiles (the extra `fast`)."
+)
+EXPLAIN = click.option(
+    "--explain", is_flag=True, help="Narrate in the long form: every matrix, every equation."
+)
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
 
 
 class Whole(click.IntRange):
-    """A whole number of a range, called by a word that a person knows where what was written is none."""
+    """A whole number of a range, called by a word that a person knows where what was written is
+    none.
+    """
 
     name = "integer"
 
@@ -37,10 +55,14 @@ class Seed(Whole):
         super().__init__(0, MOST_SEED)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """A whole number. Fails beyond the largest, with the reason, and for what is no seed at all."""
+        """A whole number. Fails beyond the largest, with the reason, and for what is no seed at
+        all.
+        """
         seed = click.INT.convert(value, param, ctx)
         if seed > MOST_SEED:
-            self.fail(f"{seed} is too large: {REPEATS}; choose one from 0 to {MOST_SEED}.", param, ctx)
+            self.fail(
+                f"{seed} is too large: {REPEATS}; choose one from 0 to {MOST_SEED}.", param, ctx
+            )
         return super().convert(value, param, ctx)
 
 
@@ -58,13 +80,17 @@ class Word(click.Choice[str]):
 
 
 class Source(click.Path):
-    """The name of something that is to be read. Whether it may be, its reader finds out, and tells in a line."""
+    """The name of something that is to be read. Whether it may be, its reader finds out, and tells
+    in a line.
+    """
 
     def __init__(self) -> None:
         super().__init__(readable=False)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """A name. Fails for the empty one that an unset variable leaves: it would be the folder one stands in."""
+        """A name. Fails for the empty one that an unset variable leaves: it would be the folder one
+        stands in.
+        """
         if value == "":
             self.fail("the name is empty.", param, ctx)
         return super().convert(value, param, ctx)
@@ -76,7 +102,9 @@ class Probability(click.FloatRange):
     def __init__(self) -> None:
         super().__init__(0, 1, min_open=True, max_open=True)
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
         """A float. Fails for nan too, which lies in no range and outside of none."""
         number = float(super().convert(value, param, ctx))
         if math.isnan(number):
@@ -99,7 +127,9 @@ class Result(click.Path):
         super().__init__(path_type=Path, readable=False)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """A path. Fails for a name that an unset variable leaves, and for the dash that other programs know."""
+        """A path. Fails for a name that an unset variable leaves, and for the dash that other
+        programs know.
+        """
         if value == "":
             self.fail("the name is empty.", param, ctx)
         if value == "-":
@@ -107,10 +137,18 @@ class Result(click.Path):
         return super().convert(value, param, ctx)
 
 
-PARTICLES = click.option("--particles", type=Whole(1, MOST_PARTICLES), metavar="N",
-                         help="Of each run's particle filter; short for --set filter.particles=N.")  # fmt: skip
-GATE = click.option("--gate", type=Gate(), metavar="P|off",
-                    help="Refuse readings whose NIS lies beyond this χ² quantile; off refuses none.")  # fmt: skip
+PARTICLES = click.option(
+    "--particles",
+    type=Whole(1, MOST_PARTICLES),
+    metavar="N",
+    help="Of each run's particle filter; short for --set filter.particles=N.",
+)
+GATE = click.option(
+    "--gate",
+    type=Gate(),
+    metavar="P|off",
+    help="Refuse readings whose NIS lies beyond this χ² quantile; off refuses none.",
+)
 DOCUMENTS = """\b
 Documents, by the numbers under which captions cite them:
   000  mower      Kiriy, Buehler: Three-state Extended Kalman Filter for
@@ -121,88 +159,172 @@ Documents, by the numbers under which captions cite them:
   003  gnss       Sahni: Assignment 3: Sensor fusion for lawn mower, 2023
   004  pylon      King, Johnson: Lab 3: Extended Kalman Filter for Localization
 """
-GUARD = click.option("--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams.")
+GUARD = click.option(
+    "--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams."
+)
 
 
-WORLD = click.option("--world", help="A world file or packaged world in place of the one that COMMANDS names.")
+WORLD = click.option(
+    "--world", help="A world file or packaged world in place of the one that COMMANDS names."
+)
 SEED = click.option("--seed", type=Seed(), help="In place of the file's seed.")
 SETTINGS = (  # what overrules the files in every run of a study
     SET,
     PARTICLES,
     GATE,
     GUARD,
-    click.option("--reading", type=click.Choice(READINGS),
-                 help="Which to follow where a document's print, its code and the truth differ."),
-)  # fmt: skip
+    click.option(
+        "--reading",
+        type=click.Choice(READINGS),
+        help="Which to follow where a document's print, its code and the truth differ.",
+    ),
+)
 MADE_WHERE = (
-    click.option("--workers", type=Whole(1, 1024), default=1, show_default=True, metavar="N",
-                 help="Processes on this machine."),
-    click.option("--cluster", metavar="ADDRESS", help="The scheduler of a Dask cluster, e.g. tcp://10.0.0.1:8786."),
+    click.option(
+        "--workers",
+        type=Whole(1, 1024),
+        default=1,
+        show_default=True,
+        metavar="N",
+        help="Processes on this machine.",
+    ),
+    click.option(
+        "--cluster",
+        metavar="ADDRESS",
+        help="The scheduler of a Dask cluster, e.g. tcp://10.0.0.1:8786.",
+    ),
     FAST,
-)  # fmt: skip
+)
 
 
 def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options by which every command that plays a scene may overrule its file."""
-    return _with(command, [
-        click.argument("commands"),
-        WORLD,
-        click.option("--seed", type=Seed(), help="In place of the file's seed."),
-        click.option("--run", "run_number", type=Whole(0, MOST), default=0, help="Which run of the seed."),
-        click.option("--log", type=Source(), metavar="PATH",
-                     help="A recorded log in place of the one that COMMANDS names."),
-        READING,
-        click.option("--filter", "filter_name", metavar="NAME,…",
-                     help="In place of the file's filter: kf, kf-nominal, ekf, iekf, ukf, ukf-augmented or pf. "
-                     "Several are put side by side; the name of each then stands before the ending of its files."),
-        GATE,
-        GUARD,
-        SET,
-        PARTICLES,
-        click.option("--confidence", type=Probability(), default=0.954,
-                     show_default=True, help="Probability of the ellipse and the cone."),
-    ])  # fmt: skip
+    return _with(
+        command,
+        [
+            click.argument("commands"),
+            WORLD,
+            click.option("--seed", type=Seed(), help="In place of the file's seed."),
+            click.option(
+                "--run", "run_number", type=Whole(0, MOST), default=0, help="Which run of the seed."
+            ),
+            click.option(
+                "--log",
+                type=Source(),
+                metavar="PATH",
+                help="A recorded log in place of the one that COMMANDS names.",
+            ),
+            READING,
+            click.option(
+                "--filter",
+                "filter_name",
+                metavar="NAME,…",
+                help="In place of the file's filter: kf, kf-nominal, ekf, iekf, ukf, "
+                "ukf-augmented or pf. "
+                "Several are put side by side; the name of each then stands before the "
+                "ending of its files.",
+            ),
+            GATE,
+            GUARD,
+            SET,
+            PARTICLES,
+            click.option(
+                "--confidence",
+                type=Probability(),
+                default=0.954,
+                show_default=True,
+                help="Probability of the ellipse and the cone.",
+            ),
+        ],
+    )
 
 
 def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options of a study: which runs, watched by whom, made where."""
-    return _with(command, [
-        click.argument("commands", metavar="COMMANDS|STUDY.yaml"),
-        WORLD,
-        click.option("--runs", type=Whole(1, MOST_RUNS), metavar="N",
-                     help="How many runs of each cell and filter; 10000 where nothing says otherwise."),
-        SEED,
-        click.option("--filter", "filters", metavar="NAME,…", help="Filters that watch the same runs, e.g. ekf,ukf."),
-        click.option("--sweep", "sweeps", multiple=True, metavar="KEY=V1,V2,…",
-                     help="Values of a number of the world or the filter, of gate or of guard; several make a grid."),
-        *SETTINGS,
-        *MADE_WHERE,
-        click.option("--resume", is_flag=True, help="Go on with a study that did not end."),
-        click.option("--expect", is_flag=True,
-                     help="Verify what COMMANDS promises under `expect`: status 1 where it is not kept."),
-        click.option("--out", "-o", type=Result(),
-                     help="A folder for tables and pictures; a first look needs none."),
-        FORCE,
-    ])  # fmt: skip
+    return _with(
+        command,
+        [
+            click.argument("commands", metavar="COMMANDS|STUDY.yaml"),
+            WORLD,
+            click.option(
+                "--runs",
+                type=Whole(1, MOST_RUNS),
+                metavar="N",
+                help="How many runs of each cell and filter; 10000 where nothing says otherwise.",
+            ),
+            SEED,
+            click.option(
+                "--filter",
+                "filters",
+                metavar="NAME,…",
+                help="Filters that watch the same runs, e.g. ekf,ukf.",
+            ),
+            click.option(
+                "--sweep",
+                "sweeps",
+                multiple=True,
+                metavar="KEY=V1,V2,…",
+                help="Values of a number of the world or the filter, of gate or of guard; "
+                "several make a grid.",
+            ),
+            *SETTINGS,
+            *MADE_WHERE,
+            click.option("--resume", is_flag=True, help="Go on with a study that did not end."),
+            click.option(
+                "--expect",
+                is_flag=True,
+                help="Verify what COMMANDS promises under `expect`: status 1 where it is not kept.",
+            ),
+            click.option(
+                "--out",
+                "-o",
+                type=Result(),
+                help="A folder for tables and pictures; a first look needs none.",
+            ),
+            FORCE,
+        ],
+    )
 
 
 def compare_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options of a comparison: which two settings, of which runs, made where."""
-    return _with(command, [
-        click.argument("commands", metavar="COMMANDS|COMPARE.yaml"),
-        click.option("--a", "a", metavar="KEY=VALUE,…",
-                     help="What one side sets: numbers of the world, gate, guard, filter; nothing where left out."),
-        click.option("--b", "b", metavar="KEY=VALUE,…", help="What the other side sets."),
-        WORLD,
-        click.option("--runs", type=Whole(1, MOST_RUNS), metavar="N",
-                     help="How many runs; 10000 where nothing says otherwise."),
-        SEED,
-        click.option("--filter", "filters", metavar="NAME", help="In place of the file's filter, on both sides."),
-        *SETTINGS,
-        *MADE_WHERE,
-        click.option("--out", "-o", type=Result(), help="A folder for a table, a picture and what repeats them."),
-        FORCE,
-    ])  # fmt: skip
+    return _with(
+        command,
+        [
+            click.argument("commands", metavar="COMMANDS|COMPARE.yaml"),
+            click.option(
+                "--a",
+                "a",
+                metavar="KEY=VALUE,…",
+                help="What one side sets: numbers of the world, gate, guard, filter; nothing "
+                "where left out.",
+            ),
+            click.option("--b", "b", metavar="KEY=VALUE,…", help="What the other side sets."),
+            WORLD,
+            click.option(
+                "--runs",
+                type=Whole(1, MOST_RUNS),
+                metavar="N",
+                help="How many runs; 10000 where nothing says otherwise.",
+            ),
+            SEED,
+            click.option(
+                "--filter",
+                "filters",
+                metavar="NAME",
+                help="In place of the file's filter, on both sides.",
+            ),
+            *SETTINGS,
+            *MADE_WHERE,
+            click.option(
+                "--out",
+                "-o",
+                type=Result(),
+                help="A folder for a table, a picture and what repeats them.",
+            ),
+            FORCE,
+        ],
+    )
 
 
 def _with(command: Callable[..., Any], options: Sequence[Callable[..., Any]]) -> Callable[..., Any]:

@@ -1,4 +1,6 @@
-"""How the process begins and ends: streams, signals, exit statuses, and mistakes told in sentences."""
+"""How the process begins and ends: streams, signals, exit statuses, and mistakes told in
+sentences.
+"""
 
 import atexit
 import gc
@@ -21,11 +23,14 @@ INTERRUPTED = 130
 _ending: list[int] = []  # the signal that is to end us, once it has come
 _parting: list[str] = []  # what is left to say where we are ended
 
-atexit.register(gc.freeze)  # to look through a long file's tree once more takes as long as to read it
+# to look through a long file's tree once more takes as long as to read it
+atexit.register(gc.freeze)
 
 
 def run(program: click.Group) -> NoReturn:
-    """Run a program and exit with its status: 0 done, 1 the run failed, 2 wrong usage or file, 130, 143."""
+    """Run a program and exit with its status: 0 done, 1 the run failed, 2 wrong usage or file, 130,
+    143.
+    """
     _open_closed_streams()
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)  # Windows does not hang up
@@ -50,7 +55,9 @@ def run(program: click.Group) -> NoReturn:
 
 
 def _status(program: click.Group) -> int:
-    """What the program's exit status is; mistakes of its user end here in a sentence, ours keep their traceback."""
+    """What the program's exit status is; mistakes of its user end here in a sentence, ours keep
+    their traceback.
+    """
     try:
         program(prog_name="ekfsim", standalone_mode=False)
         sys.stdout.flush()
@@ -76,10 +83,12 @@ def _status(program: click.Group) -> int:
 
 
 def _open_closed_streams() -> None:
-    """Give a stream that was closed by whoever started us (`>&-`) to /dev/null: no result must come in its place."""
+    """Give a stream that was closed by whoever started us (`>&-`) to /dev/null: no result must come
+    in its place.
+    """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
-            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115 (open to the end)
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115
 
 
 def _forget_what_is_buffered() -> None:
@@ -88,7 +97,9 @@ def _forget_what_is_buffered() -> None:
 
 
 def _end(number: int, frame: FrameType | None) -> None:
-    """End by an exception, so that every block cleans up behind itself, undisturbed by whoever is impatient."""
+    """End by an exception, so that every block cleans up behind itself, undisturbed by whoever is
+    impatient.
+    """
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
@@ -97,7 +108,9 @@ def _end(number: int, frame: FrameType | None) -> None:
 
 
 def heed() -> None:
-    """End if a signal asked for it: its exception is lost where it comes up inside a library's compiled code."""
+    """End if a signal asked for it: its exception is lost where it comes up inside a library's
+    compiled code.
+    """
     if _ending and _ending[0] == signal.SIGINT:
         raise KeyboardInterrupt
     if _ending:
@@ -105,15 +118,21 @@ def heed() -> None:
 
 
 def part_with(words: str = "") -> None:
-    """Tell it in a line where SIGTERM ends us, as of Ctrl-C always; and have these words stand in that line."""
+    """Tell it in a line where SIGTERM ends us, as of Ctrl-C always; and have these words stand in
+    that line.
+    """
     _parting.append(words)
 
 
 def say(*lines: str) -> None:
-    """Tell the user something on standard error: a mistake with its place as it is, all else in our name."""
+    """Tell the user something on standard error: a mistake with its place as it is, all else in our
+    name.
+    """
     with suppress(OSError):
         told = map(in_a_line, lines)
-        click.echo("\n".join(line if _placed(line) else f"ekfsim: {line}" for line in told), err=True)
+        click.echo(
+            "\n".join(line if _placed(line) else f"ekfsim: {line}" for line in told), err=True
+        )
 
 
 def warn(warnings: Iterable[str], most: int = MOST_TOLD) -> None:
@@ -123,7 +142,9 @@ def warn(warnings: Iterable[str], most: int = MOST_TOLD) -> None:
 
 
 def width() -> int | None:
-    """How many columns the terminal has that results are printed on; None where they go elsewhere."""
+    """How many columns the terminal has that results are printed on; None where they go
+    elsewhere.
+    """
     return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
@@ -144,7 +165,11 @@ class Program(click.Group):
     """The commands. click itself would make a failure of a closed pipe."""
 
     def make_context(
-        self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
+        self,
+        info_name: str | None,
+        args: list[str],
+        parent: click.Context | None = None,
+        **extra: Any,
     ) -> click.Context:
         """Parse the arguments, and print the help that they ask for."""
         try:

@@ -21,12 +21,18 @@ if TYPE_CHECKING:
 
 @contextmanager
 def progress(plan: "Plan", journal: "Journal") -> Iterator[Callable[["Task", "Tally"], None]]:
-    """A bar on standard error where that is a terminal, with the share of runs that are lost so far."""
+    """A bar on standard error where that is a terminal, with the share of runs that are lost so
+    far.
+    """
     total = plan.blocks * len(plan.cases)
     runs = lost = 0
     hidden = not sys.stderr.isatty()
     with click.progressbar(
-        length=total, label="blocks", file=sys.stderr, hidden=hidden, item_show_func=lambda told: told
+        length=total,
+        label="blocks",
+        file=sys.stderr,
+        hidden=hidden,
+        item_show_func=lambda told: told,
     ) as bar:
 
         def done(task: "Task", tally: "Tally") -> None:
@@ -42,7 +48,9 @@ def progress(plan: "Plan", journal: "Journal") -> Iterator[Callable[["Task", "Ta
         try:
             yield done
         except EkfsimError as failure:
-            raise type(failure)("; ".join(filter(None, (str(failure), kept(journal, total))))) from None
+            raise type(failure)(
+                "; ".join(filter(None, (str(failure), kept(journal, total))))
+            ) from None
         except (KeyboardInterrupt, SystemExit):
             part_with(kept(journal, total))
             raise
@@ -51,7 +59,9 @@ def progress(plan: "Plan", journal: "Journal") -> Iterator[Callable[["Task", "Ta
 @contextmanager
 def blocks_bar(total: int) -> Iterator[Callable[[object, object], None]]:
     """A bar for blocks of which none is kept."""
-    with click.progressbar(length=total, label="blocks", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
+    with click.progressbar(
+        length=total, label="blocks", file=sys.stderr, hidden=not sys.stderr.isatty()
+    ) as bar:
 
         def done(task: object, found: object) -> None:
             heed()
@@ -66,24 +76,32 @@ def kept(journal: "Journal", total: int) -> str:
         return ""
     if len(journal) == total:
         return f"all blocks are kept in {journal.path.parent}, --resume goes on with the tables"
-    return f"{len(journal)} of {total} blocks are kept in {journal.path.parent}, --resume goes on with the rest"
+    return (
+        f"{len(journal)} of {total} blocks are kept in {journal.path.parent}, --resume goes on "
+        f"with the rest"
+    )
 
 
-def study_into(plan: "Plan", engine: "Engine", out: Path, resume: bool, force: bool) -> "list[Result]":
+def study_into(
+    plan: "Plan", engine: "Engine", out: Path, resume: bool, force: bool
+) -> "list[Result]":
     """Do a study, each block safe as soon as it is done, and write its tables and pictures."""
-    from ekfsim.views.look import get_ready
+    from ekfsim.views.picture.look import get_ready
 
     get_ready()
-    from ekfsim.files.writing import refuse_existing_folder
+    from ekfsim.files.results.writing import refuse_existing_folder
     from ekfsim.study.doing import do, results_of
     from ekfsim.study.journal import journal_in, remove
-    from ekfsim.views.study_folder import FILES, write_study
+    from ekfsim.views.study.folder import FILES, write_study
 
     refuse_existing_folder(out, *FILES, force=force)
     partial = out.with_name(f"{out.name}.partial")
     with journal_in(partial, plan, resume, force) as journal:
         if resume and not len(journal):
-            say(f"{partial}: nothing is kept there to go on with; this is a study from the beginning")
+            say(
+                f"{partial}: nothing is kept there to go on with; this is a study from the "
+                f"beginning"
+            )
         with progress(plan, journal) as done:
             do(plan, journal, engine, done)
             results = results_of(plan, journal)

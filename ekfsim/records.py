@@ -1,8 +1,9 @@
-"""The two seams: what was asked (Command), what happened (Entry), what the filter made of it (Step).
+"""The two seams: what was asked (Command), what happened (Entry), what the filter made of it
+(Step).
 
-A simulation is a log being written, a recording a log already written: both are Entries, and no filter can tell them
-apart. Every output is a function of Steps, and none touches a filter. All records are frozen; arrays carry leading
-axes (…): none for one run, (N,) for a study of N runs.
+A simulation is a log being written, a recording a log already written: both are Entries, and no
+filter can tell them apart. Every output is a function of Steps, and none touches a filter. All
+records are frozen; arrays carry leading axes (…): none for one run, (N,) for a study of N runs.
 """
 
 from collections.abc import Iterable, Iterator
@@ -10,14 +11,16 @@ from dataclasses import dataclass
 
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.models.laser import Sighting
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.protocols import Motion, Sensor
+from ekfsim.models.sensors.laser import Sighting
 
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """Drive `distance` m straight ahead, then turn in place by `angle` rad; slipping wheels move the robot less."""
+    """Drive `distance` m straight ahead, then turn in place by `angle` rad; slipping wheels move
+    the robot less.
+    """
 
     distance: float
     angle: float
@@ -79,7 +82,9 @@ def expanded_length(commands: Iterable[Command]) -> int:
     >>> expanded_length([Repeat(1000, (Repeat(1000, (Sense(0.0),)),))])
     1000000
     """
-    return sum(c.times * expanded_length(c.commands) if isinstance(c, Repeat) else 1 for c in commands)
+    return sum(
+        c.times * expanded_length(c.commands) if isinstance(c, Repeat) else 1 for c in commands
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,11 +114,13 @@ class Entry:
     index: int
     given: Control | Reading | None  # what the filter is given; None where it is told nothing
     truth: Array | None = None  # (…, 3) true pose after it, where it is known
-    command: Plain | None = None  # what was asked for; None at the start, in drives and in recorded logs
+    # what was asked for; None at the start, in drives and in recorded logs
+    command: Plain | None = None
     bump: Integers | None = None  # (…) the true wall that cut a move short, −1 where none did
     t: float | None = None  # s, in drives and recorded logs
     judged: bool = True  # whether errors are counted at this instant
-    fix: Array | None = None  # (…, 2) m, a position that was recorded and that the filter is not given
+    # (…, 2) m, a position that was recorded and that the filter is not given
+    fix: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -126,7 +133,9 @@ class Log:
 
 @dataclass(frozen=True, slots=True)
 class Nees:
-    """The error of a belief, squared and measured by its covariance: eᵀ P⁺ e. Arrays carry leading axes (…)."""
+    """The error of a belief, squared and measured by its covariance: eᵀ P⁺ e. Arrays carry leading
+    axes (…).
+    """
 
     value: Array  # (…) nan where the belief is impossible
     dof: Integers  # (…) the rank of P

@@ -1,4 +1,6 @@
-"""A scene: a world, what is done in it or was recorded of it, and the settings of the filter that watches."""
+"""A scene: a world, what is done in it or was recorded of it, and the settings of the filter that
+watches.
+"""
 
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -16,7 +18,9 @@ Share = tuple[float, float]  # from, to; both in [0, 1]
 
 @dataclass(frozen=True, slots=True)
 class Expect:
-    """What a study of this scene must find: the word that the scene keeps. None where it promises nothing."""
+    """What a study of this scene must find: the word that the scene keeps. None where it promises
+    nothing.
+    """
 
     lost: Share | None = None
     nis: Level | None = None
@@ -46,7 +50,8 @@ class Scene:
     commands_source: str = "commands"
     log_source: str | None = None  # how outputs name the log, where the run was recorded
     settings: tuple[str, ...] = ()  # KEY=VALUE each: what overrules numbers of the two files
-    beside: tuple[str, ...] = ()  # more filters that watch the same run, to be shown beside the first
+    # more filters that watch the same run, to be shown beside the first
+    beside: tuple[str, ...] = ()
 
     @property
     def commanded(self) -> bool:

@@ -1,4 +1,6 @@
-"""The closing summary of a run: errors, NIS, what dead reckoning alone would have done, and the verdict."""
+"""The closing summary of a run: errors, NIS, what dead reckoning alone would have done, and the
+verdict.
+"""
 
 import math
 from dataclasses import dataclass, field
@@ -22,13 +24,20 @@ class Errors:
     _total: float = 0.0
     _squares: float = 0.0
     _largest: float = 0.0
-    _last: float | None = None  # not yet in the sums: a later error of the same instant takes its place
+    # not yet in the sums: a later error of the same instant takes its place
+    _last: float | None = None
     _instant: float | None = None
 
     def add(self, e: float, t: float | None = None) -> None:
-        """Take one more error into account; it may be negative. Of each instant t (s) only the last one counts."""
+        """Take one more error into account; it may be negative. Of each instant t (s) only the last
+        one counts.
+        """
         if self._last is not None and (t is None or t != self._instant):
-            self._n, self._total, self._squares = self._n + 1, self._total + self._last, self._squares + self._last**2
+            self._n, self._total, self._squares = (
+                self._n + 1,
+                self._total + self._last,
+                self._squares + self._last**2,
+            )
             self._largest = max(self._largest, abs(self._last))
         self._last, self._instant = e, t
 
@@ -54,13 +63,19 @@ class Errors:
         if rmse is None:
             return dict.fromkeys(("rmse", "mean", "sd", "max"))
         mean = (self._total + (self._last or 0.0)) / self.n
-        return {"rmse": rmse, "mean": mean, "sd": math.sqrt(max(rmse**2 - mean**2, 0.0)), "max": self.largest}
+        return {
+            "rmse": rmse,
+            "mean": mean,
+            "sd": math.sqrt(max(rmse**2 - mean**2, 0.0)),
+            "max": self.largest,
+        }
 
 
 class Instants:
     """The instants of a run at which errors are counted: asked of one entry after another.
 
-    Without a clock, in the classroom, every entry that gives the filter something is an instant of its own.
+    Without a clock, in the classroom, every entry that gives the filter something is an instant of
+    its own.
     """
 
     def __init__(self) -> None:
@@ -79,8 +94,9 @@ class Instants:
 class Summary:
     """What is left of a run when it is over, gathered one step at a time.
 
-    Errors are taken at every instant (`Instants`), after its last reading: position as a distance in m, heading in rad
-    with its sign. Dead reckoning starts at the first estimate and follows the motion inputs alone.
+    Errors are taken at every instant (`Instants`), after its last reading: position as a distance
+    in m, heading in rad with its sign. Dead reckoning starts at the first estimate and follows the
+    motion inputs alone.
     """
 
     layout: Layout = POSE
@@ -130,7 +146,9 @@ class Summary:
         if step.correction is not None:
             self._count(Refused(int(step.correction.refused)))
         if self._instants.hold(entry):
-            self._measure(entry, self.layout.pose(step.posterior.mean), self.layout.pose(self._reckoned))
+            self._measure(
+                entry, self.layout.pose(step.posterior.mean), self.layout.pose(self._reckoned)
+            )
 
     def _measure(self, entry: Entry, estimated: Array, reckoned: Array) -> None:
         if entry.truth is not None:
@@ -169,7 +187,10 @@ class Summary:
             },
             "lost_from": evidence.lost_from,
             "verdict": evidence.verdict.value,
-            "dead_reckoning": {"position": self.reckoned_position.rmse, "heading": self.reckoned_heading.rmse},
+            "dead_reckoning": {
+                "position": self.reckoned_position.rmse,
+                "heading": self.reckoned_heading.rmse,
+            },
         }
 
 

@@ -67,7 +67,9 @@ class Faults:
 
 @dataclass(frozen=True)
 class Told:
-    """What the filter is told: its first belief, its noise, its map. The truth may differ in each."""
+    """What the filter is told: its first belief, its noise, its map. The truth may differ in
+    each.
+    """
 
     start: Array  # (3,) x, y, θ in m, m, rad
     sigma: Array  # (3,) standard deviations of the first belief
@@ -81,8 +83,9 @@ class Told:
 class World:
     """A world file: the truth, and beside it what the filter is told.
 
-    `dataclasses.replace(world, noise=n)` changes the truth alone, so that the filter is told wrongly of it. What is to
-    hold for both is changed in both: `replace(world, noise=n, told=replace(world.told, noise=n))`; map and start alike.
+    `dataclasses.replace(world, noise=n)` changes the truth alone, so that the filter is told
+    wrongly of it. What is to hold for both is changed in both: `replace(world, noise=n,
+    told=replace(world.told, noise=n))`; map and start alike.
     """
 
     name: str
@@ -98,7 +101,8 @@ class World:
     system: str = "classroom"
     robot: Robot | None = None  # None in the classroom, whose robot obeys commands
     instruments: tuple[Instrument, ...] = ()
-    expected_path: Array | None = None  # (n, 2) m, the outline that was meant to be driven; it closes by itself
+    # (n, 2) m, the outline that was meant to be driven; it closes by itself
+    expected_path: Array | None = None
 
     @property
     def layout(self) -> Layout:
@@ -106,15 +110,21 @@ class World:
         return POSE if self.robot is None else self.robot.layout
 
     def follows(self, reading: DocumentReading) -> bool:
-        """Whether anything of its robot and its instruments is printed, or coded, otherwise than it is right."""
+        """Whether anything of its robot and its instruments is printed, or coded, otherwise than it
+        is right.
+        """
         own = () if self.robot is None else self.robot.readings
-        return reading in own or any(reading in instrument.readings for instrument in self.instruments)
+        return reading in own or any(
+            reading in instrument.readings for instrument in self.instruments
+        )
 
     @property
     def perfect_beam(self) -> bool:
         """Whether the filter is told of a laser without noise while its own place is in doubt."""
         noise = self.told.noise
-        unsure = bool(self.told.sigma.any()) or noise.odometry_distance > 0 or noise.odometry_angle > 0
+        unsure = (
+            bool(self.told.sigma.any()) or noise.odometry_distance > 0 or noise.odometry_angle > 0
+        )
         return self.robot is None and noise.range == 0 and unsure
 
     @property
@@ -130,17 +140,29 @@ class World:
     def targets(self, reading: DocumentReading) -> list[tuple[Instrument, Target]]:
         """Everything that the instruments may read, with the sensors as the filter is told."""
         around = self.around(reading)
-        return [(instrument, target) for instrument in self.told_instruments for target in instrument.targets(around)]
+        return [
+            (instrument, target)
+            for instrument in self.told_instruments
+            for target in instrument.targets(around)
+        ]
 
     def true_targets(self) -> list[tuple[Instrument, Target]]:
         """The same in the same order, with the sensors as they are."""
         around = self._around("corrected", self.map, self.robot, self.start)
-        return [(instrument, target) for instrument in self.instruments for target in instrument.targets(around)]
+        return [
+            (instrument, target)
+            for instrument in self.instruments
+            for target in instrument.targets(around)
+        ]
 
     def around(self, reading: DocumentReading) -> Surroundings:
         """What the sensors that the filter is told of are made from."""
         return self._around(reading, self.told.map, self.told_robot, self.told.start)
 
-    def _around(self, reading: DocumentReading, floor: Map, robot: Robot | None, start: Array) -> Surroundings:
+    def _around(
+        self, reading: DocumentReading, floor: Map, robot: Robot | None, start: Array
+    ) -> Surroundings:
         yaw_sigma = robot.yaw_sigma if isinstance(robot, PylonCart) else 0.0
-        return Surroundings(self.landmarks, floor.walls, self.layout, reading, yaw_sigma, float(start[2]))
+        return Surroundings(
+            self.landmarks, floor.walls, self.layout, reading, yaw_sigma, float(start[2])
+        )

@@ -8,7 +8,8 @@ DOCUMENTS = Path(__file__).resolve().parents[1] / ".." / "shared" / "documents"
 
 
 def text_of(number):
-    """A document's text, every run of white space one blank. Skips the test where the text is not there."""
+    """A document's text, every run of white space one blank. Skips the test where the text is not
+    there."""
     found = sorted(DOCUMENTS.glob(f"{number}_*.txt"))
     if not found:
         pytest.skip("the documents are not at hand")

@@ -1,7 +1,8 @@
-"""The whole of a trace once more, from its raw readings and from the words of its definition, in plain floats.
+"""The whole of a trace once more, from its raw readings and from the words of its definition, in
+plain floats.
 
-`true_course` plays the robot from the draws; `believed` filters what a trace says that the robot measured. Nothing of
-ekfsim is used but the description of the world.
+`true_course` plays the robot from the draws; `believed` filters what a trace says that the robot
+measured. Nothing of ekfsim is used but the description of the world.
 """
 
 import math
@@ -30,12 +31,17 @@ def wrapped(angle):
 
 
 class Edges:
-    """The edges of a map, each with its polygon, its number there and the straight line it lies on."""
+    """The edges of a map, each with its polygon, its number there and the straight line it lies
+    on."""
 
     def __init__(self, floor_plan):
         everywhere = shapely.box(-1e9, -1e9, 1e9, 1e9)
-        indoors = everywhere if floor_plan.boundary is None else shapely.Polygon(floor_plan.boundary)
-        self.open = indoors - shapely.union_all([shapely.Polygon(o.points) for o in floor_plan.obstacles])
+        indoors = (
+            everywhere if floor_plan.boundary is None else shapely.Polygon(floor_plan.boundary)
+        )
+        self.open = indoors - shapely.union_all(
+            [shapely.Polygon(o.points) for o in floor_plan.obstacles]
+        )
         self.all = []
         for name, ring in floor_plan.rings():
             points = ring.tolist()
@@ -46,7 +52,10 @@ class Edges:
             for number, (a, b) in enumerate(zip(points, points[1:] + points[:1], strict=True)):
                 if a == b:
                     continue
-                same = next((k for k, (p, q) in enumerate(lines) if straight(p, q, a, b, 1e-9 * size)), len(lines))
+                same = next(
+                    (k for k, (p, q) in enumerate(lines) if straight(p, q, a, b, 1e-9 * size)),
+                    len(lines),
+                )
                 if same == len(lines):
                     lines.append((a, b))
                 self.all.append((a, b, name, number, (name, same)))
@@ -58,7 +67,9 @@ class Edges:
         nearest = min((r for r, _ in hits), default=FAR)
         if nearest == FAR:
             return FAR, None
-        return next((nearest, self.all[k]) for r, k in hits if r <= nearest + 1e-12 * (10 + nearest))
+        return next(
+            (nearest, self.all[k]) for r, k in hits if r <= nearest + 1e-12 * (10 + nearest)
+        )
 
     @staticmethod
     def _range(edge, x, y, dx, dy):
@@ -77,7 +88,10 @@ class Edges:
 def straight(p, q, a, b, near):
     """Whether both a and b lie on the line through p and q."""
     length = math.dist(p, q)
-    return all(abs((q[0] - p[0]) * (c[1] - p[1]) - (q[1] - p[1]) * (c[0] - p[0])) <= near * length for c in (a, b))
+    return all(
+        abs((q[0] - p[0]) * (c[1] - p[1]) - (q[1] - p[1]) * (c[0] - p[0])) <= near * length
+        for c in (a, b)
+    )
 
 
 def draws(seed, i, run):
@@ -92,7 +106,10 @@ def true_course(scene):
     world, edges = scene.world, Edges(scene.world.map)
     noise, faults = world.noise, world.faults
     normals, _ = draws(scene.seed, 0, scene.run)
-    x, y, th = (m + s * n for m, s, n in zip(world.start.tolist(), world.start_sigma.tolist(), normals, strict=False))
+    x, y, th = (
+        m + s * n
+        for m, s, n in zip(world.start.tolist(), world.start_sigma.tolist(), normals, strict=False)
+    )
     th = wrapped(th)
     yield {"truth": [x, y, th]}
     i = 0
@@ -113,7 +130,8 @@ def true_course(scene):
             turn = a + noise.execution_angle * abs(a) * n1
             rolled = way / (1 - slip) if slip < 1 else wheels
             line["odometry"] = {
-                "distance": faults.odometry_distance_scale * rolled + noise.odometry_distance * abs(rolled) * n2,
+                "distance": faults.odometry_distance_scale * rolled
+                + noise.odometry_distance * abs(rolled) * n2,
                 "angle": faults.odometry_angle_scale * turn + noise.odometry_angle * abs(turn) * n3,
             }
             x, y, th = x + way * math.cos(th), y + way * math.sin(th), wrapped(th + turn)
@@ -123,13 +141,20 @@ def true_course(scene):
             r, _ = edges.first(x, y, th + command.angle)
             if u0 < faults.short_returns:
                 r = u1 * r
-            reading = faults.range_scale * r + faults.range_bias + noise.range * r * n0 if r < FAR else FAR
+            reading = (
+                faults.range_scale * r + faults.range_bias + noise.range * r * n0
+                if r < FAR
+                else FAR
+            )
             line["range"] = max(0.0, reading) if r < FAR else None
         yield {**line, "truth": [x, y, th]}
 
 
 def product(A, B):
-    return [[sum(a * b for a, b in zip(row, column, strict=True)) for column in zip(*B, strict=True)] for row in A]
+    return [
+        [sum(a * b for a, b in zip(row, column, strict=True)) for column in zip(*B, strict=True)]
+        for row in A
+    ]
 
 
 def transposed(A):
@@ -161,7 +186,12 @@ def believed(scene, lines, confidence):
         else:
             mean, P, said = sensed(mean, P, line, edges, noise.range, scene.guard, scene.gate)
         posterior = {"mean": mean, "covariance": P}
-        yield {**said, "prior": prior, "posterior": posterior, **judged(mean, P, line["truth"], confidence)}
+        yield {
+            **said,
+            "prior": prior,
+            "posterior": posterior,
+            **judged(mean, P, line["truth"], confidence),
+        }
 
 
 def moved(mean, P, odometry, noise):
@@ -172,7 +202,11 @@ def moved(mean, P, odometry, noise):
     G = [[math.cos(th), 0], [math.sin(th), 0], [0, 1]]
     Pu = [[(noise.odometry_distance * d) ** 2, 0], [0, (noise.odometry_angle * a) ** 2]]
     P = halved(total(product(product(F, P), transposed(F)), product(product(G, Pu), transposed(G))))
-    return [x + d * math.cos(th), y + d * math.sin(th), wrapped(th + a)], P, {"F": F, "G": G, "M": Pu}
+    return (
+        [x + d * math.cos(th), y + d * math.sin(th), wrapped(th + a)],
+        P,
+        {"F": F, "G": G, "M": Pu},
+    )
 
 
 def sensed(mean, P, line, edges, ratio, guard, gate):
@@ -181,8 +215,16 @@ def sensed(mean, P, line, edges, ratio, guard, gate):
     bearing, z = line["command"]["angle"], line["range"]
     h, edge = edges.first(x, y, th + bearing)
     ambiguous = is_ambiguous(mean, P, bearing, edges, edge)
-    undefined = dict.fromkeys(("H", "innovation", "innovation_variance", "gain", "nis", "incidence", "wall"))
-    said = {**undefined, "predicted_range": None, "range_variance": None, "updated": False, "ambiguous": ambiguous}
+    undefined = dict.fromkeys(
+        ("H", "innovation", "innovation_variance", "gain", "nis", "incidence", "wall")
+    )
+    said = {
+        **undefined,
+        "predicted_range": None,
+        "range_variance": None,
+        "updated": False,
+        "ambiguous": ambiguous,
+    }
     if edge is None:
         return mean, P, {**said, "refused": "no echo" if z is None else "no wall"}
     (ax, ay), (bx, by), name, number, _ = edge
@@ -224,7 +266,8 @@ def sensed(mean, P, line, edges, ratio, guard, gate):
 
 
 def is_ambiguous(mean, P, bearing, edges, edge):
-    """Whether a beam from one of the six poses 3σ away meets another wall line than the mean's does."""
+    """Whether a beam from one of the six poses 3σ away meets another wall line than the mean's
+    does."""
     vectors, variances, _ = np.linalg.svd(np.array(P))  # of a covariance: its eigenpairs
     own = edge and edge[4]
     for variance, vector in zip(variances.tolist(), vectors.T.tolist(), strict=True):
@@ -240,13 +283,16 @@ def is_ambiguous(mean, P, bearing, edges, edge):
 
 
 def possible(open_floor, mean, arm):
-    """How far along an arm the last place lies where a robot can stand, 1 mm clear of what stops it; 0 if nowhere."""
+    """How far along an arm the last place lies where a robot can stand, 1 mm clear of what stops
+    it; 0 if nowhere."""
     x, y, dx, dy = *mean[:2], *arm[:2]
     if open_floor.intersects(shapely.Point(x + dx, y + dy)):
         return 1.0
     way = open_floor.intersection(shapely.LineString([(x, y), (x + dx, y + dy)]))
     length = math.hypot(dx, dy)
-    parts = [shapely.get_coordinates(part) - (x, y) for part in shapely.get_parts(way) if part.length > 0]
+    parts = [
+        shapely.get_coordinates(part) - (x, y) for part in shapely.get_parts(way) if part.length > 0
+    ]
     spans = [sorted((ends @ (dx, dy)) / length) for ends in parts]
     if not spans:
         return 0.0
@@ -264,13 +310,23 @@ def judged(mean, P, truth, confidence):
     if small <= 1e-15 * middle:
         small = 0.0
     turned = math.atan2(cross, half) / 2 % math.pi if spread > 1e-12 * middle else None
-    drawn = {"major": k * math.sqrt(middle + spread), "minor": k * math.sqrt(small), "orientation": turned}
+    drawn = {
+        "major": k * math.sqrt(middle + spread),
+        "minor": k * math.sqrt(small),
+        "orientation": turned,
+    }
     value, dof, impossible = squared_error(mean, P, truth)
-    return {"ellipse": drawn, "nees": None if impossible else value, "nees_dof": dof, "impossible": impossible}
+    return {
+        "ellipse": drawn,
+        "nees": None if impossible else value,
+        "nees_dof": dof,
+        "impossible": impossible,
+    }
 
 
 def squared_error(mean, P, truth):
-    """eᵀ P⁺ e, the rank of P, and whether the error leaves its range, by singular values and least squares."""
+    """eᵀ P⁺ e, the rank of P, and whether the error leaves its range, by singular values and least
+    squares."""
     e = np.array([mean[0] - truth[0], mean[1] - truth[1], wrapped(mean[2] - truth[2])])
     P = np.array(P)
     alive = [i for i in range(3) if P[i, i] > 1e-24]  # what is less is rounding
@@ -288,15 +344,22 @@ def squared_error(mean, P, truth):
 
 
 def disagreements(got, expected, where="", tolerance=1e-9):
-    """Every place where a line of a trace is not what it must be; numbers agree to 1e-9, or as much of their size."""
+    """Every place where a line of a trace is not what it must be; numbers agree to 1e-9, or as much
+    of their size."""
     if isinstance(expected, dict):
-        return [d for key in expected for d in disagreements(got[key], expected[key], f"{where}.{key}", tolerance)]
+        return [
+            d
+            for key in expected
+            for d in disagreements(got[key], expected[key], f"{where}.{key}", tolerance)
+        ]
     if isinstance(expected, list | tuple) and isinstance(got, list):
         pairs = enumerate(zip(got, expected, strict=True))
         return [d for i, (g, e) in pairs for d in disagreements(g, e, f"{where}[{i}]", tolerance)]
     if where.endswith(".orientation"):
         return (
-            [] if expected is None or same_direction(got, expected, tolerance) else [f"{where}: {got}, not {expected}"]
+            []
+            if expected is None or same_direction(got, expected, tolerance)
+            else [f"{where}: {got}, not {expected}"]
         )
     if where.endswith(("mean[2]", "truth[2]")) and abs(wrapped(got - expected)) <= tolerance:
         return []

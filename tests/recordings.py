@@ -8,12 +8,12 @@ from scenes import ROOM, world
 
 from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.landmarks import MarkerAngles, RangeOnly
 from ekfsim.models.layout import SPEED_POSE
-from ekfsim.models.position import Position
-from ekfsim.models.ultrasonic import UltrasonicBeam
-from ekfsim.models.wheel_speeds import WheelSpeeds
-from ekfsim.models.wheels import GyroWheels
+from ekfsim.models.motions.wheel_speeds import WheelSpeeds
+from ekfsim.models.motions.wheels import GyroWheels
+from ekfsim.models.sensors.landmarks import MarkerAngles, RangeOnly
+from ekfsim.models.sensors.position import Position
+from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.scene import Scene
 from ekfsim.systems import SYSTEMS
@@ -52,7 +52,9 @@ def recording(entries=MOWER, first=FIRST, **settings):
     """A recorded mower. Its sensors are those of several robots, so that each has its turn."""
     robot, instruments = SYSTEMS["mower"].robot, SYSTEMS["mower"].instruments
     place = replace(world(), system="mower", robot=robot, instruments=instruments)
-    return Scene(place, log=Log(tuple(entries), first), log_source="log.csv", **{"gate": 0.999, **settings})
+    return Scene(
+        place, log=Log(tuple(entries), first), log_source="log.csv", **{"gate": 0.999, **settings}
+    )
 
 
 SPEEDS = WheelSpeeds(0.27, 0.1, 0.3)
@@ -60,13 +62,16 @@ SPEED_FIRST = Gaussian(np.array([0.0, 0.1, 1.0, 2.0]), np.diag([1.0, 0.05, 0.05,
 
 
 def speeds(inputs, fixes, dt=0.1):
-    """A recorded lawn mower: so many wheel speeds, and a fix after every `fixes` of them. No truth is known."""
+    """A recorded lawn mower: so many wheel speeds, and a fix after every `fixes` of them. No truth
+    is known."""
     entries, t = [Entry(0, None, t=0.0)], 0.0
     for k in range(1, inputs + 1):
         t = k * dt
         entries.append(Entry(len(entries), Control(SPEEDS, np.array([0.9, 1.1, dt])), t=t))
         if k % fixes == 0:
             z = np.array([1.0 + t, 2.0 + 0.1 * t])
-            entries.append(Entry(len(entries), Reading(Position(0.15, 0.15, SPEED_POSE), z, "gnss"), t=t))
+            entries.append(
+                Entry(len(entries), Reading(Position(0.15, 0.15, SPEED_POSE), z, "gnss"), t=t)
+            )
     place = replace(world(), system="gnss", robot=SYSTEMS["gnss"].robot)
     return Scene(place, log=Log(tuple(entries), SPEED_FIRST))

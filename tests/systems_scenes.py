@@ -12,7 +12,10 @@ from ekfsim.systems.drives import Circle, Square
 from ekfsim.systems.instruments import Bearings, Compass, Gyro, Infrared, Landmark, Ultrasonic
 from ekfsim.world import Map, Obstacle, Told, World
 
-FIELD = tuple(Landmark(i, float(x), float(y)) for i, (x, y) in enumerate([(3, 3), (3, -3), (-3, 3), (-3, -3), (6, 0)]))
+FIELD = tuple(
+    Landmark(i, float(x), float(y))
+    for i, (x, y) in enumerate([(3, 3), (3, -3), (-3, 3), (-3, -3), (6, 0)])
+)
 CELLAR = Map(
     np.array([[-1, -1], [3.2, -1], [3.2, 3.2], [-1, 3.2]]),
     (Obstacle("crate", np.array([[0.6, 0.7], [1.3, 0.7], [1.3, 1.4], [0.6, 1.4]])),),
@@ -20,12 +23,21 @@ CELLAR = Map(
 SQUARE = np.array([[0, 0], [2, 0], [2, 2], [0, 2.0]])
 
 
-def driven(system, drive, start=(0.0, 0.0, 0.0), floor=Map(), instruments=None, landmarks=FIELD, **settings):  # noqa: B008
+def driven(
+    system,
+    drive,
+    start=(0.0, 0.0, 0.0),
+    floor=Map(),  # noqa: B008
+    instruments=None,
+    landmarks=FIELD,
+    **settings,
+):
     """A robot of a system that is driven along a way."""
     made = SYSTEMS[system]
     start = np.array(start, float)
     world = World(
-        system, floor, start, np.zeros(3), SILENT, Told(start, np.zeros(3), SILENT, floor), landmarks=landmarks,
+        system, floor, start, np.zeros(3), SILENT, Told(start, np.zeros(3), SILENT, floor),
+        landmarks=landmarks,
         system=system, robot=made.robot, instruments=instruments or made.instruments,
     )  # fmt: skip
     return Scene(world, drive=drive, **settings)
@@ -56,23 +68,31 @@ def gnss(**settings):
 
 
 def pylon(**settings):
-    made = driven("pylon", Square(2.0, 1.0, math.radians(90)), landmarks=(Landmark(1, 1.0, 1.0),), **settings)
+    made = driven(
+        "pylon", Square(2.0, 1.0, math.radians(90)), landmarks=(Landmark(1, 1.0, 1.0),), **settings
+    )
     return replace(made, world=replace(made.world, expected_path=SQUARE))
 
 
 def ultrasonic(**settings):
     drive = Square(2.0, 1.0, math.radians(90))
-    return driven("pioneer", drive, floor=CELLAR, landmarks=(), instruments=(Ultrasonic(),), **settings)
+    return driven(
+        "pioneer", drive, floor=CELLAR, landmarks=(), instruments=(Ultrasonic(),), **settings
+    )
 
 
 def infrared(**settings):
     drive = Square(2.0, 1.0, math.radians(90))
-    return driven("pioneer", drive, floor=CELLAR, landmarks=(), instruments=(Infrared(),), **settings)
+    return driven(
+        "pioneer", drive, floor=CELLAR, landmarks=(), instruments=(Infrared(),), **settings
+    )
 
 
 def yaws(**settings):
     drive = Square(2.0, 1.0, math.radians(90))
-    return driven("pioneer", drive, floor=CELLAR, landmarks=(), instruments=(Compass(), Gyro(5.0)), **settings)
+    return driven(
+        "pioneer", drive, floor=CELLAR, landmarks=(), instruments=(Compass(), Gyro(5.0)), **settings
+    )
 
 
 SCENES = (mower, bearings, landmarks, ranges, gnss, pylon, ultrasonic, infrared, yaws)

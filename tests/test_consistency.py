@@ -7,7 +7,16 @@ from hypothesis import strategies as st
 from numerics import covariance
 from scipy.stats import chi2
 
-from ekfsim.consistency import Evidence, Verdict, error, inside_cone, inside_ellipse, lost, nees, squared_error
+from ekfsim.consistency import (
+    Evidence,
+    Verdict,
+    error,
+    inside_cone,
+    inside_ellipse,
+    lost,
+    nees,
+    squared_error,
+)
 from ekfsim.filters.belief import Correction, Gaussian
 from ekfsim.filters.chi_square import band, quantile
 from ekfsim.geometry.ellipse import radius_factor
@@ -95,7 +104,8 @@ def test_what_rounding_leaves_of_a_variance_is_none(left):
 
 
 def test_a_heading_that_moves_the_position_too():
-    """The end of a straight way whose heading was uncertain: y = 5 θ. One degree of freedom, both errors or none."""
+    """The end of a straight way whose heading was uncertain: y = 5 θ. One degree of freedom, both
+    errors or none."""
     P = 0.01**2 * np.array([[0, 0, 0], [0, 25, 5], [0, 5, 1.0]])
     assert judge(P, [0, 0.1, 0.02]).dof == 1
     assert value(P, [0, 0.1, 0.02]) == pytest.approx(4)
@@ -105,7 +115,11 @@ def test_a_heading_that_moves_the_position_too():
 @given(seeds, st.floats(-4, 4))
 def test_neither_metres_nor_radians_decide(seed, power):
     random = np.random.default_rng(seed)
-    P, e, scale = covariance(random, 3) + 0.1 * np.eye(3), random.normal(size=3), np.array([10**power, 1, 1])
+    P, e, scale = (
+        covariance(random, 3) + 0.1 * np.eye(3),
+        random.normal(size=3),
+        np.array([10**power, 1, 1]),
+    )
     assert value(P * np.outer(scale, scale), e * scale) == pytest.approx(value(P, e), rel=1e-8)
     assert judge(P * np.outer(scale, scale), e * scale).dof == 3
 
@@ -163,14 +177,20 @@ def test_one_belief_is_judged_as_in_a_batch(seed, power):
 
 def test_errors_of_headings_go_the_short_way_round():
     belief = Gaussian(np.array([1.0, 2.0, 3.1]), np.eye(3))
-    assert error(belief, np.array([0.5, 2.5, -3.1])) == pytest.approx([0.5, -0.5, 6.2 - 2 * math.pi])
+    assert error(belief, np.array([0.5, 2.5, -3.1])) == pytest.approx(
+        [0.5, -0.5, 6.2 - 2 * math.pi]
+    )
     assert belief.mean[2] == 3.1
     assert nees(belief, np.array([1, 2, -3.1])).value == pytest.approx((6.2 - 2 * math.pi) ** 2)
 
 
 def in_ellipse(P, e, p=0.954):
     return bool(
-        inside_ellipse(Gaussian(np.array([*e, 9.0]), np.pad(np.array(P, float), (0, 1))), np.array([0, 0, 1.0]), p)
+        inside_ellipse(
+            Gaussian(np.array([*e, 9.0]), np.pad(np.array(P, float), (0, 1))),
+            np.array([0, 0, 1.0]),
+            p,
+        )
     )
 
 
@@ -193,7 +213,11 @@ def test_inside_an_ellipse_without_width():
 
 
 def in_cone(variance, e, p=0.954):
-    return bool(inside_cone(Gaussian(np.array([9, 9, e]), np.diag([1, 1, variance])), np.array([1.0, 1.0, 0.0]), p))
+    return bool(
+        inside_cone(
+            Gaussian(np.array([9, 9, e]), np.diag([1, 1, variance])), np.array([1.0, 1.0, 0.0]), p
+        )
+    )
 
 
 def test_inside_the_cone():
@@ -236,7 +260,11 @@ FINE, BAD = measured(1.0), measured(99.0)
 
 def step(index, nees=None, nis=None):
     one = np.ones((1, 1))
-    correction = None if nis is None else Correction(one[0], one[0], one, one, one, one, np.array(nis), np.array(0))
+    correction = (
+        None
+        if nis is None
+        else Correction(one[0], one[0], one, one, one, one, np.array(nis), np.array(0))
+    )
     return Step(Entry(index, None), BELIEF, BELIEF, correction=correction, nees=nees)
 
 

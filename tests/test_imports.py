@@ -9,7 +9,9 @@ import ekfsim.cli
 
 PACKAGE = Path(ekfsim.cli.__file__).parent
 MODULES = {
-    ".".join(("ekfsim", *path.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(".__init__"): path
+    ".".join(("ekfsim", *path.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(
+        ".__init__"
+    ): path
     for path in PACKAGE.rglob("*.py")
     if "_packaged" not in path.parts
 }
@@ -34,7 +36,8 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"progress", "asked"},
     {"cli", "ekfsim"},
 )
-CORE = {"geometry", "models", "filters", "systems", "world", "records", "scene", "consistency", "summary", "provenance",
+CORE = {"geometry", "models", "filters", "systems", "world", "records", "scene", "consistency",
+    "summary", "provenance",
         "simulation", "localization"}  # fmt: skip
 EXTRAS = ("numba", "av", "distributed", "dask")
 HEAVY = ("numpy", "matplotlib", "PIL", "pydantic", "shapely", "yaml", "scipy", *EXTRAS)
@@ -50,7 +53,8 @@ def level(room):
 
 
 def imported(tree):
-    """Modules that a piece of source imports, with the names of `from … import …` joined where they are modules."""
+    """Modules that a piece of source imports, with the names of `from … import …` joined where they
+    are modules."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -62,7 +66,8 @@ def imported(tree):
 
 
 def at_module_level(path):
-    """Imports that run when a module is imported: not those in functions, nor those for type checkers."""
+    """Imports that run when a module is imported: not those in functions, nor those for type
+    checkers."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     for node in tree.body:
         if isinstance(node, ast.Import | ast.ImportFrom):
@@ -111,11 +116,14 @@ def is_compiled(module):
 
 
 @pytest.mark.parametrize(
-    "module", [module for module in MODULES if room_of(module) in CORE | {"errors", "printable", "version"}]
+    "module",
+    [module for module in MODULES if room_of(module) in CORE | {"errors", "printable", "version"}],
 )
 def test_the_core_needs_numpy_alone(module):
     allowed = {"numpy", "numba"} if is_compiled(module) else {"numpy"}
-    assert {name.partition(".")[0] for name in at_module_level(MODULES[module])} & set(HEAVY) <= allowed
+    assert {name.partition(".")[0] for name in at_module_level(MODULES[module])} & set(
+        HEAVY
+    ) <= allowed
 
 
 @pytest.mark.parametrize("module", MODULES)
@@ -142,11 +150,18 @@ DRAWING = {"ekfsim.filters.pf", *(module for module in MODULES if room_of(module
 
 @pytest.mark.parametrize("module", [module for module in MODULES if room_of(module) in CORE])
 def test_only_the_simulation_and_the_particle_filter_draw_random_numbers(module):
-    """Others may name the type of a generator; the particle filter draws from those that it is handed."""
+    """Others may name the type of a generator; the particle filter draws from those that it is
+    handed."""
     tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
-    calls = [node.func.attr for node in ast.walk(tree) if isinstance(node, ast.Call) and hasattr(node.func, "attr")]
+    calls = [
+        node.func.attr
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and hasattr(node.func, "attr")
+    ]
     if module not in DRAWING:
-        assert not {"random", "standard_normal", "normal", "uniform", "integers", "choice"} & set(calls)
+        assert not {"random", "standard_normal", "normal", "uniform", "integers", "choice"} & set(
+            calls
+        )
     if room_of(module) != "simulation":
         assert not any(name.startswith("numpy.random") for name in at_module_level(MODULES[module]))
         assert not {"default_rng", "Generator", "seed"} & set(calls)
@@ -154,11 +169,17 @@ def test_only_the_simulation_and_the_particle_filter_draw_random_numbers(module)
 
 @pytest.mark.parametrize(
     "program",
-    ["import ekfsim", "import sys; sys.argv = ['ekfsim', '--help']; import ekfsim.cli; ekfsim.cli.main()"],
+    [
+        "import ekfsim",
+        "import sys; sys.argv = ['ekfsim', '--help']; import ekfsim.cli; ekfsim.cli.main()",
+    ],
     ids=["import ekfsim", "ekfsim --help"],
 )
 def test_a_start_is_light(program):
     """The last line of the error stream lists what was imported."""
-    told = f"import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr)); {program}"
+    told = (
+        f"import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr)); "
+        f"{program}"
+    )
     done = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True)
     assert not set(done.stderr.split()) & set(HEAVY)

@@ -25,7 +25,9 @@ def test_the_first_belief_is_what_the_filter_is_told():
         belief = first_belief(made, axes)
         assert belief.mean.shape == (*axes, 3)
         assert (belief.mean == [2.0, 3.0, 0.4]).all()
-        assert belief.covariance == pytest.approx(np.broadcast_to(np.diag([0.01, 0.04, 0.09]), (*axes, 3, 3)))
+        assert belief.covariance == pytest.approx(
+            np.broadcast_to(np.diag([0.01, 0.04, 0.09]), (*axes, 3, 3))
+        )
 
 
 def test_what_the_filter_is_not_told_leaves_the_belief_alone():
@@ -39,7 +41,9 @@ def test_what_the_filter_is_not_told_leaves_the_belief_alone():
 def test_a_log_without_truth_is_filtered_alike_and_judged_by_no_one():
     made = rich(gate=0.99)
     known = list(play(made))
-    recorded = [dataclasses.replace(entry, truth=None, command=None, bump=None) for entry in simulate(made)]
+    recorded = [
+        dataclasses.replace(entry, truth=None, command=None, bump=None) for entry in simulate(made)
+    ]
     for step, blind in zip(known, localize(recorded, EKF(0.99), first_belief(made)), strict=True):
         assert (step.posterior.mean == blind.posterior.mean).all()
         assert (step.posterior.covariance == blind.posterior.covariance).all()
@@ -49,8 +53,13 @@ def test_a_log_without_truth_is_filtered_alike_and_judged_by_no_one():
 def test_the_truth_reaches_no_belief():
     """Another true world with the same readings: the same beliefs."""
     made = rich()
-    lied = [dataclasses.replace(e, truth=None if e.truth is None else e.truth + 1) for e in simulate(made)]
-    for step, other in zip(play(made), localize(lied, EKF(made.gate), first_belief(made)), strict=True):
+    lied = [
+        dataclasses.replace(e, truth=None if e.truth is None else e.truth + 1)
+        for e in simulate(made)
+    ]
+    for step, other in zip(
+        play(made), localize(lied, EKF(made.gate), first_belief(made)), strict=True
+    ):
         assert (step.posterior.mean == other.posterior.mean).all()
 
 
@@ -111,7 +120,8 @@ def test_a_study_looks_along_a_beam_only_where_the_guard_must_know():
 
 def test_the_gate_of_the_scene_is_the_gate_of_the_filter():
     refused = {
-        g: sum(s.correction.refused == Refused.GATE for s in play(rich(gate=g)) if s.correction) for g in (None, 0.5)
+        g: sum(s.correction.refused == Refused.GATE for s in play(rich(gate=g)) if s.correction)
+        for g in (None, 0.5)
     }
     assert refused[None] == 0 < refused[0.5]
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 import ekfsim
-from ekfsim.files.load import read_scene
 from ekfsim.files.packaged import resolve
-from ekfsim.files.settings import setting
+from ekfsim.files.scenes.load import read_scene
+from ekfsim.files.scenes.settings import setting
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 
@@ -23,8 +23,13 @@ def test_the_cells_of_the_readme_do_what_they_say(capsys):
     assert capsys.readouterr().out.startswith("==>Commanding the robot to sense")
     assert names["views"][6].beam
     assert not any(view.beam for view in names["views"][:6])
-    told = read_scene(resolve("tour", "commands"), settings=[setting("noise.rangeSigmaRatio=0.1")]).get()
-    assert (names["world"].noise, names["world"].told.noise) == (told.world.noise, told.world.told.noise)
+    told = read_scene(
+        resolve("tour", "commands"), settings=[setting("noise.rangeSigmaRatio=0.1")]
+    ).get()
+    assert (names["world"].noise, names["world"].told.noise) == (
+        told.world.noise,
+        told.world.told.noise,
+    )
     for ours, theirs in zip(ekfsim.play(names["scene"]), ekfsim.play(told), strict=True):
         np.testing.assert_array_equal(ours.posterior.mean, theirs.posterior.mean)
 

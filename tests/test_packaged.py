@@ -1,4 +1,5 @@
-"""What the packaged inputs say of themselves is so: closed forms by hand, figures measured over hundreds of runs."""
+"""What the packaged inputs say of themselves is so: closed forms by hand, figures measured over
+hundreds of runs."""
 
 import math
 from dataclasses import replace
@@ -10,8 +11,8 @@ from numpy.testing import assert_allclose
 from scipy.stats import chi2
 
 from ekfsim.consistency import Evidence, Verdict
-from ekfsim.files.load import check, read_scene
 from ekfsim.files.packaged import description_of, folder, packaged
+from ekfsim.files.scenes.load import check, read_scene
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import cone_halfwidth, ellipse
 from ekfsim.localization import play
@@ -23,7 +24,8 @@ from ekfsim.study.plan import Case
 from ekfsim.study.results import Result
 
 FOUND = {name: check(path).get() for name, path in packaged("commands").items()}
-COMMANDS = [name for name, scene in FOUND.items() if scene.world.system == "classroom"]  # the others: tests/systems
+# the others: tests/systems
+COMMANDS = [name for name, scene in FOUND.items() if scene.world.system == "classroom"]
 PROOFS = [name for name in COMMANDS if name.startswith("proof-")]
 DIVERGENCES = [name for name in COMMANDS if name.startswith("diverge-")]
 K = math.sqrt(-2 * math.log(1 - 0.954))  # standard deviations to the edge of the 95.4 % ellipse
@@ -42,7 +44,11 @@ def steps(name: str) -> list[Step]:
 
 def covariances(name: str) -> list[Array]:
     """P after each step in which something was given to the filter, and at the start."""
-    return [step.posterior.covariance for step in steps(name) if step.entry.given or step.entry.index == 0]
+    return [
+        step.posterior.covariance
+        for step in steps(name)
+        if step.entry.given or step.entry.index == 0
+    ]
 
 
 def senses(name: str) -> list[Step]:
@@ -89,7 +95,9 @@ def test_every_file_is_right_and_described(kind):
 
 
 def test_every_world_is_used():
-    used = {scene.world_source.removeprefix("worlds/").removesuffix(".yaml") for scene in FOUND.values()}
+    used = {
+        scene.world_source.removeprefix("worlds/").removesuffix(".yaml") for scene in FOUND.values()
+    }
     assert used == set(packaged("worlds"))
 
 
@@ -103,7 +111,9 @@ def test_every_scene_runs_to_its_end_and_bumps_into_nothing(name):
 
 @pytest.mark.parametrize("name", [name for name in COMMANDS if scene(name).expect])
 def test_every_promise_of_a_file_is_kept(name):
-    kept = {finding.name: finding.kept for finding in verified(studied(name, scene(name).expect.runs))}
+    kept = {
+        finding.name: finding.kept for finding in verified(studied(name, scene(name).expect.runs))
+    }
     assert kept == dict.fromkeys(kept, True)
 
 
@@ -181,7 +191,9 @@ def test_the_tour_ends_a_few_centimetres_off_where_the_odometry_alone_is_far_off
             (x, y, θ), (d, a) = reckoned, step.entry.given.u
             reckoned = np.array([x + d * math.cos(θ), y + d * math.sin(θ), θ + a])
     truth = steps("tour")[-1].entry.truth
-    assert math.dist(steps("tour")[-1].posterior.mean[:2], truth[:2]) == pytest.approx(0.02, abs=0.005)
+    assert math.dist(steps("tour")[-1].posterior.mean[:2], truth[:2]) == pytest.approx(
+        0.02, abs=0.005
+    )
     assert math.dist(reckoned[:2], truth[:2]) == pytest.approx(0.64, abs=0.005)
 
 
@@ -192,7 +204,9 @@ def test_the_square_is_consistent():
 def test_distance_noise_makes_a_line_that_grows_like_a_hypotenuse():
     for P, σ in zip(covariances("proof-distance-noise"), (0, 0.3, 0.5), strict=True):
         c, s = math.cos(math.radians(30)), math.sin(math.radians(30))
-        assert_allclose(P, σ**2 * np.array([[c * c, c * s, 0], [c * s, s * s, 0], [0, 0, 0]]), atol=1e-12)
+        assert_allclose(
+            P, σ**2 * np.array([[c * c, c * s, 0], [c * s, s * s, 0], [0, 0, 0]]), atol=1e-12
+        )
         assert radii(P) == pytest.approx((2.4816 * σ, 0), abs=5e-5)
 
 
@@ -221,7 +235,10 @@ def test_two_opposite_beams_undo_a_bias():
         x, P = x + sign * gain * (4.1 - h), (1 - gain) * P
         assert step.posterior.mean[0] == pytest.approx(x, abs=1e-12)
         assert step.posterior.covariance[0, 0] == pytest.approx(P, abs=1e-12)
-    assert [round(step.posterior.mean[0], 4) for step in senses("proof-two-beams")] == [3.95, 4.0008]
+    assert [round(step.posterior.mean[0], 4) for step in senses("proof-two-beams")] == [
+        3.95,
+        4.0008,
+    ]
     assert math.sqrt(P) == pytest.approx(0.115, abs=5e-4)
 
 
@@ -267,7 +284,10 @@ def test_without_noise_the_estimate_is_the_truth():
     assert_allclose(steps("proof-no-noise")[1].posterior.mean, [1, 5, 0], atol=1e-12)
     assert senses("proof-no-noise")[0].entry.given.z[0] == pytest.approx(7)
     assert all(np.isnan(step.correction.nis) for step in senses("proof-no-noise"))
-    assert {step.entry.given.sensor.walls.name(int(step.sighting.wall))[0] for step in senses("proof-no-noise")} == {
+    assert {
+        step.entry.given.sensor.walls.name(int(step.sighting.wall))[0]
+        for step in senses("proof-no-noise")
+    } == {
         "boundary",
         "desk",
     }
@@ -295,9 +315,12 @@ def test_position_and_heading_err_together():
     driven, sensed = covariances("theta")[1], covariances("theta")[2]
     d, σ = steps("theta")[1].entry.given.u[0], math.radians(6)
     assert d == pytest.approx(6, abs=0.2)
-    assert_allclose(driven[1:, 1:], [[0.1**2 + (d * σ) ** 2, d * σ**2], [d * σ**2, σ**2]], rtol=1e-9)
+    assert_allclose(
+        driven[1:, 1:], [[0.1**2 + (d * σ) ** 2, d * σ**2], [d * σ**2, σ**2]], rtol=1e-9
+    )
     assert driven[1, 1] - driven[1, 2] ** 2 / driven[2, 2] == pytest.approx(0.1**2)
-    aside = driven[1, 2] / driven[2, 2] * 2 * σ  # where the robot would stand, were the heading at the edge of its cone
+    # where the robot would stand, were the heading at the edge of its cone
+    aside = driven[1, 2] / driven[2, 2] * 2 * σ
     readme = " ".join((folder("commands").parent / "README.md").read_text(encoding="utf-8").split())
     assert f"stand {aside:.2f} m further left (dashed)" in readme
     (beam,) = senses("theta")
@@ -323,7 +346,10 @@ def test_the_wrong_wall_is_told_before_it_is_believed():
     first_lost = evidence("diverge-01-wrong-wall").lost_from
     step = steps("diverge-01-wrong-wall")[first_lost]
     assert step.sighting.ambiguous
-    assert (round(float(step.correction.predicted[0]), 2), round(float(step.entry.given.z[0]), 2)) == (1.11, 5.38)
+    assert (
+        round(float(step.correction.predicted[0]), 2),
+        round(float(step.entry.given.z[0]), 2),
+    ) == (1.11, 5.38)
     assert step.correction.nis == pytest.approx(82, abs=0.5)
 
 

@@ -12,8 +12,8 @@ from systems_scenes import mower
 from ekfsim.errors import UsageError
 from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
-from ekfsim.models.laser import Laser
-from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.motions.move_turn import MoveTurn
+from ekfsim.models.sensors.laser import Laser
 from ekfsim.records import Control, Kidnap, Move, Reading, Repeat, Say, Sense
 from ekfsim.simulation import simulate
 from ekfsim.simulation.draws import Draws, particle_generators
@@ -63,19 +63,36 @@ commands = st.one_of(
 @given(st.lists(commands, max_size=12), st.integers(0, 2**32 - 1), st.integers(0, 3000))
 def test_any_course(course, seed, run):
     faults = Faults(-0.4, 0.9, 0.3, 1.1, 0.8)
-    check(scene(*course, seed=seed, run=run, obstacles=(DESK,), sigma=(0.2, 0.1, 2.0), faults=faults))
+    check(
+        scene(*course, seed=seed, run=run, obstacles=(DESK,), sigma=(0.2, 0.1, 2.0), faults=faults)
+    )
 
 
 def test_the_draws_word_for_word():
-    """The start takes normals 0 to 2 of draw 0; the first sense, in a room without scale, normal 0 of draw 1."""
-    made = scene(Say("nothing is drawn for this"), Sense(TURN), seed=7, start=(5, 4, 0), noise=Noise(0, 0, 0, 0, 1e-3))
-    spread = dataclasses.replace(made, world=dataclasses.replace(made.world, start_sigma=np.array([1, 1, 1e-3])))
+    """The start takes normals 0 to 2 of draw 0; the first sense, in a room without scale, normal 0
+    of draw 1."""
+    made = scene(
+        Say("nothing is drawn for this"),
+        Sense(TURN),
+        seed=7,
+        start=(5, 4, 0),
+        noise=Noise(0, 0, 0, 0, 1e-3),
+    )
+    spread = dataclasses.replace(
+        made, world=dataclasses.replace(made.world, start_sigma=np.array([1, 1, 1e-3]))
+    )
     for b, rows in ((0, [0, 1, 1023]), (1, [1024, 1030, 2047]), (3, [4000])):
-        started = np.random.Generator(np.random.PCG64(np.random.SeedSequence([7, 0, b]))).standard_normal((1024, 4))
-        measured = np.random.Generator(np.random.PCG64(np.random.SeedSequence([7, 1, b]))).standard_normal((1024, 4))
+        started = np.random.Generator(
+            np.random.PCG64(np.random.SeedSequence([7, 0, b]))
+        ).standard_normal((1024, 4))
+        measured = np.random.Generator(
+            np.random.PCG64(np.random.SeedSequence([7, 1, b]))
+        ).standard_normal((1024, 4))
         for run in rows:
             start, *_ = simulate(dataclasses.replace(spread, run=run))
-            assert start.truth == pytest.approx([5, 4, 0] + [1, 1, 1e-3] * started[run % 1024, :3], abs=1e-12)
+            assert start.truth == pytest.approx(
+                [5, 4, 0] + [1, 1, 1e-3] * started[run % 1024, :3], abs=1e-12
+            )
             *_, sense = simulate(dataclasses.replace(made, run=run))
             assert sense.given.z == pytest.approx(4 + 0.004 * measured[run % 1024, 0], abs=1e-12)
 
@@ -85,11 +102,15 @@ def course(*commands, **settings):
 
 
 def given_to_the_filter(entries):
-    return [entry.given.u if isinstance(entry.given, Control) else entry.given.z for entry in entries]
+    return [
+        entry.given.u if isinstance(entry.given, Control) else entry.given.z for entry in entries
+    ]
 
 
 def equal(a, b):
-    return all((p == q).all() for p, q in zip(given_to_the_filter(a), given_to_the_filter(b), strict=True))
+    return all(
+        (p == q).all() for p, q in zip(given_to_the_filter(a), given_to_the_filter(b), strict=True)
+    )
 
 
 WALK = (Move(1.0, 0.3), Sense(0.5), Move(0.5, -0.2), Sense(-0.5))
@@ -137,10 +158,14 @@ def test_short_returns_leave_the_noise_of_the_others_alone():
 def test_a_run_alone_is_its_row_of_the_study():
     made, runs = rich(), np.array([0, 7, 1023, 1024, 4100])
     for row, run in enumerate(runs):
-        for one, many in zip(simulate(dataclasses.replace(made, run=int(run))), simulate(made, runs), strict=True):
+        for one, many in zip(
+            simulate(dataclasses.replace(made, run=int(run))), simulate(made, runs), strict=True
+        ):
             assert (one.truth == many.truth[row]).all()
             if one.given is not None:
-                for a, b in zip(given_to_the_filter([one]), given_to_the_filter([many]), strict=True):
+                for a, b in zip(
+                    given_to_the_filter([one]), given_to_the_filter([many]), strict=True
+                ):
                     np.testing.assert_array_equal(a, b[row])
             assert one.bump is None or one.bump == many.bump[row]
 
@@ -167,7 +192,9 @@ def has_moments(sample, mean, sigma):
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_execution_noise_has_its_sigma(sign):
-    (entry,) = sampled(Move(sign * 2.0, sign * 0.5), start=(5, 4, 0), faults=Faults(odometry_distance_scale=1.2))
+    (entry,) = sampled(
+        Move(sign * 2.0, sign * 0.5), start=(5, 4, 0), faults=Faults(odometry_distance_scale=1.2)
+    )
     has_moments(entry.truth[:, 0] - 5, sign * 2, 0.05 * 2)
     has_moments(entry.truth[:, 2], sign * 0.5, 0.04 * 0.5)
     assert entry.truth[:, 1] == pytest.approx(4)
@@ -175,7 +202,9 @@ def test_execution_noise_has_its_sigma(sign):
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_odometry_noise_has_its_sigma(sign):
-    (entry,) = sampled(Move(sign * 2.0, sign * 0.5), start=(5, 4, 0), noise=Noise(0, 0, 0.02, 0.03, 0))
+    (entry,) = sampled(
+        Move(sign * 2.0, sign * 0.5), start=(5, 4, 0), noise=Noise(0, 0, 0.02, 0.03, 0)
+    )
     has_moments(entry.given.u[:, 0], sign * 2, 0.02 * 2)
     has_moments(entry.given.u[:, 1], sign * 0.5, 0.03 * 0.5)
     assert abs(np.corrcoef(entry.given.u.T)[0, 1]) < 5 / math.sqrt(len(RUNS))
@@ -203,8 +232,12 @@ def test_the_start_has_its_sigma():
 def test_errors_of_different_commands_and_seeds_are_independent():
     columns, still = [], Noise(0, 0, 0.02, 0.03, 0.01)
     for seed in (0, 1):
-        for entry in sampled(Move(1.0, 1.0), Move(1.0, 1.0), Sense(0.0), seed=seed, start=(5, 4, 0), noise=still):
-            columns += list((entry.given.u if isinstance(entry.given, Control) else entry.given.z).T)
+        for entry in sampled(
+            Move(1.0, 1.0), Move(1.0, 1.0), Sense(0.0), seed=seed, start=(5, 4, 0), noise=still
+        ):
+            columns += list(
+                (entry.given.u if isinstance(entry.given, Control) else entry.given.z).T
+            )
     assert np.abs(np.corrcoef(columns) - np.eye(10)).max() < 6 / math.sqrt(len(RUNS))
 
 
@@ -227,20 +260,29 @@ def test_a_bump_backwards():
 
 
 def test_bumps_of_a_study_are_those_of_its_runs():
-    made = scene(*[Move(d, 0.7) for d in (20.0, -20.0, -3.0, 3.0, -20.0)], obstacles=(DESK,), sigma=(0.3, 0.3, 0.3))
+    made = scene(
+        *[Move(d, 0.7) for d in (20.0, -20.0, -3.0, 3.0, -20.0)],
+        obstacles=(DESK,),
+        sigma=(0.3, 0.3, 0.3),
+    )
     runs = np.arange(6)
     for entry, *alone in zip(
-        *(simulate(s, r) for s, r in ((made, runs), *((made, np.array(k)) for k in runs))), strict=True
+        *(simulate(s, r) for s, r in ((made, runs), *((made, np.array(k)) for k in runs))),
+        strict=True,
     ):
         if entry.bump is not None:
             assert (entry.bump == [one.bump for one in alone]).all()
-            np.testing.assert_allclose(entry.truth, [one.truth for one in alone], rtol=0, atol=1e-12)
+            np.testing.assert_allclose(
+                entry.truth, [one.truth for one in alone], rtol=0, atol=1e-12
+            )
 
 
 @pytest.mark.parametrize("start", [(9, 4, 0), (5, 7, 90), (1, 4, 180), (5, 1, 270)])
 def test_many_who_go_the_same_way_are_stopped_by_the_same_wall(start):
     x, y, degrees = start
-    made = scene(Move(2.0, math.pi), Move(-3.0, 0.0), noise=SILENT, start=(x, y, math.radians(degrees)))
+    made = scene(
+        Move(2.0, math.pi), Move(-3.0, 0.0), noise=SILENT, start=(x, y, math.radians(degrees))
+    )
     many, one = (list(simulate(made, runs)) for runs in (np.arange(100), np.array(7)))
     for entry, alone in zip(many[1:], one[1:], strict=True):
         assert alone.bump >= 0
@@ -249,7 +291,9 @@ def test_many_who_go_the_same_way_are_stopped_by_the_same_wall(start):
 
 
 def test_a_wall_within_a_millimetre_lets_no_way_forward():
-    entries = exact(Move(20.0, 0.0), Move(1.0, 0.0), Move(0.0, TURN), Move(-1.0, 0.0), start=(5, 4, 0))
+    entries = exact(
+        Move(20.0, 0.0), Move(1.0, 0.0), Move(0.0, TURN), Move(-1.0, 0.0), start=(5, 4, 0)
+    )
     assert [entry.bump >= 0 for entry in entries] == [True, True, False, False]
     assert entries[1].truth == pytest.approx(entries[0].truth)
     assert entries[1].given.u == pytest.approx([0, 0])
@@ -261,7 +305,10 @@ def test_just_short_of_the_wall_is_no_bump():
 
 
 def test_a_bump_is_into_the_true_wall_and_tells_its_obstacle():
-    made = told(scene(Move(9.0, 0.0), start=(1, 3.5, 0), noise=SILENT, obstacles=(DESK,)), map=scene().world.map)
+    made = told(
+        scene(Move(9.0, 0.0), start=(1, 3.5, 0), noise=SILENT, obstacles=(DESK,)),
+        map=scene().world.map,
+    )
     entry = list(simulate(made))[1]
     assert entry.truth[0] == pytest.approx(4 - 0.001)
     assert made.world.map.walls.name(int(entry.bump)) == ("desk", 3)
@@ -289,7 +336,9 @@ def test_slip_and_bump():
 
 def test_faults_of_the_odometry():
     (entry,) = exact(
-        Move(2.0, 0.5), start=(5, 4, 0), faults=Faults(odometry_distance_scale=1.1, odometry_angle_scale=0.9)
+        Move(2.0, 0.5),
+        start=(5, 4, 0),
+        faults=Faults(odometry_distance_scale=1.1, odometry_angle_scale=0.9),
     )
     assert entry.truth == pytest.approx([7, 4, 0.5])
     assert entry.given.u == pytest.approx([2.2, 0.45])
@@ -303,12 +352,19 @@ def test_faults_of_the_laser():
 
 
 def test_short_returns_lie_uniformly_on_the_way():
-    (entry,) = sampled(Sense(TURN), noise=SILENT, start=(5, 4, 0), faults=Faults(short_returns=0.25))
+    (entry,) = sampled(
+        Sense(TURN), noise=SILENT, start=(5, 4, 0), faults=Faults(short_returns=0.25)
+    )
     z = entry.given.z[:, 0]
     short = z[z < 4 - 1e-9]
     assert len(short) / len(z) == pytest.approx(0.25, abs=0.02)
     assert np.quantile(short, [0.25, 0.5, 0.75]) == pytest.approx([1, 2, 3], abs=0.1)
-    assert (sampled(Sense(TURN), noise=SILENT, start=(5, 4, 0), faults=Faults(short_returns=1.0))[0].given.z < 4).all()
+    assert (
+        sampled(Sense(TURN), noise=SILENT, start=(5, 4, 0), faults=Faults(short_returns=1.0))[
+            0
+        ].given.z
+        < 4
+    ).all()
 
 
 def test_no_echo_stays_none_whatever_is_wrong_with_the_laser():
@@ -334,7 +390,9 @@ def test_the_filter_is_given_what_it_is_told_never_the_truth():
     for entry in simulate(made):
         match entry.given:
             case Control(motion, _):
-                assert motion == MoveTurn(made.world.told.noise.odometry_distance, made.world.told.noise.odometry_angle)
+                assert motion == MoveTurn(
+                    made.world.told.noise.odometry_distance, made.world.told.noise.odometry_angle
+                )
             case Reading(Laser() as laser, _):
                 assert isinstance(laser.walls, Walls)
                 assert laser.walls is made.world.told.map.walls
@@ -348,7 +406,9 @@ def test_a_scene_without_commands_is_its_start():
 
 @pytest.mark.parametrize("n", [1, 3])
 def test_headings_of_the_truth_stay_in_range(n):
-    turns = scene(*[Move(0.0, 2.0)] * 20, Kidnap(1, 1, 3 * math.pi), start=(1, 1, 3.0), sigma=(0, 0, 9.0))
+    turns = scene(
+        *[Move(0.0, 2.0)] * 20, Kidnap(1, 1, 3 * math.pi), start=(1, 1, 3.0), sigma=(0, 0, 9.0)
+    )
     for entry in simulate(turns, np.arange(n)):
         assert (entry.truth[:, 2] > -math.pi).all()
         assert (entry.truth[:, 2] <= math.pi).all()
@@ -360,7 +420,8 @@ def test_headings_of_the_truth_stay_in_range(n):
         (-1, "seed -1 is negative; choose one from 0 to 4294967295"),
         (
             2**32,
-            "seed 4294967296 is too large: beyond it NumPy's seed words would repeat the draws of other seeds; choose "
+            "seed 4294967296 is too large: beyond it NumPy's seed words would repeat the draws of "
+            "other seeds; choose "
             "one from 0 to 4294967295",
         ),
     ],
@@ -384,10 +445,16 @@ def test_runs_are_numbered_from_0():
 
 
 def test_no_seed_and_no_run_of_many_bits_has_the_draws_of_another():
-    """The draws of runs that differ in one word of their seed or number, up to the largest there are."""
+    """The draws of runs that differ in one word of their seed or number, up to the largest there
+    are."""
     words = (0, 1, 3, 2**32 - 1)
     runs = np.array([*words, *(2**32 + n for n in words[:3]), 2**62 + 5])
     streams = [Draws(seed, runs).stream(0).normals(1, 1)[0, :, 0] for seed in words]
-    blocks = [Draws(seed, np.array([1024 * n])).normals(i)[0] for seed in words for i in words[:3] for n in runs[:6]]
+    blocks = [
+        Draws(seed, np.array([1024 * n])).normals(i)[0]
+        for seed in words
+        for i in words[:3]
+        for n in runs[:6]
+    ]
     for found in (np.concatenate(streams), np.concatenate(blocks)):
         assert len(set(found.tolist())) == len(found) > 30

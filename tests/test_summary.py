@@ -10,8 +10,8 @@ from recordings import MOWER, entry, recording, speeds, wheels
 from scenes import rich, scene, unbounded
 from scipy.stats import chi2
 
-from ekfsim.files.load import load_scene
-from ekfsim.files.outputs import Outputs
+from ekfsim.files.results.outputs import Outputs
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.geometry.outline import path_error
 from ekfsim.localization import play
 from ekfsim.records import Kidnap, Move, Say, Sense
@@ -54,7 +54,9 @@ def test_it_is_what_numpy_makes_of_the_steps(made):
     assert table["nis"] == pytest.approx(
         {"mean": nis.mean(), "sum": nis.sum(), "dof": len(nis), "low": low, "high": high}
     )
-    assert table["nees"] == pytest.approx({"last": float(steps[-1].nees.value), "dof": int(steps[-1].nees.dof)})
+    assert table["nees"] == pytest.approx(
+        {"last": float(steps[-1].nees.value), "dof": int(steps[-1].nees.dof)}
+    )
 
 
 def test_dead_reckoning_follows_the_odometry_alone():
@@ -68,7 +70,10 @@ def test_dead_reckoning_follows_the_odometry_alone():
         if step.entry.given is not None:
             off.append(math.dist((x, y), step.entry.truth[:2]))
             turned.append(wrapped(th - float(step.entry.truth[2])))
-    rmse = {"position": math.sqrt(np.mean(np.square(off))), "heading": math.sqrt(np.mean(np.square(turned)))}
+    rmse = {
+        "position": math.sqrt(np.mean(np.square(off))),
+        "heading": math.sqrt(np.mean(np.square(turned))),
+    }
     assert summary_of(made)["dead_reckoning"] == pytest.approx(rmse)
 
 
@@ -106,7 +111,8 @@ def test_the_keys_are_those_of_the_format(tmp_path):
     assert set(written) >= made_by
     assert {key: written[key] for key in set(written) - made_by} == summary.table()
     assert set(written) - made_by == {
-        "steps", "updates", "refused", "position", "heading", "path_rmse", "nis", "nees", "lost_from", "verdict",
+        "steps", "updates", "refused", "position", "heading", "path_rmse", "nis", "nees",
+        "lost_from", "verdict",
         "dead_reckoning",
     }  # fmt: skip
     assert set(written["position"]) == set(written["heading"]) == FOUR
@@ -121,7 +127,8 @@ def rmse(errors):
 
 def test_with_a_clock_errors_are_those_of_every_judged_instant_after_its_last_reading():
     steps = list(play(recording()))
-    last = [steps[k] for k in (0, 1, 4, 5, 7, 8)]  # 3 and 4 follow 2 at one instant, 6 is not judged
+    # 3 and 4 follow 2 at one instant, 6 is not judged
+    last = [steps[k] for k in (0, 1, 4, 5, 7, 8)]
     e = np.array([s.posterior.mean - s.entry.truth for s in last])
     table = summary_of(recording())
     assert table["position"]["rmse"] == pytest.approx(rmse(np.hypot(e[:, 0], e[:, 1])))
@@ -142,10 +149,15 @@ def test_dead_reckoning_of_a_recorded_run_follows_its_inputs_on_the_whole_state(
     assert summary_of(made)["dead_reckoning"]["position"] == pytest.approx(rmse(list(off.values())))
     known = speeds(9, 3)
     known = replace(
-        known, log=replace(known.log, entries=tuple(replace(e, truth=np.zeros(3)) for e in known.log.entries))
+        known,
+        log=replace(
+            known.log, entries=tuple(replace(e, truth=np.zeros(3)) for e in known.log.entries)
+        ),
     )
     x = known.log.first.mean
-    reckoned = [x] + [x := e.given.motion.f(x, e.given.u) for e in known.log.entries if hasattr(e.given, "u")]
+    reckoned = [x] + [
+        x := e.given.motion.f(x, e.given.u) for e in known.log.entries if hasattr(e.given, "u")
+    ]
     expected = rmse([math.hypot(x[2], x[3]) for x in reckoned])
     assert summary_of(known)["dead_reckoning"]["position"] == pytest.approx(expected)
 
@@ -154,7 +166,9 @@ def test_a_reading_makes_an_unjudged_instant_no_instant_and_belongs_to_a_judged_
     judged, unjudged = MOWER[:5], tuple(replace(e, judged=e.t < 11) for e in MOWER[:5])
     mixed = (*MOWER[:3], *(replace(e, judged=False) for e in MOWER[3:5]))
     assert summary_of(recording(mixed))["position"] == summary_of(recording(judged))["position"]
-    assert summary_of(recording(unjudged))["position"] == summary_of(recording(MOWER[:2]))["position"]
+    assert (
+        summary_of(recording(unjudged))["position"] == summary_of(recording(MOWER[:2]))["position"]
+    )
 
 
 def test_without_truth_there_are_no_errors_and_the_verdict_is_that_of_the_readings():
@@ -170,9 +184,15 @@ def test_without_truth_there_are_no_errors_and_the_verdict_is_that_of_the_readin
 def test_the_distance_to_the_expected_path_is_taken_at_every_row():
     made, path = speeds(9, 3), np.array([[0.0, 1], [3, 1], [3, 4], [0, 4]])
     made = replace(made, world=replace(made.world, expected_path=path))
-    after = {s.entry.t: made.world.layout.pose(s.posterior.mean) for s in play(made) if s.entry.given is not None}
+    after = {
+        s.entry.t: made.world.layout.pose(s.posterior.mean)
+        for s in play(made)
+        if s.entry.given is not None
+    }
     assert len(after) == 9
-    assert summary_of(made)["path_rmse"] == pytest.approx(rmse([path_error(x[:2], path) for x in after.values()]))
+    assert summary_of(made)["path_rmse"] == pytest.approx(
+        rmse([path_error(x[:2], path) for x in after.values()])
+    )
 
 
 def test_errors_of_one_instant_take_each_others_place():
@@ -180,13 +200,17 @@ def test_errors_of_one_instant_take_each_others_place():
     for e, t in [(9.0, 1.0), (-3.0, 1.0), (8.0, 2.0), (4.0, 2.0)]:
         errors.add(e, t)
         assert errors.n == (1 if t == 1 else 2)
-    assert errors.table() == pytest.approx({"rmse": math.sqrt(12.5), "mean": 0.5, "sd": 3.5, "max": 4.0})
+    assert errors.table() == pytest.approx(
+        {"rmse": math.sqrt(12.5), "mean": 0.5, "sd": 3.5, "max": 4.0}
+    )
     errors.add(math.nan, 2.0)
     assert set(errors.table().values()) == {None}
 
 
 def test_the_summary_of_a_recorded_run_is_written_without_a_nan(tmp_path):
-    for number, made in enumerate((recording(), speeds(9, 3), recording((entry(0, 1.0, None, (1, 2, 3)),)))):
+    for number, made in enumerate(
+        (recording(), speeds(9, 3), recording((entry(0, 1.0, None, (1, 2, 3)),)))
+    ):
         path, summary = tmp_path / f"{number}.json", Summary.of(made)
         with Outputs(summary=path).open(made, 0.954, summary):
             for step in play(made):
@@ -205,7 +229,13 @@ def test_a_clock_that_stands_still_is_one_instant():
 
 
 def test_the_path_error_of_the_pylon_log_is_its_authors():
-    log = Path(__file__).resolve().parents[2] / "shared" / "data" / "pylon" / "2020_2_26__17_21_59_filtered.csv"
+    log = (
+        Path(__file__).resolve().parents[2]
+        / "shared"
+        / "data"
+        / "pylon"
+        / "2020_2_26__17_21_59_filtered.csv"
+    )
     if not log.exists():
         pytest.skip(f"needs the recorded log {log.name} beside the checkout")
     table = summary_of(load_scene("pylon_log", log=log, reading="coded"))

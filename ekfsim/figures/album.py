@@ -1,4 +1,6 @@
-"""A folder of figures and tables with one page of captions: what to see, and how it compares with the print."""
+"""A folder of figures and tables with one page of captions: what to see, and how it compares with
+the print.
+"""
 
 import csv
 import re
@@ -13,13 +15,21 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ekfsim.version import VERSION
-from ekfsim.views.lettering import drawable
-from ekfsim.views.map_axes import in_metres
+from ekfsim.views.picture.lettering import drawable
+from ekfsim.views.picture.map_axes import in_metres
 
 PATTERNS = ("*.png", "*.svg", "*.pdf", "*.csv", "captions.md")  # what an album consists of
-BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = "#0072B2", "#56B4E9", "#009E73", "#D55E00", "#CC79A7", "#E69F00"
+BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = (
+    "#0072B2",
+    "#56B4E9",
+    "#009E73",
+    "#D55E00",
+    "#CC79A7",
+    "#E69F00",
+)
 GREY, BLACK = "#777777", "#000000"
-NEGATIVE = re.compile(r"^−(?=[\d.]+$)")  # the minus of a number as it is printed, which no program reads
+# the minus of a number as it is printed, which no program reads
+NEGATIVE = re.compile(r"^−(?=[\d.]+$)")
 DPI = 120
 SOURCE_LINE = 0.14  # in, at the foot of a figure
 SOURCE_LETTERS = 21  # of it, to an inch
@@ -41,8 +51,11 @@ class Album:
         FigureCanvasAgg(made)
         return made
 
-    def add(self, figure: Figure, name: str, title: str, caption: str, source: str | None = None) -> None:
-        """Write a figure in every format, and its caption. name : as in "fig4-paths", without an ending
+    def add(
+        self, figure: Figure, name: str, title: str, caption: str, source: str | None = None
+    ) -> None:
+        """Write a figure in every format, and its caption. name : as in "fig4-paths", without an
+        ending
 
         source : what made it, where that is not what made the others
         """
@@ -52,18 +65,31 @@ class Album:
         if isinstance(engine, ConstrainedLayoutEngine):
             foot = SOURCE_LINE * len(made_by) / height
             engine.set(rect=(0, foot, 1, 1 - foot))
-        figure.text(0.995, 0.004, "\n".join(made_by), fontsize=5.5, ha="right", va="bottom", color="#777777")
+        figure.text(
+            0.995, 0.004, "\n".join(made_by), fontsize=5.5, ha="right", va="bottom", color="#777777"
+        )
         for ending in self.formats:
             notes = metadata(ending, title, source or self.source)
             figure.savefig(self.folder / f"{name}.{ending}", dpi=DPI, metadata=notes)
-        self.pages.append(f"## {title}\n\n![{title}]({name}.{self.formats[0]})\n\n{filled(caption)}\n")
+        self.pages.append(
+            f"## {title}\n\n![{title}]({name}.{self.formats[0]})\n\n{filled(caption)}\n"
+        )
 
-    def table(self, name: str, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], caption: str) -> None:
+    def table(
+        self,
+        name: str,
+        title: str,
+        header: Sequence[str],
+        rows: Sequence[Sequence[str]],
+        caption: str,
+    ) -> None:
         """Write a table into the captions, and as CSV with a last column that says what made it."""
         with (self.folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
             plain = [[*(NEGATIVE.sub("-", cell) for cell in row), self.source] for row in rows]
             csv.writer(file, lineterminator="\n").writerows([[*header, "made by"], *plain])
-        lines = ["| " + " | ".join(cells) + " |" for cells in (header, ["---"] * len(header), *rows)]
+        lines = [
+            "| " + " | ".join(cells) + " |" for cells in (header, ["---"] * len(header), *rows)
+        ]
         self.pages.append(f"## {title}\n\n" + "\n".join(lines) + f"\n\n{filled(caption)}\n")
 
     def note(self, title: str, text: str) -> None:
@@ -77,12 +103,24 @@ class Album:
 
 
 def metadata(ending: str, title: str, source: str) -> dict[str, str | None]:
-    """The notes in a picture's file, under the names that its format has; and no date, which would differ each time."""
+    """The notes in a picture's file, under the names that its format has; and no date, which would
+    differ each time.
+    """
     match ending:
         case "svg":
-            return {"Title": title, "Description": source, "Creator": f"ekfsim {VERSION}", "Date": None}
+            return {
+                "Title": title,
+                "Description": source,
+                "Creator": f"ekfsim {VERSION}",
+                "Date": None,
+            }
         case "pdf":
-            return {"Title": title, "Subject": source, "Creator": f"ekfsim {VERSION}", "CreationDate": None}
+            return {
+                "Title": title,
+                "Subject": source,
+                "Creator": f"ekfsim {VERSION}",
+                "CreationDate": None,
+            }
     return {"Title": title, "Description": source, "Software": f"ekfsim {VERSION}"}
 
 
@@ -91,7 +129,8 @@ def filled(text: str) -> str:
     paragraphs = text.strip().split("\n\n")
     return "\n\n".join(
         paragraph if any(line.startswith(("- ", "| ", "* ")) for line in paragraph.splitlines()[1:])
-        else textwrap.fill(" ".join(paragraph.split()), 120, break_long_words=False, break_on_hyphens=False)
+        else textwrap.fill(" ".join(paragraph.split()), 120, break_long_words=False,
+        break_on_hyphens=False)
         for paragraph in paragraphs
     )  # fmt: skip
 

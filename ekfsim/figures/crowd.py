@@ -53,14 +53,18 @@ class Crowd:
 
 
 def crowd_of(scene: Scene, n: int, filter: Filter | None = None) -> Crowd:
-    """Runs 0 … n − 1 of a scene, simulated; watched by another filter than the scene's where one is given."""
+    """Runs 0 … n − 1 of a scene, simulated; watched by another filter than the scene's where one is
+    given.
+    """
     layout, reckoned, blind = scene.world.layout, np.zeros(0), 0
     at: dict[float, tuple[Array, Array]] = {}  # the last of each instant
     last: Nees | None = None
     runs = np.arange(n)
     watched = play(scene, runs)
     if filter is not None:
-        watched = localize(simulate(scene, runs), filter, first_belief(scene, (n,)), scene.guard, layout)
+        watched = localize(
+            simulate(scene, runs), filter, first_belief(scene, (n,)), scene.guard, layout
+        )
     for step in watched:
         entry = step.entry
         assert entry.t is not None
@@ -76,7 +80,13 @@ def crowd_of(scene: Scene, n: int, filter: Filter | None = None) -> Crowd:
         last = step.nees
     assert last is not None
     errors, of_reckoned = (np.stack(each) for each in zip(*at.values(), strict=True))
-    return Crowd(np.array(list(at)), errors, of_reckoned, np.where(last.impossible, np.inf, last.value), blind / n)
+    return Crowd(
+        np.array(list(at)),
+        errors,
+        of_reckoned,
+        np.where(last.impossible, np.inf, last.value),
+        blind / n,
+    )
 
 
 def _difference(pose: Array, truth: Array) -> Array:
@@ -87,7 +97,9 @@ def _difference(pose: Array, truth: Array) -> Array:
 
 
 def set_down(scene: Scene, metres: float, degrees: float) -> Scene:
-    """The same scene, its robot set down on its mark no better than that, and the filter told so."""
+    """The same scene, its robot set down on its mark no better than that, and the filter told
+    so.
+    """
     sigma = np.array([metres, metres, math.radians(degrees)])
     told = replace(scene.world.told, sigma=sigma)
     return replace(scene, world=replace(scene.world, start_sigma=sigma, told=told))

@@ -1,4 +1,6 @@
-"""What many simulated runs of a scene say, each by itself: a comparison of two filters needs more than one run."""
+"""What many simulated runs of a scene say, each by itself: a comparison of two filters needs more
+than one run.
+"""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -32,16 +34,23 @@ class EachRun:
         squares, nis = list[Array](), list[Array]()
         for step, reckoned in _instants(steps, nis):
             assert step.entry.truth is not None
-            both = np.stack([layout.pose(step.posterior.mean), layout.pose(reckoned)]) - step.entry.truth
+            both = (
+                np.stack([layout.pose(step.posterior.mean), layout.pose(reckoned)])
+                - step.entry.truth
+            )
             e = np.concatenate([np.sum(both[..., :2] ** 2, axis=-1), wrap(both[..., 2]) ** 2])
             squares.append(np.concatenate([e, Judged.of(step, e.shape[1:]).above(LOST)[None]]))
         position, off, heading, turned, beyond = np.mean(squares, axis=0)
         means = np.nanmean(nis, axis=0) if nis else np.full(position.shape, np.nan)
-        return cls(np.sqrt(position), np.sqrt(heading), np.sqrt(off), np.sqrt(turned), means, beyond)
+        return cls(
+            np.sqrt(position), np.sqrt(heading), np.sqrt(off), np.sqrt(turned), means, beyond
+        )
 
 
 def _instants(steps: Iterable[Step], nis: list[Array]) -> Iterator[tuple[Step, Array]]:
-    """The last step of each instant, and where the motion inputs alone would be; the NIS per number of each reading."""
+    """The last step of each instant, and where the motion inputs alone would be; the NIS per number
+    of each reading.
+    """
     before: Step | None = None
     reckoned = np.empty(0)
     for step in steps:

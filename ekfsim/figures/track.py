@@ -52,7 +52,15 @@ class Track:
                 reckoned = entry.given.motion.f(reckoned, entry.given.u)
             if isinstance(entry.given, Reading) and step.correction is not None:
                 c = step.correction
-                readings.append(Judged(entry.t, entry.given.name, entry.given.z, float(c.nis), Refused(int(c.refused))))
+                readings.append(
+                    Judged(
+                        entry.t,
+                        entry.given.name,
+                        entry.given.z,
+                        float(c.nis),
+                        Refused(int(c.refused)),
+                    )
+                )
             truth = nowhere if entry.truth is None else entry.truth
             fix = nofix if entry.fix is None else entry.fix
             if t and t[-1] == entry.t:
@@ -62,8 +70,12 @@ class Track:
             elif entry.judged:
                 t.append(entry.t)
                 rows.append((x, P, truth, fix, reckoned))
-        state, covariance, truth, fix, reckoned_all = (np.array(column) for column in zip(*rows, strict=True))
-        return cls(np.array(t), state, covariance, truth, fix, reckoned_all, tuple(readings), layout)
+        state, covariance, truth, fix, reckoned_all = (
+            np.array(column) for column in zip(*rows, strict=True)
+        )
+        return cls(
+            np.array(t), state, covariance, truth, fix, reckoned_all, tuple(readings), layout
+        )
 
     @property
     def pose(self) -> Array:

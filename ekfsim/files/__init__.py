@@ -1,1 +1,7 @@
-"""Text ↔ objects: world and commands files. Nothing heavy is imported here; see `load`, `packaged`, `template`."""
+"""Text ↔ objects, a room for each part of the way. Nothing heavy is imported here.
+
+source.py   bytes → text                     keys/     what each kind of file may hold
+yaml/       text → data, with its places     scenes/   data → World, Scene, study
+logs/       recorded logs → entries          results/  steps → trace, tables, trajectories
+packaged.py, looking.py   which files there are
+"""

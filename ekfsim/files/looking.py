@@ -1,7 +1,8 @@
 """Questions to the file system: whether something is there, and what.
 
-`Path.exists` and its like raise for some refusals and answer no to others, in each version of Python for others. Here
-every refusal raises, and whoever asks says in a `with` how it is told: `read_from` here, `told` of what is written.
+`Path.exists` and its like raise for some refusals and answer no to others, in each version of
+Python for others. Here every refusal raises, and whoever asks says in a `with` how it is told:
+`read_from` here, `told` of what is written.
 """
 
 import os
@@ -35,11 +36,13 @@ def _mode(path: Path) -> int | None:
         return None
 
 
-_taken: dict[tuple[int, int, int], bytes] = {}  # what came out of pipes, by device, number and last change of each
+# what came out of pipes, by device, number and last change of each
+_taken: dict[tuple[int, int, int], bytes] = {}
 
 
 def contents(path: Path, most: int) -> bytes:
-    """At most so many bytes and one of a file; of a pipe, which can be read once only, also when asked again.
+    """At most so many bytes and one of a file; of a pipe, which can be read once only, also when
+    asked again.
 
     Raises OSError where it cannot be read.
     """
@@ -64,7 +67,9 @@ def read_from(path: str | Path) -> Iterator[None]:
     try:
         yield
     except (OSError, ValueError) as refusal:  # ValueError: a NUL in the name
-        raise UsageError(f"{path}: cannot be read: {getattr(refusal, 'strerror', None) or refusal}") from None
+        raise UsageError(
+            f"{path}: cannot be read: {getattr(refusal, 'strerror', None) or refusal}"
+        ) from None
 
 
 def current_folder() -> Path | None:

@@ -15,7 +15,9 @@ PACKAGE = Path(__file__).resolve().parent.parent
 
 
 def folder(kind: Folder) -> Path:
-    """Where the packaged files of a kind lie: inside the installed package, or beside it in a checkout."""
+    """Where the packaged files of a kind lie: inside the installed package, or beside it in a
+    checkout.
+    """
     installed = PACKAGE / "_packaged" / kind
     return installed if installed.is_dir() else PACKAGE.parent / kind
 
@@ -26,7 +28,8 @@ def packaged(kind: Folder) -> dict[str, Path]:
 
 
 def resolve(name_or_path: str | Path, kind: Folder) -> Path:
-    """The file that a path, or the bare name of a packaged file, stands for. A file that exists wins over a name.
+    """The file that a path, or the bare name of a packaged file, stands for. A file that exists
+    wins over a name.
 
     Raises UsageError where it is neither.
     """
@@ -34,14 +37,19 @@ def resolve(name_or_path: str | Path, kind: Folder) -> Path:
     known = packaged(kind)
     name = os.fspath(name_or_path)
     try:
-        there = exists(path) and not (name in known and is_folder(path))  # `render tour -o tour` made that folder
+        # `render tour -o tour` made that folder
+        there = exists(path) and not (name in known and is_folder(path))
     except (OSError, ValueError):
         there = name not in known  # as something that cannot be read, which its reader tells
     if there or name not in known:
         is_bare = not path.suffix and path.name == name and name.isprintable()
         if not there and is_bare:
             near = difflib.get_close_matches(name, known, 3, 0.7)
-            right = f"did you mean {' or '.join(map(repr, near))}?" if near else "see `ekfsim list`, or name a file"
+            right = (
+                f"did you mean {' or '.join(map(repr, near))}?"
+                if near
+                else "see `ekfsim list`, or name a file"
+            )
             raise UsageError(f"{name!r} is neither a file nor one of the packaged {kind}; {right}")
         return path
     return known[name]
@@ -67,7 +75,9 @@ def grouped() -> list[tuple[str, dict[str, Path]]]:
 
 
 def world_beside(path: Path, named: str) -> Path:
-    """The world that a commands file names: a file relative to it, else one that comes along, by its bare name."""
+    """The world that a commands file names: a file relative to it, else one that comes along, by
+    its bare name.
+    """
     near = path.parent / named
     known = packaged("worlds")
     try:
@@ -78,7 +88,9 @@ def world_beside(path: Path, named: str) -> Path:
 
 
 def source_name(path: str | Path) -> str:
-    """How outputs name a file, in a line: a packaged one alike on every machine, any other as it was given."""
+    """How outputs name a file, in a line: a packaged one alike on every machine, any other as it
+    was given.
+    """
     given = in_a_line(os.path.normpath(path))
     here = Path(os.path.realpath(path))
     for kind in ("worlds", "commands"):
@@ -102,8 +114,8 @@ def described(path: Path) -> str:
     """
     import yaml
 
-    from ekfsim.files.marked import LOADER, Tree
     from ekfsim.files.source import text_of
+    from ekfsim.files.yaml.marked import LOADER, Tree
 
     tree, text = Tree(str(path)), None
     try:

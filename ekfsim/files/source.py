@@ -11,7 +11,9 @@ from ekfsim.files.looking import contents, current_folder, read_from
 MAX_BYTES = 10_000_000
 
 # What YAML allows in a file: printable characters, tab and line breaks.
-UNPRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]")
+UNPRINTABLE = re.compile(
+    "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
+)
 
 
 def text_of(path: Path, shown: str) -> str:
@@ -21,9 +23,17 @@ def text_of(path: Path, shown: str) -> str:
     """
     raw = bytes_of(path, shown)
     if len(raw) > MAX_BYTES:
-        raise mistake(shown, 1, 1, "the file is larger than 10 MB", "write a smaller one: no world needs that much")
+        raise mistake(
+            shown,
+            1,
+            1,
+            "the file is larger than 10 MB",
+            "write a smaller one: no world needs that much",
+        )
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        raise mistake(shown, 1, 1, "the file is UTF-16, not UTF-8", "save it as UTF-8 in your editor")
+        raise mistake(
+            shown, 1, 1, "the file is UTF-16, not UTF-8", "save it as UTF-8 in your editor"
+        )
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -32,7 +42,9 @@ def text_of(path: Path, shown: str) -> str:
         raise mistake(shown, line, column, wrong, "save the file as UTF-8 in your editor") from None
     if found := UNPRINTABLE.search(text):
         line, column = position(text[: found.start()])
-        raise mistake(shown, line, column, f"{character(found[0])} cannot stand in a text file", "delete it")
+        raise mistake(
+            shown, line, column, f"{character(found[0])} cannot stand in a text file", "delete it"
+        )
     if not text.strip():
         raise mistake(shown, 1, 1, "the file is empty", "see `ekfsim new` for one to start from")
     return text
@@ -45,20 +57,32 @@ def bytes_of(path: Path, shown: str) -> bytes:
             return contents(path, MAX_BYTES)
         except FileNotFoundError:
             if current_folder() is None and not path.is_absolute():
-                raise UsageError(f"{shown}: cannot be read: the current folder was deleted; go to another") from None
+                raise UsageError(
+                    f"{shown}: cannot be read: the current folder was deleted; go to another"
+                ) from None
             raise UsageError(f"{shown}: no such file" + nearest_file(path, shown)) from None
         except IsADirectoryError:
             raise UsageError(f"{shown}: is a folder; name a file in it") from None
 
 
 def nearest_file(path: Path, shown: str) -> str:
-    """`; did you mean '…'?` where a file beside the missing one has nearly its name, else nothing."""
+    """`; did you mean '…'?` where a file beside the missing one has nearly its name, else
+    nothing.
+    """
     try:
-        neighbours = {Path(name).stem: name for name in sorted(os.listdir(path.parent)) if name.endswith(".yaml")}
+        neighbours = {
+            Path(name).stem: name
+            for name in sorted(os.listdir(path.parent))
+            if name.endswith(".yaml")
+        }
     except (OSError, ValueError):
         return ""
     near = difflib.get_close_matches(path.stem, neighbours, 1)
-    return f"; did you mean '{os.path.join(os.path.dirname(shown), neighbours[near[0]])}'?" if near else ""
+    return (
+        f"; did you mean '{os.path.join(os.path.dirname(shown), neighbours[near[0]])}'?"
+        if near
+        else ""
+    )
 
 
 def position(before: str) -> tuple[int, int]:

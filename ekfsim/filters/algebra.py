@@ -9,7 +9,8 @@ from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap, wrap_one
 
-ROUNDING = 16 * float(np.finfo(float).eps)  # a difference below this share of what it is taken of is rounding
+# a difference below this share of what it is taken of is rounding
+ROUNDING = 16 * float(np.finfo(float).eps)
 SHARP = 1e-4  # of Σ Hᵢ² Pᵢᵢ; a sensor of less noise leaves less than P − K H P may be trusted with
 
 
@@ -32,12 +33,15 @@ def inverse(S: Array) -> Array:
 
 
 def gain(cross: Array, S: Array) -> Array:
-    """K = P_xz S⁻¹ : (…, n, k), zero where nothing is uncertain (S = 0) or nothing was predicted (S is nan).
+    """K = P_xz S⁻¹ : (…, n, k), zero where nothing is uncertain (S = 0) or nothing was predicted (S
+    is nan).
 
     cross : (…, n, k) is P_xz, the covariance of state and reading: P Hᵀ where h is linearised.
     """
     if S.shape[-1] == 1:
-        return np.divide(cross, S, out=np.zeros(np.broadcast_shapes(cross.shape, S.shape)), where=S > 0)
+        return np.divide(
+            cross, S, out=np.zeros(np.broadcast_shapes(cross.shape, S.shape)), where=S > 0
+        )
     K: Array = cross @ inverse(S)
     K[np.isnan(K)] = 0.0
     return K
@@ -47,7 +51,9 @@ def normalized_square(innovation: Array, S: Array) -> Array:
     """NIS = νᵀ S⁻¹ ν : (…), nan where S = 0 or nothing was measured or predicted."""
     if S.shape[-1] == 1:
         s, ν = S[..., 0, 0], innovation[..., 0]
-        nis: Array = np.divide(ν * ν, s, out=np.full(np.broadcast_shapes(ν.shape, s.shape), np.nan), where=s > 0)
+        nis: Array = np.divide(
+            ν * ν, s, out=np.full(np.broadcast_shapes(ν.shape, s.shape), np.nan), where=s > 0
+        )
         return nis
     square = np.vecdot(innovation, np.matvec(inverse(S), innovation))
     return np.where(np.any(S != 0, axis=(-2, -1)), square, np.nan)

@@ -32,7 +32,9 @@ class Gaussian(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Particles:
-    """A belief that is a crowd of weighted states. Its mean and covariance stand for it where one is drawn or told."""
+    """A belief that is a crowd of weighted states. Its mean and covariance stand for it where one
+    is drawn or told.
+    """
 
     mean: Array  # (…, n), circular where it is a heading
     covariance: Array  # (…, n, n)
@@ -52,7 +54,9 @@ def posed(belief: Belief, layout: Layout) -> Gaussian:
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """How a motion input was linearised; a filter without derivatives gives what stands for them."""
+    """How a motion input was linearised; a filter without derivatives gives what stands for
+    them.
+    """
 
     F: Array  # ∂f/∂x : (…, n, n)
     G: Array  # ∂f/∂u : (…, n, m)
@@ -75,7 +79,9 @@ class Refused(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """What a reading did to the belief, or would have done were it not refused. nan where a number is undefined."""
+    """What a reading did to the belief, or would have done were it not refused. nan where a number
+    is undefined.
+    """
 
     predicted: Array  # h(x⁻) : (…, k)
     innovation: Array  # ν : (…, k)
@@ -86,4 +92,5 @@ class Correction:
     nis: Array  # νᵀ S⁻¹ ν : (…), refused readings included; nan where S = 0
     refused: Integers  # (…) one of Refused
     settled: Booleans | bool = True  # (…) whether the search of an iterated filter came to rest
-    tangent: bool = False  # `predicted` is that of a tangent drawn elsewhere than at x⁻: it meets nothing of the map
+    # `predicted` is that of a tangent drawn elsewhere than at x⁻: it meets nothing of the map
+    tangent: bool = False

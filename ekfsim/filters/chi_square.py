@@ -5,7 +5,8 @@ from functools import lru_cache
 
 @lru_cache(maxsize=4096)
 def quantile(probability: float, dof: int) -> float:
-    """The value that a χ² variable of `dof` degrees of freedom stays below with this probability; 0 for no freedom.
+    """The value that a χ² variable of `dof` degrees of freedom stays below with this probability; 0
+    for no freedom.
 
     >>> round(quantile(0.999, 3), 2)
     16.27

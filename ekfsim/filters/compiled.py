@@ -1,7 +1,8 @@
 """What unrolled.py does, and the NEES, compiled by Numba: the extra `fast`.
 
-Imported only where geometry/backend.py has been told to use it. All arrays have their entries in front and the runs
-behind, (3, 3, N), one stretch of memory. Most loops are short on purpose: then several runs are taken at once.
+Imported only where geometry/backend.py has been told to use it. All arrays have their entries in
+front and the runs behind, (3, 3, N), one stretch of memory. Most loops are short on purpose: then
+several runs are taken at once.
 """
 
 import numpy as np
@@ -21,7 +22,13 @@ def revised(
     x: Array, P: Array, H: Array, r: Array, ν: Array, sharp: float
 ) -> tuple[Array, Array, Array, Array, Array, Booleans]:
     """S, K, x, P and NIS as in unrolled.py, and for which runs they may be trusted."""
-    new = np.empty(r.shape), np.empty(x.shape), np.empty(x.shape), np.empty(P.shape), np.empty(r.shape)
+    new = (
+        np.empty(r.shape),
+        np.empty(x.shape),
+        np.empty(x.shape),
+        np.empty(P.shape),
+        np.empty(r.shape),
+    )
     clear = np.empty(r.shape, bool)
     x, P, H, r, ν = (np.ascontiguousarray(each) for each in (x, P, H, r, ν))
     _revise(x, P, H, r, ν, sharp, *new, clear)
@@ -34,7 +41,9 @@ def sound(P: Array) -> bool:
 
 
 def squares(e: Array, P: Array, tiny: float, sure: float) -> tuple[Array, Booleans]:
-    """eᵀ P⁻¹ e of three entries : (N,), and where P is clearly of full rank, as in consistency.py"""
+    """eᵀ P⁻¹ e of three entries : (N,), and where P is clearly of full rank, as in
+    consistency.py
+    """
     value, clear = np.empty(e.shape[1:]), np.empty(e.shape[1:], bool)
     _square(np.ascontiguousarray(e), np.ascontiguousarray(P), tiny, sure, value, clear)
     return value, clear
@@ -90,7 +99,11 @@ def _revise(
     for n in range(N):
         s[n] = H[0, n] * K[0, n] + H[1, n] * K[1, n] + H[2, n] * K[2, n]
     for n in range(N):
-        terms = H[0, n] * H[0, n] * P[0, 0, n] + H[1, n] * H[1, n] * P[1, 1, n] + H[2, n] * H[2, n] * P[2, 2, n]
+        terms = (
+            H[0, n] * H[0, n] * P[0, 0, n]
+            + H[1, n] * H[1, n] * P[1, 1, n]
+            + H[2, n] * H[2, n] * P[2, 2, n]
+        )
         clear[n] = (r[n] > sharp * terms) & (ν[n] == ν[n])
     for n in range(N):
         s[n] += r[n]
@@ -116,7 +129,9 @@ def _is_sound(P: Array) -> bool:
     for n in range(P.shape[2]):
         a, d, v = P[0, 0, n], P[1, 1, n], P[2, 2, n]
         b, c, e = P[0, 1, n], P[0, 2, n], P[1, 2, n]
-        fine = (a >= 0) & (d >= 0) & (v >= 0) & (b * b <= a * d) & (c * c <= a * v) & (e * e <= d * v)
+        fine = (
+            (a >= 0) & (d >= 0) & (v >= 0) & (b * b <= a * d) & (c * c <= a * v) & (e * e <= d * v)
+        )
         beyond += not fine
     return beyond == 0
 

@@ -1,7 +1,9 @@
-"""What a reading leaves of a covariance, by its square root: Carlson's update, without a matrix turned round.
+"""What a reading leaves of a covariance, by its square root: Carlson's update, without a matrix
+turned round.
 
-P is carried as P = L Lᵀ. A sum of squares has no negative variance and no correlation beyond 1, and what a sharp sensor
-leaves of a wide prior, R of it, is a product here, not the difference of two numbers that agree in all their digits.
+P is carried as P = L Lᵀ. A sum of squares has no negative variance and no correlation beyond 1, and
+what a sharp sensor leaves of a wide prior, R of it, is a product here, not the difference of two
+numbers that agree in all their digits.
 """
 
 from typing import NamedTuple
@@ -25,8 +27,13 @@ class Conditioned(NamedTuple):
     def nis(self, innovation: Array) -> Array:
         """νᵀ S⁻¹ ν = Σ eᵢ²/sᵢ : (…), nan where S = 0 or nothing was measured or predicted"""
         e, s = np.matvec(self.unmixed, innovation), self.variances
-        square = np.sum(np.divide(e * e, s, out=np.zeros(np.broadcast_shapes(e.shape, s.shape)), where=s > 0), axis=-1)
-        known = np.any(s > 0, axis=-1) & ~np.isnan(innovation).any(axis=-1) & ~np.isnan(s).any(axis=-1)
+        square = np.sum(
+            np.divide(e * e, s, out=np.zeros(np.broadcast_shapes(e.shape, s.shape)), where=s > 0),
+            axis=-1,
+        )
+        known = (
+            np.any(s > 0, axis=-1) & ~np.isnan(innovation).any(axis=-1) & ~np.isnan(s).any(axis=-1)
+        )
         return np.where(known, square, np.nan)
 
     def S(self, D: Array, R: Array) -> Array:
@@ -56,18 +63,22 @@ def covariance(P: Array) -> Array:
 
 
 def square_root(P: Array, seen: Array | None = None) -> Array:
-    """L : (…, n, n) with P = L Lᵀ, Cholesky's, a column being zero where nothing is left to explain.
+    """L : (…, n, n) with P = L Lᵀ, Cholesky's, a column being zero where nothing is left to
+    explain.
 
-    Lower triangular, or with its rows in an order of their own, by how much of each state a reading sees: what is
-    seen most is explained first. Then no small variance is left over from the difference of large ones. seen : (…, n)
-    P is often singular: it starts at 0, and a straight move adds no heading noise.
+    Lower triangular, or with its rows in an order of their own, by how much of each state a reading
+    sees: what is seen most is explained first. Then no small variance is left over from the
+    difference of large ones. seen : (…, n) P is often singular: it starts at 0, and a straight move
+    adds no heading noise.
     """
     if seen is not None:
         order = np.argsort(-seen * np.diagonal(P, axis1=-2, axis2=-1), axis=-1, kind="stable")
         runs = tuple(i[..., None, None] for i in np.ix_(*map(np.arange, order.shape[:-1])))
         rows, P = order[..., :, None], np.broadcast_to(P, (*order.shape, P.shape[-1]))
         L = np.empty(P.shape)
-        L[(*runs, rows, np.arange(P.shape[-1]))] = square_root(P[(*runs, rows, order[..., None, :])])
+        L[(*runs, rows, np.arange(P.shape[-1]))] = square_root(
+            P[(*runs, rows, order[..., None, :])]
+        )
         return L
     P = front(P)
     L = np.zeros(P.shape)
@@ -77,7 +88,9 @@ def square_root(P: Array, seen: Array | None = None) -> Array:
             rest -= L[j:, m] * L[j, m]
         pivot = rest[0]
         left = pivot > ROUNDING * P[j, j]
-        L[j:, j] = rest * np.divide(1.0, np.sqrt(np.where(left, pivot, 1.0)), out=np.zeros(left.shape), where=left)
+        L[j:, j] = rest * np.divide(
+            1.0, np.sqrt(np.where(left, pivot, 1.0)), out=np.zeros(left.shape), where=left
+        )
     return back(L)
 
 
@@ -91,12 +104,13 @@ def slope(H: Array, L: Array) -> Array:
 
 
 def conditioned(L: Array, D: Array, R: Array, h: Array) -> Conditioned:
-    """P⁻ = L Lᵀ and a reading of k numbers, S = D Dᵀ + R      K = L Dᵀ S⁻¹      P = L (I + Dᵀ R⁻¹ D)⁻¹ Lᵀ
+    """P⁻ = L Lᵀ and a reading of k numbers, S = D Dᵀ + R      K = L Dᵀ S⁻¹
+    P = L (I + Dᵀ R⁻¹ D)⁻¹ Lᵀ
 
-    L : (…, n, n), D : (…, k, n), R : (…, k, k), h : (…, k), the reading that is predicted. One number is taken after
-    the other, the dullest first where their noises have something in common: from the later ones is taken what they
-    have in common with it, in the noise and in the belief. A number whose deviation is below the rounding of h itself
-    tells nothing.
+    L : (…, n, n), D : (…, k, n), R : (…, k, k), h : (…, k), the reading that is predicted. One
+    number is taken after the other, the dullest first where their noises have something in common:
+    from the later ones is taken what they have in common with it, in the noise and in the belief. A
+    number whose deviation is below the rounding of h itself tells nothing.
 
     Carlson, Fast triangular formulation of the square root filter, AIAA Journal, 1973.
     """
@@ -107,13 +121,18 @@ def conditioned(L: Array, D: Array, R: Array, h: Array) -> Conditioned:
     axes = np.broadcast_shapes(L.shape[:-2], D.shape[:-2], R.shape[:-2], h.shape[:-1])
     A = np.empty((n + k, n, *axes))
     A[:n], A[n:] = _widened(front(L), axes, 2), _widened(front(D), axes, 2)
-    R, h = np.array(np.broadcast_to(_widened(front(R), axes, 2), (k, k, *axes))), _widened(front(h, 1), axes, 1)
+    R, h = (
+        np.array(np.broadcast_to(_widened(front(R), axes, 2), (k, k, *axes))),
+        _widened(front(h, 1), axes, 1),
+    )
     T, K, s = np.zeros((k, k, *axes)), np.zeros((n, k, *axes)), np.zeros((k, *axes))
     for i in range(k):
         T[i, i] = 1.0
     if any(R[i, m].any() for i in range(k) for m in range(i)):
         dullest = np.argsort(-_dullness(R, A[n:]), axis=0, kind="stable")
-        A[n:], T, R, h = (np.take_along_axis(M, _rows_of(dullest, M), axis=0) for M in (A[n:], T, R, h))
+        A[n:], T, R, h = (
+            np.take_along_axis(M, _rows_of(dullest, M), axis=0) for M in (A[n:], T, R, h)
+        )
         R = np.take_along_axis(R, dullest[None], axis=1)
     for i in range(k):
         r, f = R[i, i], A[n + i]
@@ -148,9 +167,13 @@ def _widened(M: Array, axes: tuple[int, ...], inner: int) -> Array:
 
 
 def _dullness(R: Array, D: Array) -> Array:
-    """How much noisier than the belief each number is : (k, …), ∞ where that knows it. R : (k, k, …), D : (k, n, …)"""
+    """How much noisier than the belief each number is : (k, …), ∞ where that knows it. R : (k, k,
+    …), D : (k, n, …)
+    """
     known = np.sum(np.square(D), axis=1)
-    dullness: Array = np.divide(np.einsum("ii...->i...", R), known, out=np.full(known.shape, np.inf), where=known > 0)
+    dullness: Array = np.divide(
+        np.einsum("ii...->i...", R), known, out=np.full(known.shape, np.inf), where=known > 0
+    )
     return dullness
 
 
@@ -167,9 +190,11 @@ def _share(part: Array, whole: Array) -> Array:
 
 
 def _carlson(A: Array, f: Array, r: Array) -> tuple[Array, Array, Array]:
-    """A (I − fᵀ f/s)^½      b = A fᵀ      s = f fᵀ + r          entries in front: A : (m, n, …), f : (n, …), r : (…)
+    """A (I − fᵀ f/s)^½      b = A fᵀ      s = f fᵀ + r
+    entries in front: A : (m, n, …), f : (n, …), r : (…)
 
-    From the last column to the first, α being r and the squares of f so far, b the sum of f A so far.
+    From the last column to the first, α being r and the squares of f so far, b the sum of f A so
+    far.
     """
     left, α, b = np.empty(A.shape), r, np.zeros((len(A), *A.shape[2:]))
     for j in reversed(range(len(f))):

@@ -1,4 +1,6 @@
-"""conditioning.py of one robot in plain floats: much faster, each function held equal to its twin by a test."""
+"""conditioning.py of one robot in plain floats: much faster, each function held equal to its twin
+by a test.
+"""
 
 import math
 from operator import mul
@@ -57,7 +59,9 @@ def slope_one(H: Rows, L: Rows) -> Rows:
     return D
 
 
-def conditioned_one(L: Rows, D: Rows, R: Rows, h: list[float]) -> tuple[Rows, Rows, Rows, list[float]]:
+def conditioned_one(
+    L: Rows, D: Rows, R: Rows, h: list[float]
+) -> tuple[Rows, Rows, Rows, list[float]]:
     """`conditioned` of one robot: the root of P, K, T and s."""
     n, k = len(L), len(D)
     if k == 1:
@@ -74,7 +78,11 @@ def conditioned_one(L: Rows, D: Rows, R: Rows, h: list[float]) -> tuple[Rows, Ro
         [[R[i][m] for m in order] for i in order],
         [h[i] for i in order],
     )
-    T, s, K = [[float(i == j) for j in range(k)] for i in order], [0.0] * k, [[0.0] * k for _ in range(n)]
+    T, s, K = (
+        [[float(i == j) for j in range(k)] for i in order],
+        [0.0] * k,
+        [[0.0] * k for _ in range(n)],
+    )
     for i in range(k):
         f, r, T_i = A[n + i], R[i][i], T[i]
         for m in range(i + 1, k):

@@ -8,7 +8,13 @@ import numpy as np
 from ekfsim.filters.algebra import SHARP, refusal, refusal_one, wrapped
 from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.filters.conditioning import Conditioned, conditioned, slope, square_root, squared
-from ekfsim.filters.conditioning_one import conditioned_one, nis_one, slope_one, square_root_one, squared_one
+from ekfsim.filters.conditioning_one import (
+    conditioned_one,
+    nis_one,
+    slope_one,
+    square_root_one,
+    squared_one,
+)
 from ekfsim.geometry import Array, Booleans, Integers
 
 
@@ -23,11 +29,16 @@ class Linearized(NamedTuple):
 
 
 def corrected(
-    prior: Gaussian, reading: Linearized, skip: Booleans | bool, gate: float | None, headings: tuple[int, ...]
+    prior: Gaussian,
+    reading: Linearized,
+    skip: Booleans | bool,
+    gate: float | None,
+    headings: tuple[int, ...],
 ) -> tuple[Gaussian, Correction]:
     """S = H P⁻ Hᵀ + R      K = P⁻ Hᵀ S⁻¹      x = x⁻ + K ν      P = (I − KH) P⁻
 
-    The Kalman filter's update with a reading that is linearised already. P by its square root, see conditioning.py.
+    The Kalman filter's update with a reading that is linearised already. P by its square root, see
+    conditioning.py.
     """
     if prior.mean.ndim == 1 and reading.z.ndim == 1:
         return _corrected_one(prior, reading, bool(skip), gate, headings)
@@ -47,7 +58,9 @@ def seen(H: Array) -> Array:
     return seen
 
 
-def revised(prior: Gaussian, learnt: Conditioned, innovation: Array, headings: tuple[int, ...]) -> Gaussian:
+def revised(
+    prior: Gaussian, learnt: Conditioned, innovation: Array, headings: tuple[int, ...]
+) -> Gaussian:
     """x = x⁻ + K ν      P = L Lᵀ, the prior's own where nothing was learnt"""
     x, P = prior
     told = np.any(learnt.variances > 0, axis=-1)[..., None, None]
@@ -79,8 +92,12 @@ def _corrected_one(
     return posterior, Correction(h, innovation, R, S, H, K, np.array(nis), np.array(int(refused)))
 
 
-def _dull(P: Array, H: Array, R: Array, innovation: Array) -> tuple[Array, Array, Array, float] | None:
-    """K, S, P and NIS of one number that leaves of every variance so much that the textbook's difference is right."""
+def _dull(
+    P: Array, H: Array, R: Array, innovation: Array
+) -> tuple[Array, Array, Array, float] | None:
+    """K, S, P and NIS of one number that leaves of every variance so much that the textbook's
+    difference is right.
+    """
     if len(innovation) != 1:
         return None
     row, r = H[0], float(R[0, 0])
@@ -92,7 +109,9 @@ def _dull(P: Array, H: Array, R: Array, innovation: Array) -> tuple[Array, Array
     return column / s, np.array([[s]]), P - column * PHt / s, float(innovation[0]) ** 2 / s
 
 
-def _any(P: Array, H: Array, R: Array, h: Array, innovation: Array) -> tuple[Array, Array, Array, float]:
+def _any(
+    P: Array, H: Array, R: Array, h: Array, innovation: Array
+) -> tuple[Array, Array, Array, float]:
     """K, S, P and NIS by the square root of P, in plain floats."""
     rows, slopes = P.tolist(), H.tolist()
     L = square_root_one(rows, slopes)

@@ -14,10 +14,13 @@ from ekfsim.models.protocols import Motion, Sensor
 
 @dataclass(frozen=True)
 class EKF:
-    """Extended Kalman filter: Thrun, Burgard & Fox, Probabilistic Robotics, 2005, Table 3.3; assignment, section 3."""
+    """Extended Kalman filter: Thrun, Burgard & Fox, Probabilistic Robotics, 2005, Table 3.3;
+    assignment, section 3.
+    """
 
     remark: ClassVar[str] = ""
-    gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    gate: float | None = None
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
 
     @classmethod
@@ -26,7 +29,9 @@ class EKF:
         return cls(beginning.gate, beginning.headings)
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
-        """x⁻ = f(x, u)      P⁻ = F P Fᵀ + G M Gᵀ + Q          eqs 4, 7; u : (…, m) in the motion's units"""
+        """x⁻ = f(x, u)      P⁻ = F P Fᵀ + G M Gᵀ + Q
+        eqs 4, 7; u : (…, m) in the motion's units
+        """
         x, P = belief
         f, F, G, M, Q = motion.linearize(x, u)
         P_new = unrolled.predicted(P, F, G, M, Q) if F.ndim == 3 else None
@@ -40,7 +45,8 @@ class EKF:
         """ν = z − h(x⁻)      S = H P⁻ Hᵀ + R      K = P⁻ Hᵀ S⁻¹          eqs 9, 11; z : (…, k)
         x = x⁻ + K ν      P = (I − KH) P⁻          eqs 10, 12
 
-        Where the reading is refused the belief stays as it is; ν, S, K and NIS are told all the same.
+        Where the reading is refused the belief stays as it is; ν, S, K and NIS are told all the
+        same.
         """
         x, P = prior
         h, H, R = sensor.linearize(x)

@@ -19,18 +19,22 @@ from ekfsim.models.protocols import Motion, Sensor
 
 @dataclass(frozen=True)
 class IEKF:
-    """Iterated extended Kalman filter: Bar-Shalom, Li & Kirubarajan, Estimation, 2001, section 10.5.2.
+    """Iterated extended Kalman filter: Bar-Shalom, Li & Kirubarajan, Estimation, 2001, section
+    10.5.2.
 
-    The update is a Gauss–Newton search for the most probable state: h is linearised again at what the update gives,
-    until that no longer moves. A step that does not lead to a more probable state is halved until it does: Skoglund,
-    Hendeby & Axehill, Extended Kalman filter modifications based on an optimization view point, 2015. A linear sensor
-    is linearised alike everywhere, and all is as in the EKF.
+    The update is a Gauss–Newton search for the most probable state: h is linearised again at what
+    the update gives, until that no longer moves. A step that does not lead to a more probable state
+    is halved until it does: Skoglund, Hendeby & Axehill, Extended Kalman filter modifications based
+    on an optimization view point, 2015. A linear sensor is linearised alike everywhere, and all is
+    as in the EKF.
     """
 
     remark: ClassVar[str] = ""
-    gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    gate: float | None = None
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
-    iterations: int = Tuning.iterations  # how many steps the search takes at most, half a step counting as half
+    # how many steps the search takes at most, half a step counting as half
+    iterations: int = Tuning.iterations
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:
@@ -38,7 +42,9 @@ class IEKF:
         return cls(beginning.gate, beginning.headings, beginning.tuning.iterations)
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
-        """x⁻ = f(x, u)      P⁻ = F P Fᵀ + G M Gᵀ + Q          as the EKF does: there is nothing to iterate"""
+        """x⁻ = f(x, u)      P⁻ = F P Fᵀ + G M Gᵀ + Q
+        as the EKF does: there is nothing to iterate
+        """
         return EKF(self.gate, self.headings).predict(belief, motion, u)
 
     def update(
@@ -49,8 +55,9 @@ class IEKF:
 
             J(x) = (x − x⁻)ᵀ P⁻⁺ (x − x⁻) + (z − h(x))ᵀ R⁻¹ (z − h(x))
 
-        P = (I − KᵢHᵢ) P⁻ at the last i. R stays that of x⁻, as a sum of squares needs one measure. What the reading is
-        judged by, ν, S and NIS, comes from the prediction x⁻; H and K are those of the last i.
+        P = (I − KᵢHᵢ) P⁻ at the last i. R stays that of x⁻, as a sum of squares needs one measure.
+        What the reading is judged by, ν, S and NIS, comes from the prediction x⁻; H and K are those
+        of the last i.
         """
         if self.iterations == 0:
             return EKF(self.gate, self.headings).update(prior, sensor, z, skip)

@@ -16,19 +16,23 @@ from ekfsim.models.protocols import Motion, Sensor, angles
 
 @dataclass(frozen=True)
 class KF:
-    """Linear Kalman filter: Tamás et al., section II.A (document 001's LKF); Thrun, Burgard & Fox, 2005, Table 3.1.
+    """Linear Kalman filter: Tamás et al., section II.A (document 001's LKF); Thrun, Burgard & Fox,
+    2005, Table 3.1.
 
-    It knows a motion and a sensor only by their tangents at one state x₀, the mean of the first belief, however far
-    the robot goes from there:
+    It knows a motion and a sensor only by their tangents at one state x₀, the mean of the first
+    belief, however far the robot goes from there:
 
-        f(x, u) ≈ f(x₀, u) + F(x₀, u) (x − x₀)      h(x) ≈ h(x₀) + H(x₀) (x − x₀)      G, M, Q and R as they are at x₀
+        f(x, u) ≈ f(x₀, u) + F(x₀, u) (x − x₀)      h(x) ≈ h(x₀) + H(x₀) (x − x₀)
+        G, M, Q and R as they are at x₀
 
-    Where f and h are linear this is exact. Where they are not, each turn of the robot makes it worse.
+    Where f and h are linear this is exact. Where they are not, each turn of the robot makes it
+    worse.
     """
 
     remark: ClassVar[str] = "linearised once, at the first belief"
     about: Array  # x₀ : (…, n)
-    gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    gate: float | None = None
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
 
     @classmethod
@@ -46,10 +50,12 @@ class KF:
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
     ) -> tuple[Gaussian, Correction]:
-        """ν = z − h(x₀) − H (x⁻ − x₀)      S = H P⁻ Hᵀ + R      K = P⁻ Hᵀ S⁻¹          eq. 9; z : (…, k)
+        """ν = z − h(x₀) − H (x⁻ − x₀)      S = H P⁻ Hᵀ + R      K = P⁻ Hᵀ S⁻¹
+        eq. 9; z : (…, k)
         x = x⁻ + K ν      P = (I − KH) P⁻          eqs 10, 11
 
-        Where the reading is refused the belief stays as it is; ν, S, K and NIS are told all the same.
+        Where the reading is refused the belief stays as it is; ν, S, K and NIS are told all the
+        same.
         """
         x, P = prior
         h, H, R = sensor.linearize(self.about)

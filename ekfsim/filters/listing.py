@@ -8,8 +8,8 @@ from ekfsim.filters.belief import Belief, Correction, Prediction
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans
-from ekfsim.models.frozen import Frozen
 from ekfsim.models.protocols import Motion, Sensor
+from ekfsim.models.sensors.frozen import Frozen
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +29,15 @@ class Remembering:
 class ListingEKF:
     """An EKF that linearises every marker where the robot stood before the time update.
 
-    The listing keeps xM, yM and Phi from before the time update and never refreshes them, so the markers of one
-    instant are all held against the same stale prediction; section 3.2 linearises at the newest estimate. The authors
-    of document 003 take the innovation of their fixes in the same way.
+    The listing keeps xM, yM and Phi from before the time update and never refreshes them, so the
+    markers of one instant are all held against the same stale prediction; section 3.2 linearises at
+    the newest estimate. The authors of document 003 take the innovation of their fixes in the same
+    way.
     """
 
-    remark: ClassVar[str] = "it holds each reading against where the robot stood before the last motion input"
+    remark: ClassVar[str] = (
+        "it holds each reading against where the robot stood before the last motion input"
+    )
     ekf: EKF
 
     @classmethod

@@ -1,4 +1,6 @@
-"""The linearised Kalman filter, on models that are linearised along a way which is known beforehand."""
+"""The linearised Kalman filter, on models that are linearised along a way which is known
+beforehand.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,7 +15,9 @@ from ekfsim.models.protocols import Motion, Sensor
 
 @dataclass(frozen=True, slots=True)
 class Underway:
-    """A Gaussian, and how many motion inputs led to it: so far along the nominal trajectory it is."""
+    """A Gaussian, and how many motion inputs led to it: so far along the nominal trajectory it
+    is.
+    """
 
     mean: Array  # (…, n)
     covariance: Array  # (…, n, n)
@@ -26,19 +30,24 @@ class Underway:
 
 @dataclass(frozen=True)
 class NominalKF:
-    """Linearised Kalman filter about a nominal trajectory: Gelb, Applied Optimal Estimation, 1974, section 6.1.
+    """Linearised Kalman filter about a nominal trajectory: Gelb, Applied Optimal Estimation, 1974,
+    section 6.1.
 
-    x̄₀, x̄₁, … is where the state would be by plan, with neither noise nor a wrong start. After k motion inputs f and h
-    are known by their tangents there, which need no estimate and can be worked out before the robot starts:
+    x̄₀, x̄₁, … is where the state would be by plan, with neither noise nor a wrong start. After k
+    motion inputs f and h are known by their tangents there, which need no estimate and can be
+    worked out before the robot starts:
 
         f(x, u) ≈ f(x̄ₖ, u) + F(x̄ₖ, u) (x − x̄ₖ)      h(x) ≈ h(x̄ₖ) + H(x̄ₖ) (x − x̄ₖ)
 
     A wrong estimate cannot spoil them, as it can the EKF's; a robot that leaves its plan does.
     """
 
-    remark: ClassVar[str] = "linearised about the nominal trajectory: the way as it is planned, driven without noise"
+    remark: ClassVar[str] = (
+        "linearised about the nominal trajectory: the way as it is planned, driven without noise"
+    )
     trajectory: Array  # x̄ : (T + 1, n), before, between and after the T motion inputs of the plan
-    gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    gate: float | None = None
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
 
     @classmethod
@@ -64,7 +73,9 @@ class NominalKF:
         return Underway(x, P, k), correction
 
     def _about(self, k: int) -> KF:
-        """The Kalman filter of the models' tangents at x̄ₖ, at the end of the plan once it is over."""
+        """The Kalman filter of the models' tangents at x̄ₖ, at the end of the plan once it is
+        over.
+        """
         return KF(self.trajectory[min(k, len(self.trajectory) - 1)], self.gate, self.headings)
 
 

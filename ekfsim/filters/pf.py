@@ -23,16 +23,18 @@ KEPT = 10  # particles that even the sharpest reading leaves, or so
 
 @dataclass(frozen=True)
 class PF:
-    """Bootstrap particle filter: Gordon, Salmond & Smith, 1993; Thrun, Burgard & Fox, 2005, Tables 4.3 and 4.4; the
-    particles that are drawn anew are parted by a kernel (regularised).
+    """Bootstrap particle filter: Gordon, Salmond & Smith, 1993; Thrun, Burgard & Fox, 2005, Tables
+    4.3 and 4.4; the particles that are drawn anew are parted by a kernel (regularised).
 
-    The one filter that is not pure: it draws, and each draw advances the generator of its run. Each run has its own,
-    and draws as many numbers whatever they are, so that a run is the same alone as among others.
+    The one filter that is not pure: it draws, and each draw advances the generator of its run. Each
+    run has its own, and draws as many numbers whatever they are, so that a run is the same alone as
+    among others.
     """
 
     remark: ClassVar[str] = ""
     generators: tuple["Generator", ...]  # one for each run, in the order of the leading axes
-    gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    gate: float | None = None
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
     count: int = Tuning.particles  # particles of each run
 
@@ -47,8 +49,9 @@ class PF:
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Particles, Prediction]:
         """xᵢ⁻ = f(xᵢ, u) + G(xᵢ, u) wᵢ + qᵢ      wᵢ ~ N(0, M)      qᵢ ~ N(0, Q)          u : (…, m)
 
-        The input's noise goes through the model's own G, for a model may mean another way for its noise than for its
-        input (document 000: the gyro turns, the wheels err). F and G told are those at the mean.
+        The input's noise goes through the model's own G, for a model may mean another way for its
+        noise than for its input (document 000: the gyro turns, the wheels err). F and G told are
+        those at the mean.
         """
         crowd = self._crowd(belief)
         _, F, G, M, Q = motion.linearize(crowd.mean, u)
@@ -64,11 +67,13 @@ class PF:
     ) -> tuple[Particles, Correction]:
         """wᵢ ∝ wᵢ⁻ exp(−½ νᵢᵀ Rᵢ⁻¹ νᵢ) / √|Rᵢ|      νᵢ = z − h(xᵢ)          z : (…, k)
 
-        A particle that predicts no reading explains none: its weight becomes 0. If all do so, the reading is refused.
-        Where fewer than half of the particles count, 1/Σ wᵢ² < p/2, they are drawn anew by their weights, and parted.
+        A particle that predicts no reading explains none: its weight becomes 0. If all do so, the
+        reading is refused. Where fewer than half of the particles count, 1/Σ wᵢ² < p/2, they are
+        drawn anew by their weights, and parted.
 
-        What is told are the moments of the prior's readings: ẑ = Σ wᵢ h(xᵢ), S = their spread + Σ wᵢ Rᵢ, K = P_xz S⁻¹,
-        and P_zx P⁺ for H. They judge the reading; they do not move the particles.
+        What is told are the moments of the prior's readings: ẑ = Σ wᵢ h(xᵢ), S = their spread + Σ
+        wᵢ Rᵢ, K = P_xz S⁻¹, and P_zx P⁺ for H. They judge the reading; they do not move the
+        particles.
         """
         crowd = self._crowd(prior)
         h, _, R = sensor.linearize(crowd.states)
@@ -78,7 +83,8 @@ class PF:
         log = _log_likelihood(sensor.residual(z[..., None, :], h), R, grain)
         seen = np.where(crowd.weights > 0, log, -np.inf)
         best = seen.max(axis=-1, keepdims=True)
-        weights = crowd.weights * np.exp(seen - np.where(np.isfinite(best), best, 0.0))  # the best of them is not 0
+        # the best of them is not 0
+        weights = crowd.weights * np.exp(seen - np.where(np.isfinite(best), best, 0.0))
         used: Booleans = np.isfinite(best) & (np.asarray(told.refused)[..., None] == Refused.NOT)
         weights = np.where(used, weights, crowd.weights)
         weights = weights / weights.sum(axis=-1, keepdims=True)
@@ -96,7 +102,9 @@ class PF:
     def _told(
         self, crowd: Particles, sensor: Sensor, z: Array, h: Array, R: Array, skip: Booleans | bool
     ) -> tuple[Correction, Array]:
-        """The correction in numbers that people know, and the spread of the particles' readings : (…, k, k)"""
+        """The correction in numbers that people know, and the spread of the particles' readings :
+        (…, k, k)
+        """
         met: Booleans = np.asarray(~np.isnan(h).any(axis=-1))
         weights = np.where(met, crowd.weights, 0.0)
         total = weights.sum(axis=-1, keepdims=True)
@@ -116,7 +124,9 @@ class PF:
         return Correction(predicted, innovation, noise, S, H, gain(cross, S), nis, refused), spread
 
     def _crowd(self, belief: Belief) -> Particles:
-        """The belief as particles; those of a Gaussian are drawn from it, and stand for its own mean and covariance."""
+        """The belief as particles; those of a Gaussian are drawn from it, and stand for its own
+        mean and covariance.
+        """
         if isinstance(belief, Particles):
             return belief
         x, P = belief
@@ -124,19 +134,24 @@ class PF:
         return Particles(x, P, states, np.full(states.shape[:-1], 1 / self.count))
 
     def _drawn_anew(self, crowd: Particles) -> Array:
-        """Particles of equal weight in place of a weighted crowd : (…, p, n), no two of them the same.
+        """Particles of equal weight in place of a weighted crowd : (…, p, n), no two of them the
+        same.
 
-        x' = x̄ + √(1 − b²) (x − x̄) + b e      e ~ N(0, P)      b = (4/((n + 2) p))^(1/(n + 4)), Silverman's rule
+        x' = x̄ + √(1 − b²) (x − x̄) + b e      e ~ N(0, P)
+        b = (4/((n + 2) p))^(1/(n + 4)), Silverman's rule
 
-        Copies alone would leave few different particles after a sharp reading. A kernel of the crowd's own shape parts
-        them; moved towards the mean by as much, they keep mean and covariance: Musso, Oudjane & Le Gland, 2001, and
-        Liu & West, 2001, in: Doucet et al., Sequential Monte Carlo Methods in Practice, chapters 12 and 10.
+        Copies alone would leave few different particles after a sharp reading. A kernel of the
+        crowd's own shape parts them; moved towards the mean by as much, they keep mean and
+        covariance: Musso, Oudjane & Le Gland, 2001, and Liu & West, 2001, in: Doucet et al.,
+        Sequential Monte Carlo Methods in Practice, chapters 12 and 10.
         """
         p, n = crowd.states.shape[-2:]
         b = (4 / ((n + 2) * p)) ** (1 / (n + 4))
         hit = systematic(crowd.weights, self._uniforms(crowd.mean))
         x_mean = crowd.mean[..., None, :]
-        away = wrapped(np.take_along_axis(crowd.states, hit[..., None], axis=-2) - x_mean, self.headings)
+        away = wrapped(
+            np.take_along_axis(crowd.states, hit[..., None], axis=-2) - x_mean, self.headings
+        )
         kernel = self._normals(crowd.covariance, crowd.mean)
         return wrapped(x_mean + math.sqrt(1 - b * b) * away + b * kernel, self.headings)
 
@@ -147,9 +162,13 @@ class PF:
         return Particles(mean, symmetric(δ.mT @ (weights[..., None] * δ)), states, weights)
 
     def _normals(self, covariance: Array, x: Array) -> Array:
-        """One draw from N(0, covariance) for each particle : (…, p, m). covariance : (…, m, m), x : (…, n)"""
+        """One draw from N(0, covariance) for each particle : (…, p, m). covariance : (…, m, m), x :
+        (…, n)
+        """
         m = covariance.shape[-1]
-        drawn = np.stack([generator.standard_normal((self.count, m)) for generator in self.generators])
+        drawn = np.stack(
+            [generator.standard_normal((self.count, m)) for generator in self.generators]
+        )
         drawn = drawn.reshape(*x.shape[:-1], self.count, m)
         noise: Array = np.matvec(square_root(covariance)[..., None, :, :], drawn)
         return noise
@@ -160,7 +179,8 @@ class PF:
 
 
 def systematic(weights: Array, u: Array) -> Integers:
-    """Which particle each of p pointers (i + u)/p, i = 0 … p − 1, hits on the weights laid end to end : (…, p)
+    """Which particle each of p pointers (i + u)/p, i = 0 … p − 1, hits on the weights laid end to
+    end : (…, p)
 
     Systematic resampling: Thrun, Burgard & Fox, Table 4.4. weights : (…, p), u : (…) in [0, 1)
 
@@ -169,25 +189,29 @@ def systematic(weights: Array, u: Array) -> Integers:
     """
     p = weights.shape[-1]
     ends = np.cumsum(weights, axis=-1)
-    before = np.ceil(p * (ends / ends[..., -1:]) - u[..., None]).astype(np.int64)  # pointers before each end
+    # pointers before each end
+    before = np.ceil(p * (ends / ends[..., -1:]) - u[..., None]).astype(np.int64)
     runs = math.prod(weights.shape[:-1])
     tally = np.bincount(
-        (before.reshape(runs, p) + (p + 1) * np.arange(runs)[:, None]).ravel(), minlength=(p + 1) * runs
+        (before.reshape(runs, p) + (p + 1) * np.arange(runs)[:, None]).ravel(),
+        minlength=(p + 1) * runs,
     )
     hit: Integers = np.cumsum(tally.reshape(*weights.shape[:-1], p + 1), axis=-1)[..., :p]
     return hit
 
 
 def _log_likelihood(ν: Array, R: Array, grain: Array) -> Array:
-    """log N(ν; 0, R) but for a constant : (…, p), −∞ where nothing was predicted. ν : (…, p, k), grain : (…, k, k)
+    """log N(ν; 0, R) but for a constant : (…, p), −∞ where nothing was predicted. ν : (…, p, k),
+    grain : (…, k, k)
 
-    The grain is the covariance of what holds some ten of p particles, in d dimensions their spread by (10/p)^(2/d). It
-    is added to R: a sensor that is sharper than the crowd is dense leaves the ten nearest in place of one, from which
-    no crowd could recover.
+    The grain is the covariance of what holds some ten of p particles, in d dimensions their spread
+    by (10/p)^(2/d). It is added to R: a sensor that is sharper than the crowd is dense leaves the
+    ten nearest in place of one, from which no crowd could recover.
     """
     R = R + np.nan_to_num(grain)[..., None, :, :]
     if R.shape[-1] == 1:
-        r = np.where(R[..., 0, 0] > 0, R[..., 0, 0], 1.0)  # all particles alike, and no noise: nothing to tell
+        # all particles alike, and no noise: nothing to tell
+        r = np.where(R[..., 0, 0] > 0, R[..., 0, 0], 1.0)
         log: Array = -0.5 * (ν[..., 0] ** 2 / r + np.log(r))
     else:
         sign, log_det = np.linalg.slogdet(np.where(np.isnan(R), 0.0, R))

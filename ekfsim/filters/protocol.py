@@ -19,16 +19,20 @@ class Beginning:
 
     first: Gaussian  # the first belief: (…, n), (…, n, n)
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
-    gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
-    generators: Callable[[], Sequence["Generator"]] | None = None  # one for each run, from the run's seed and number
+    # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    gate: float | None = None
+    # one for each run, from the run's seed and number
+    generators: Callable[[], Sequence["Generator"]] | None = None
     tuning: Tuning = UNTUNED  # the numbers that this filter alone may have
-    nominal: Callable[[], Array] | None = None  # where the state would be by plan : (T + 1, n); None: no plan is known
+    # where the state would be by plan : (T + 1, n); None: no plan is known
+    nominal: Callable[[], Array] | None = None
 
 
 class Filter(Protocol):
     """A filter holds its settings and nothing else; beliefs go in and come out."""
 
-    remark: ClassVar[str]  # what a reader of its results should know of it, without a full stop; "" if nothing
+    # what a reader of its results should know of it, without a full stop; "" if nothing
+    remark: ClassVar[str]
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:
@@ -40,4 +44,6 @@ class Filter(Protocol):
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
     ) -> tuple[Belief, Correction]:
-        """The belief after a reading z : (…, k). Where skip : (…) is set the reading is judged but not used."""
+        """The belief after a reading z : (…, k). Where skip : (…) is set the reading is judged but
+        not used.
+        """

@@ -1,4 +1,6 @@
-"""A counter-example: a filter that keeps of P what ellipse and cone show of it. Not to be localized by."""
+"""A counter-example: a filter that keeps of P what ellipse and cone show of it. Not to be localized
+by.
+"""
 
 import dataclasses
 from dataclasses import dataclass
@@ -13,7 +15,9 @@ from ekfsim.models.protocols import Motion, Sensor
 
 @dataclass(frozen=True)
 class ShadowsAlone:
-    """Any filter of a pose, P with σ_xθ = σ_yθ = 0 after every step: position and heading as if they erred apart."""
+    """Any filter of a pose, P with σ_xθ = σ_yθ = 0 after every step: position and heading as if
+    they erred apart.
+    """
 
     remark: ClassVar[str] = ""
     filter: Filter

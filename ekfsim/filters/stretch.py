@@ -10,10 +10,12 @@ from ekfsim.models.protocols import Motion
 
 
 def stretch(belief: Belief, motion: Motion, U: Array) -> Gaussian:
-    """The beliefs after each of N inputs, as EKF.predict gives them one by one: (N, …, 3), (N, …, 3, 3). U : (N, …, m)
+    """The beliefs after each of N inputs, as EKF.predict gives them one by one: (N, …, 3), (N, …,
+    3, 3). U : (N, …, m)
 
-    For motions of x = (x, y, θ) that are the same everywhere: a robot that is moved and turned goes the same way, moved
-    and turned, D(θ) = Rot(θ) D(0). Headings and places are then cumulative sums, and with p the way from the start
+    For motions of x = (x, y, θ) that are the same everywhere: a robot that is moved and turned goes
+    the same way, moved and turned, D(θ) = Rot(θ) D(0). Headings and places are then cumulative
+    sums, and with p the way from the start
 
         F = A(Δp)      A(p) = [1 0 −p_y;  0 1 p_x;  0 0 1]      A(p) A(q) = A(p + q)
         P_k = A(p_k) (P₀ + Σ_j≤k A(−p_j) W_j A(−p_j)ᵀ) A(p_k)ᵀ      W = G M Gᵀ + Q
@@ -21,7 +23,8 @@ def stretch(belief: Belief, motion: Motion, U: Array) -> Gaussian:
     so that the covariances are cumulative sums, too. Held equal to EKF.predict in a loop by a test.
     """
     x, P = belief
-    along, aside, turn = motion.f(np.zeros_like(x), U).T  # seen from where each step begins; time last, as is fastest
+    # seen from where each step begins; time last, as is fastest
+    along, aside, turn = motion.f(np.zeros_like(x), U).T
     θ = wrap(x[..., 2].T[..., None] + np.cumsum(turn, axis=-1))
     before = np.zeros((*θ.T.shape, 3))
     before[:1, ..., 2], before[1:, ..., 2] = x[..., 2], θ.T[:-1]
@@ -35,7 +38,9 @@ def stretch(belief: Belief, motion: Motion, U: Array) -> Gaussian:
 
 
 def _sheared(P: Array, way: Array) -> Array:
-    """A(p) P A(p)ᵀ : (3, 3, …, N), in place; the uncertainty of a heading, seen a way p : (2, …, N) further."""
+    """A(p) P A(p)ᵀ : (3, 3, …, N), in place; the uncertainty of a heading, seen a way p : (2, …, N)
+    further.
+    """
     c = np.stack([-way[1], way[0]])
     P[:2] += c[:, None] * P[2:]
     P[:, :2] += c * P[:, 2:]

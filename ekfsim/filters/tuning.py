@@ -8,21 +8,26 @@ CrossCovariances = Literal["kept", "dropped"]
 MOST_PARTICLES = 1_000_000
 UNSCENTED = "ukf", "ukf-augmented"
 OF_SOME = {  # whose number it is
-    "particles": ("pf",), "alpha": UNSCENTED, "beta": UNSCENTED, "kappa": UNSCENTED, "iterations": ("iekf",),
+    "particles": ("pf",), "alpha": UNSCENTED, "beta": UNSCENTED, "kappa": UNSCENTED,
+    "iterations": ("iekf",),
 }  # fmt: skip
 HAS_NO_P = "pf"  # which has nothing to drop from
 
 
 @dataclass(frozen=True)
 class Tuning:
-    """What may be set of a filter besides gate and guard; as it comes, every filter is its textbook's."""
+    """What may be set of a filter besides gate and guard; as it comes, every filter is its
+    textbook's.
+    """
 
     particles: int = 1000  # of each run's particle filter
     alpha: float = 1.0  # of the sigma points: √(α² (n + κ)) standard deviations from the mean
     beta: float = 0.0  # what is known of the shape: 2 for a Gaussian, where α is small
     kappa: float | None = None  # None: max(3 − n, 0)
-    iterations: int = 50  # steps of the iterated filter's search at most, half a step counting as half; 0 is the EKF
-    range_variance: RangeVariance = "prediction"  # whence the classroom's C_v = (ratio · r)² takes its r
+    # steps of the iterated filter's search at most, half a step counting as half; 0 is the EKF
+    iterations: int = 50
+    # whence the classroom's C_v = (ratio · r)² takes its r
+    range_variance: RangeVariance = "prediction"
     cross_covariances: CrossCovariances = "kept"  # σ_xθ and σ_yθ, which no picture shows
 
 

@@ -27,19 +27,24 @@ _weights = lru_cache(maxsize=64)(weights)
 
 @dataclass(frozen=True)
 class UKF:
-    """Unscented Kalman filter: Tamás et al., section II.C (document 001); Wan & van der Merwe, 2001, table 7.3.2.
+    """Unscented Kalman filter: Tamás et al., section II.C (document 001); Wan & van der Merwe,
+    2001, table 7.3.2.
 
-    Noise is added (eqs 21, 24); eq. 22 draws it into the sigma points, as ukf_augmented.py does. Headings, and readings
-    that are angles, are averaged as turns from where the mean goes, so that a heading may be as uncertain as one likes.
-    As they come, α, β and κ give Julier's points, and no weight is negative.
+    Noise is added (eqs 21, 24); eq. 22 draws it into the sigma points, as ukf_augmented.py does.
+    Headings, and readings that are angles, are averaged as turns from where the mean goes, so that
+    a heading may be as uncertain as one likes. As they come, α, β and κ give Julier's points, and
+    no weight is negative.
 
-    A point whose heading would lie more than a quarter of a turn away is taken there, see unscented.reach.
+    A point whose heading would lie more than a quarter of a turn away is taken there, see
+    unscented.reach.
     """
 
     remark: ClassVar[str] = ""
-    gate: float | None = None  # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    # probability; a reading whose NIS lies beyond that χ² quantile is refused
+    gate: float | None = None
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
-    alpha: float = Tuning.alpha  # how far the points lie from the mean: √(α² (n + κ)) standard deviations
+    # how far the points lie from the mean: √(α² (n + κ)) standard deviations
+    alpha: float = Tuning.alpha
     beta: float = Tuning.beta  # what is known of the shape: 2 for a Gaussian, where α is small
     kappa: float | None = Tuning.kappa  # None: max(3 − n, 0)
 
@@ -53,8 +58,8 @@ class UKF:
         """Xᵢ = sigma points of x, P      x⁻ = Σ Wᵢᵐ f(Xᵢ, u)          eqs 14, 20; u : (…, m)
         P⁻ = Σ Wᵢᶜ (f(Xᵢ, u) − x⁻)(f(Xᵢ, u) − x⁻)ᵀ + G M Gᵀ + Q          eq. 21
 
-        The input's noise is spread by G, taken at x: only what the state's own uncertainty does is unscented. F told
-        is P_x⁻x P⁺.
+        The input's noise is spread by G, taken at x: only what the state's own uncertainty does is
+        unscented. F told is P_x⁻x P⁺.
         """
         x, P = belief
         _, F, G, M, Q = motion.linearize(x, u)
@@ -68,24 +73,30 @@ class UKF:
             self.headings,
         )
         P_new = self._definite(x, covariance(moved.covariance + G @ M @ G.mT + Q))
-        return Gaussian(moved.mean, P_new), Prediction(statistical_slope(moved.slope, moved.root), G)
+        return Gaussian(moved.mean, P_new), Prediction(
+            statistical_slope(moved.slope, moved.root), G
+        )
 
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
     ) -> tuple[Gaussian, Correction]:
-        """Zᵢ = h(Xᵢ)      ẑ = Σ Wᵢᵐ Zᵢ      S = Σ Wᵢᶜ (Zᵢ − ẑ)(Zᵢ − ẑ)ᵀ + R          eqs 22 to 24; z : (…, k)
+        """Zᵢ = h(Xᵢ)      ẑ = Σ Wᵢᵐ Zᵢ      S = Σ Wᵢᶜ (Zᵢ − ẑ)(Zᵢ − ẑ)ᵀ + R
+        eqs 22 to 24; z : (…, k)
         P_xz = Σ Wᵢᶜ (Xᵢ − x⁻)(Zᵢ − ẑ)ᵀ      K = P_xz S⁻¹          eqs 25, 26
         x = x⁻ + K (z − ẑ)      P = P⁻ − K S Kᵀ          eqs 27, 28
 
-        Xᵢ are the sigma points of the prior, drawn afresh; P⁻ = L Lᵀ, P_xz = L Dᵀ, S = D Dᵀ + Ω + R. What bends, Ω,
-        is to the filter one more noise. R is taken at x⁻; H told is P_zx P⁺. Where any Zᵢ predicts no reading (nan),
-        neither ẑ nor S is known, for the points that are left no longer have the prior's mean and covariance: then
-        the reading is refused as one that meets no wall.
+        Xᵢ are the sigma points of the prior, drawn afresh; P⁻ = L Lᵀ, P_xz = L Dᵀ, S = D Dᵀ + Ω +
+        R. What bends, Ω, is to the filter one more noise. R is taken at x⁻; H told is P_zx P⁺.
+        Where any Zᵢ predicts no reading (nan), neither ẑ nor S is known, for the points that are
+        left no longer have the prior's mean and covariance: then the reading is refused as one that
+        meets no wall.
         """
         x, P = prior
         _, H, R = sensor.linearize(x)
         directions = angles(sensor.outputs)
-        seen = unscented_transform(x, P, sensor.h, self._weights(x), directions, self._turning(H), self.headings)
+        seen = unscented_transform(
+            x, P, sensor.h, self._weights(x), directions, self._turning(H), self.headings
+        )
         D, noise = seen.slope, self._definite(x, seen.bend + R)
         innovation = sensor.residual(z, seen.mean)
         learnt = conditioned(seen.root, D, noise, seen.mean)
@@ -93,7 +104,14 @@ class UKF:
         refused = refusal(z, seen.mean, nis, skip, self.gate)
         posterior = revised(Gaussian(x, P), learnt, innovation, self.headings)
         return where_used(refused, posterior, Gaussian(x, P)), Correction(
-            seen.mean, innovation, R, learnt.S(D, noise), statistical_slope(D, seen.root), learnt.K, nis, refused
+            seen.mean,
+            innovation,
+            R,
+            learnt.S(D, noise),
+            statistical_slope(D, seen.root),
+            learnt.K,
+            nis,
+            refused,
         )
 
     def _turning(self, J: Array) -> Array | None:

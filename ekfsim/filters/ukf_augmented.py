@@ -12,16 +12,19 @@ from ekfsim.models.protocols import Motion, Quantity, Sensor
 
 @dataclass(frozen=True)
 class AugmentedUKF(UKF):
-    """Unscented Kalman filter with augmented sigma points: Tamás et al., eq. 22 (document 001); Wan & van der Merwe,
-    2001, table 7.3.
+    """Unscented Kalman filter with augmented sigma points: Tamás et al., eq. 22 (document 001); Wan
+    & van der Merwe, 2001, table 7.3.
 
-    State and noise make one vector, Xᵃ = (Xˣ, Xʷ, Xⁿ), and so one set of sigma points: what a noise of the input does
-    to the state is unscented, too, where the UKF of ukf.py has G M Gᵀ. The points are more, and lie further out: at
-    √nᵃ deviations, where none is to count negatively. They are drawn afresh for the reading, with its noise alone.
+    State and noise make one vector, Xᵃ = (Xˣ, Xʷ, Xⁿ), and so one set of sigma points: what a noise
+    of the input does to the state is unscented, too, where the UKF of ukf.py has G M Gᵀ. The points
+    are more, and lie further out: at √nᵃ deviations, where none is to count negatively. They are
+    drawn afresh for the reading, with its noise alone.
     """
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
-        """x⁻ = Σ Wᵢᵐ (f(Xˣᵢ, u + Xʷᵢ) + Xᵠᵢ), Xʷ of covariance M, Xᵠ of Q          eqs 12, 20, 21; u : (…, m)"""
+        """x⁻ = Σ Wᵢᵐ (f(Xˣᵢ, u + Xʷᵢ) + Xᵠᵢ), Xʷ of covariance M, Xᵠ of Q
+        eqs 12, 20, 21; u : (…, m)
+        """
         x, P = belief
         n, m = x.shape[-1], u.shape[-1]
         Q = motion.Q(u)
@@ -32,18 +35,24 @@ class AugmentedUKF(UKF):
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
     ) -> tuple[Gaussian, Correction]:
-        """Zᵢ = h(Xˣᵢ) + Xⁿᵢ, Xⁿ of covariance R          eq. 22; then eqs 23 to 28 as in ukf.py; z : (…, k)"""
+        """Zᵢ = h(Xˣᵢ) + Xⁿᵢ, Xⁿ of covariance R
+        eq. 22; then eqs 23 to 28 as in ukf.py; z : (…, k)
+        """
         x, P = prior
         n = x.shape[-1]
         R = sensor.linearize(x)[2]
-        (mean, covariance), told = UKF.update(self, augmented(x, P, np.nan_to_num(R)), NoisySensor(sensor, n), z, skip)
+        (mean, covariance), told = UKF.update(
+            self, augmented(x, P, np.nan_to_num(R)), NoisySensor(sensor, n), z, skip
+        )
         return Gaussian(mean[..., :n], covariance[..., :n, :n]), replace(
             told, R=R, H=told.H[..., :n], K=told.K[..., :n, :]
         )
 
 
 def augmented(x: Array, P: Array, *noises: Array) -> Gaussian:
-    """(x, 0, …) and P with the noises' covariances beside it, all independent : (…, nᵃ), (…, nᵃ, nᵃ)"""
+    """(x, 0, …) and P with the noises' covariances beside it, all independent : (…, nᵃ), (…, nᵃ,
+    nᵃ)
+    """
     blocks = [P, *noises]
     axes = np.broadcast_shapes(x.shape[:-1], *(block.shape[:-2] for block in blocks))
     size = sum(block.shape[-1] for block in blocks)

@@ -1,8 +1,10 @@
-"""The extended Kalman filter of many runs, entry by entry: the twin of the readable one, a few times as fast.
+"""The extended Kalman filter of many runs, entry by entry: the twin of the readable one, a few
+times as fast.
 
-A product of N matrices of 3 × 3 is slow in numpy, the same sums over entries that lie side by side are not. Here every
-array has its entries in front, (3, 3, N), and the runs behind. What needs care (a reading that is nan, a sensor far
-sharper than the belief) is left to the readable text, for those runs alone. A test holds the two equal.
+A product of N matrices of 3 × 3 is slow in numpy, the same sums over entries that lie side by side
+are not. Here every array has its entries in front, (3, 3, N), and the runs behind. What needs care
+(a reading that is nan, a sensor far sharper than the belief) is left to the readable text, for
+those runs alone. A test holds the two equal.
 """
 
 import numpy as np
@@ -17,13 +19,15 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.lanes import back, front
 
 MANY = 64  # runs from which on this pays
-STILL = np.eye(3)[:, :2, None]  # what the first two columns of F are where no motion depends on the place
+# what the first two columns of F are where no motion depends on the place
+STILL = np.eye(3)[:, :2, None]
 
 
 def predicted(P: Array, F: Array, G: Array, M: Array, Q: Array | float) -> Array | None:
     """F P Fᵀ + G M Gᵀ + Q : (N, 3, 3), exactly symmetric; None where this twin does not know how
 
-    F = [1 0 α; 0 1 β; 0 0 1], as that of any robot which moves alike wherever it stands; M diagonal.
+    F = [1 0 α; 0 1 β; 0 0 1], as that of any robot which moves alike wherever it stands; M
+    diagonal.
     """
     if F.shape[-1] != 3 or len(F) < MANY or not len(P) == len(G) == len(M) == len(F):
         return None
@@ -68,7 +72,13 @@ def _propagated(P: Array, F: Array, G: Array, M: Array) -> Array | None:
 
 def knows(x: Array, z: Array, H: Array) -> bool:
     """Whether `updated` may be asked: one number in each of many runs, from a state of three."""
-    return x.ndim == 2 and len(x) >= MANY and x.shape[-1] == 3 and z.shape == (len(x), 1) and H.shape == (len(x), 1, 3)
+    return (
+        x.ndim == 2
+        and len(x) >= MANY
+        and x.shape[-1] == 3
+        and z.shape == (len(x), 1)
+        and H.shape == (len(x), 1, 3)
+    )
 
 
 def updated(
@@ -87,7 +97,8 @@ def updated(
         refused[nis > quantile(gate, 1)] = Refused.GATE
     if skip is not False:
         refused[np.broadcast_to(skip, refused.shape)] = Refused.GUARD
-    covariance = _forced(covariance)  # of those that are not clear nan may be in it: they are done again below
+    # of those that are not clear nan may be in it: they are done again below
+    covariance = _forced(covariance)
     posterior = Gaussian(back(mean, 1), back(covariance))
     correction = Correction(h, ν, R, s[:, None, None], H, back(K, 1)[..., None], nis, refused)
     kept = refused != Refused.NOT
@@ -114,7 +125,9 @@ def _revised(
 
 
 def _forced(P: Array) -> Array:
-    """P as a covariance must be : (3, 3, N), see conditioning.covariance; mostly all are, which is soon seen."""
+    """P as a covariance must be : (3, 3, N), see conditioning.covariance; mostly all are, which is
+    soon seen.
+    """
     sound = _sound
     if backend.used() == "numba":
         from ekfsim.filters.compiled import sound
@@ -125,7 +138,9 @@ def _forced(P: Array) -> Array:
 def _sound(P: Array) -> bool:
     """Whether no variance is negative and no correlation beyond ±1."""
     (a, b, c), (_, d, e), (_, _, v) = P
-    none_beyond = (a >= 0) & (d >= 0) & (v >= 0) & (b * b <= a * d) & (c * c <= a * v) & (e * e <= d * v)
+    none_beyond = (
+        (a >= 0) & (d >= 0) & (v >= 0) & (b * b <= a * d) & (c * c <= a * v) & (e * e <= d * v)
+    )
     return bool(none_beyond.all())
 
 

@@ -8,7 +8,8 @@ from ekfsim.geometry import Array
 
 
 def wrap(angle: Array) -> Array:
-    """The same direction in (−π, π]; an angle already there comes back untouched, to the last digit.
+    """The same direction in (−π, π]; an angle already there comes back untouched, to the last
+    digit.
 
     angle : (…) rad
 
@@ -17,8 +18,11 @@ def wrap(angle: Array) -> Array:
     """
     if np.ndim(angle) and np.all((angle > -np.pi) & (angle <= np.pi)):
         return np.array(angle)
-    rest = np.fmod(angle, 2 * np.pi)  # exact, as are the sums below: no rounding leads out of the range
-    return np.where(rest > np.pi, rest - 2 * np.pi, np.where(rest <= -np.pi, rest + 2 * np.pi, rest))
+    # exact, as are the sums below: no rounding leads out of the range
+    rest = np.fmod(angle, 2 * np.pi)
+    return np.where(
+        rest > np.pi, rest - 2 * np.pi, np.where(rest <= -np.pi, rest + 2 * np.pi, rest)
+    )
 
 
 def wrap_one(angle: float) -> float:

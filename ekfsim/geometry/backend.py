@@ -1,10 +1,11 @@
-"""What follows many beams, and filters and judges many runs: NumPy, or code compiled by Numba, where that is asked for.
+"""What follows many beams, and filters and judges many runs: NumPy, or code compiled by Numba,
+where that is asked for.
 
     backend.use("numba")
 
-NumPy is the default even where Numba is installed: what a study answers must not depend on what else is installed, and
-Numba takes a second to import and, the first time, some to compile. Both find the same walls, and the same ranges and
-beliefs but for the last digits.
+NumPy is the default even where Numba is installed: what a study answers must not depend on what
+else is installed, and Numba takes a second to import and, the first time, some to compile. Both
+find the same walls, and the same ranges and beliefs but for the last digits.
 """
 
 import importlib.util
@@ -24,7 +25,9 @@ def use(backend: Backend) -> None:
     if backend not in BACKENDS:
         raise ValueError(f"{backend!r} is no backend; there are {' and '.join(BACKENDS)}")
     if backend == "numba" and not compiles():
-        raise ModuleNotFoundError("numba is not installed; it comes with ekfsim's extra `fast`", name="numba")
+        raise ModuleNotFoundError(
+            "numba is not installed; it comes with ekfsim's extra `fast`", name="numba"
+        )
     _used = backend
 
 

@@ -1,11 +1,13 @@
-"""Beams that lie close together, as those of a study's runs do: only the walls before all of them are tried.
+"""Beams that lie close together, as those of a study's runs do: only the walls before all of them
+are tried.
 
 Seen from the middle of the bundle, along its mean direction, no beam leaves the wedge
 
-    |across| ≤ ρ + (along + ρ) tan δ     ρ: how far the origins lie from the middle, δ: how far the directions part
+    |across| ≤ ρ + (along + ρ) tan δ
+    ρ: how far the origins lie from the middle, δ: how far the directions part
 
-which is convex: a wall with both ends beyond one of its sides is met by none. And where a wall bars the whole wedge,
-none that lies wholly behind it is met either.
+which is convex: a wall with both ends beyond one of its sides is met by none. And where a wall bars
+the whole wedge, none that lies wholly behind it is met either.
 """
 
 import numpy as np
@@ -24,9 +26,11 @@ SAFE = 1e-6  # of the coordinates' size: by so much the wedge is wider than it n
 def bundle(
     ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array
 ) -> tuple[Array, Integers, Integers] | None:
-    """Ranges and walls of many beams, all (n,), and which beams are left in doubt; None where they are no bundle.
+    """Ranges and walls of many beams, all (n,), and which beams are left in doubt; None where they
+    are no bundle.
 
-    ends : (W, 4) m: x, y of the first and of the second end of each wall; span : (n,) m, the coordinates' size
+    ends : (W, 4) m: x, y of the first and of the second end of each wall; span : (n,) m, the
+    coordinates' size
     """
     if len(x) < FEWEST:
         return None
@@ -44,7 +48,10 @@ def bundle(
             break
     if len(lone) > LONE * len(x):
         return None
-    ρ = float(np.hypot(from_x.max(where=close, initial=0.0), from_y.max(where=close, initial=0.0)) + SAFE * span.max())
+    ρ = float(
+        np.hypot(from_x.max(where=close, initial=0.0), from_y.max(where=close, initial=0.0))
+        + SAFE * span.max()
+    )
     tan_δ = float(np.sqrt(1 / cosine.min(where=close, initial=1.0) ** 2 - 1 + SAFE))
     before = _before(ends - [mx, my, mx, my], ux, uy, ρ, tan_δ)
     if len(before) > MANY_WALLS:
@@ -54,13 +61,17 @@ def bundle(
     else:
         some = np.flatnonzero(close)
         ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
-        ranges[some], walls[some], doubtful = broad(ends[before], *(each[some] for each in (x, y, dx, dy, span)))
+        ranges[some], walls[some], doubtful = broad(
+            ends[before], *(each[some] for each in (x, y, dx, dy, span))
+        )
         doubtful = np.concatenate([some[doubtful], lone])
     return ranges, np.append(before, -1)[walls], doubtful
 
 
 def _before(ends: Array, ux: float, uy: float, ρ: float, tan_δ: float) -> Integers:
-    """The walls that beams of the bundle may meet, in their order. ends : (W, 4) m, seen from its middle"""
+    """The walls that beams of the bundle may meet, in their order. ends : (W, 4) m, seen from its
+    middle
+    """
     ax, ay, bx, by = ends.T
     along = np.stack([ax * ux + ay * uy, bx * ux + by * uy])
     across = np.stack([ax * uy - ay * ux, bx * uy - by * ux])

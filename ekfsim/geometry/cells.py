@@ -1,6 +1,8 @@
-"""A grid and all the grids within its cells, laid end to end: what beams by the thousand walk through.
+"""A grid and all the grids within its cells, laid end to end: what beams by the thousand walk
+through.
 
-Arrays cannot hold a tree, so every cell of every grid gets a number, and a crowded cell names the grid that it holds.
+Arrays cannot hold a tree, so every cell of every grid gets a number, and a crowded cell names the
+grid that it holds.
 """
 
 from dataclasses import dataclass
@@ -19,10 +21,12 @@ class Cells:
     """All cells of a `Grid`; the outermost grid has the number 0, its cells the first numbers."""
 
     grid: Grid  # the outermost
-    ends: Array  # (listed, 4) m: x, y of the first and of the second end of each listed wall, cell after cell
+    # (listed, 4) m: x, y of the first and of the second end of each listed wall, cell after cell
+    ends: Array
     walls: Integers  # (listed,) the index that each of them has on the map
     start: Integers  # (cells + 1,): cell c lists walls[start[c] : start[c + 1]]
-    within: Integers  # (cells,) the number of the grid that a crowded cell holds, else PLAIN or BORDER
+    # (cells,) the number of the grid that a crowded cell holds, else PLAIN or BORDER
+    within: Integers
     place: Array  # (grids, 3) m: left, bottom and cell of each grid
     shape: Integers  # (grids, 3): its columns, its rows, and the number of its first cell
 

@@ -1,8 +1,10 @@
-"""The walk of one beam after the other through the cells of a grid, compiled by Numba: the extra `fast`.
+"""The walk of one beam after the other through the cells of a grid, compiled by Numba: the extra
+`fast`.
 
-Imported only where backend.py has been told to use it. The steps are those of `Grid.walk`, but nothing doubtful is
-decided here: a beam that passes within a hair of a wall's end, or begins within one of a wall, is left to the other
-ways. Numba keeps what it has compiled as long as this file does not change, so the tolerances come as arguments.
+Imported only where backend.py has been told to use it. The steps are those of `Grid.walk`, but
+nothing doubtful is decided here: a beam that passes within a hair of a wall's end, or begins within
+one of a wall, is left to the other ways. Numba keeps what it has compiled as long as this file does
+not change, so the tolerances come as arguments.
 """
 
 from collections.abc import Callable
@@ -22,18 +24,26 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def compiled(function: Function) -> Function:
-    """Compile at the first call, and keep the result for later processes where there is a folder to keep it in."""
+    """Compile at the first call, and keep the result for later processes where there is a folder to
+    keep it in.
+    """
     try:
         return cast("Function", njit(cache=True, nogil=True, error_model="numpy")(function))
     except RuntimeError:  # no folder that can be written
         return cast("Function", njit(nogil=True, error_model="numpy")(function))
 
 
-def walk(cells: Cells, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers, Integers]:
-    """Ranges and walls of many beams, all (n,), and which are left in doubt; those beyond the horizon are, too."""
+def walk(
+    cells: Cells, x: Array, y: Array, dx: Array, dy: Array
+) -> tuple[Array, Integers, Integers]:
+    """Ranges and walls of many beams, all (n,), and which are left in doubt; those beyond the
+    horizon are, too.
+    """
     ranges, walls = np.empty(x.shape), np.empty(x.shape, np.int64)
     tree = cells.ends, cells.walls, cells.start, cells.within, cells.place, cells.shape
-    left = _walk_all(*tree, cells.grid.size, cells.grid.horizon, TIE, 4 * REACH, x, y, dx, dy, ranges, walls)
+    left = _walk_all(
+        *tree, cells.grid.size, cells.grid.horizon, TIE, 4 * REACH, x, y, dx, dy, ranges, walls
+    )
     return ranges, walls, np.flatnonzero(walls == DOUBT) if left else walls[:0]
 
 
@@ -42,9 +52,11 @@ def _try(
     ends: Array, walls: Integers, begin: int, end: int, x: float, y: float, dx: float, dy: float,
     tie: float, doubt: float, low: float, high: float, nearest: int,
 ) -> tuple[float, float, int]:  # fmt: skip
-    """Try the walls of one cell. The nearest ranges so far are from `low` to `high` and differ by no more than a tie.
+    """Try the walls of one cell. The nearest ranges so far are from `low` to `high` and differ by
+    no more than a tie.
 
-    Of their walls `nearest` has the lowest index. A range within a tie of one but not of all is left in doubt.
+    Of their walls `nearest` has the lowest index. A range within a tie of one but not of all is
+    left in doubt.
     """
     for k in range(begin, end):
         ax, ay, bx, by = ends[k, 0] - x, ends[k, 1] - y, ends[k, 2] - x, ends[k, 3] - y
@@ -72,7 +84,8 @@ def _try(
 def _enter(
     place: Array, shape: Integers, grid: int, x: float, y: float, dx: float, dy: float
 ) -> tuple[int, int, int, float, float, float, float]:
-    """The first cell on the way through a grid, the steps to the next ones, and the ranges when these are due.
+    """The first cell on the way through a grid, the steps to the next ones, and the ranges when
+    these are due.
 
     A beam that passes the grid by begins in the corner of its border, where a walk ends.
     """
@@ -93,21 +106,32 @@ def _enter(
     per_x, per_y = cell / dx, cell / dy
     x_exit = (i + (dx > 0) - u) * per_x if dx != 0 else inf
     y_exit = (j + (dy > 0) - v) * per_y if dy != 0 else inf
-    return first + i * rows + j, rows if dx > 0 else -rows, 1 if dy > 0 else -1, x_exit, y_exit, abs(per_x), abs(per_y)
+    return (
+        first + i * rows + j,
+        rows if dx > 0 else -rows,
+        1 if dy > 0 else -1,
+        x_exit,
+        y_exit,
+        abs(per_x),
+        abs(per_y),
+    )
 
 
 @compiled
 def _walk_all(
-    ends: Array, numbers: Integers, start: Integers, within: Integers, place: Array, shape: Integers,
+    ends: Array, numbers: Integers, start: Integers, within: Integers, place: Array,
+    shape: Integers,
     size: float, horizon: float, tie: float, doubt: float,
     x: Array, y: Array, dx: Array, dy: Array, ranges: Array, walls: Integers,
 ) -> int:  # fmt: skip
     """Fill in ranges and walls; how many beams are left in doubt.
 
-    Where a beam comes to a crowded cell, the grid in there waits until the present one is done. All in one function,
-    since calls with so many arrays are dear: apart, the walk takes three times as long.
+    Where a beam comes to a crowded cell, the grid in there waits until the present one is done. All
+    in one function, since calls with so many arrays are dear: apart, the walk takes three times as
+    long.
     """
-    upcoming, due = np.zeros(len(place), np.int64), np.zeros(len(place))  # grids that wait, the ranges where they begin
+    # grids that wait, the ranges where they begin
+    upcoming, due = np.zeros(len(place), np.int64), np.zeros(len(place))
     left = 0
     for k in range(len(x)):
         far = abs(x[k]) + abs(y[k])

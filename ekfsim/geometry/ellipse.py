@@ -8,7 +8,8 @@ import numpy as np
 
 from ekfsim.geometry import Array
 
-ROUNDING = 4 * float(np.finfo(float).eps)  # a determinant below this share of λ₁² is rounding: a line
+# a determinant below this share of λ₁² is rounding: a line
+ROUNDING = 4 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,16 +44,20 @@ def cone_factor(probability: float) -> float:
 
 
 def ellipse(P: Array, probability: float) -> Ellipse:
-    """The confidence ellipse of a position. P : (…, 2, 2) m² or larger, of which the first block is taken.
+    """The confidence ellipse of a position. P : (…, 2, 2) m² or larger, of which the first block is
+    taken.
 
-    λ₁ = m + r      λ₂ = det P / λ₁      φ = ½ atan2(P_xy, δ)      m, δ = ½(P_xx ± P_yy)      r = √(δ² + P_xy²)
+    λ₁ = m + r      λ₂ = det P / λ₁      φ = ½ atan2(P_xy, δ)      m, δ = ½(P_xx ± P_yy)
+    r = √(δ² + P_xy²)
 
     >>> e = ellipse(np.diag([0.04, 0.01]), 0.954)
     >>> round(float(e.major), 4), round(float(e.minor), 4), float(e.orientation)
     (0.4963, 0.2482, 0.0)
     """
     if P.ndim == 2:
-        return _ellipse_one(float(P[0, 0]), float(P[0, 1]), float(P[1, 1]), radius_factor(probability))
+        return _ellipse_one(
+            float(P[0, 0]), float(P[0, 1]), float(P[1, 1]), radius_factor(probability)
+        )
     a, b, c = P[..., 0, 0], P[..., 0, 1], P[..., 1, 1]
     m, δ = (a + c) / 2, (a - c) / 2
     λ1 = np.maximum(m + np.hypot(δ, b), 0.0)  # below 0 it is rounding, as det is
@@ -66,16 +71,24 @@ def ellipse(P: Array, probability: float) -> Ellipse:
 
 
 def _ellipse_one(a: float, b: float, c: float, k: float) -> Ellipse:
-    """The same for one covariance in plain floats: ten times as fast, held equal to the above by a test."""
+    """The same for one covariance in plain floats: ten times as fast, held equal to the above by a
+    test.
+    """
     m, δ = (a + c) / 2, (a - c) / 2
     λ1, det = max(m + math.hypot(δ, b), 0.0), a * c - b * b
     λ2 = det / λ1 if λ1 and det > ROUNDING * λ1 * λ1 else 0.0
     φ = math.atan2(b, δ) / 2 % math.pi
-    return Ellipse(np.array(k * math.sqrt(λ1)), np.array(k * math.sqrt(λ2)), np.array(φ if φ < math.pi else 0.0))
+    return Ellipse(
+        np.array(k * math.sqrt(λ1)),
+        np.array(k * math.sqrt(λ2)),
+        np.array(φ if φ < math.pi else 0.0),
+    )
 
 
 def outline(center: Array, P: Array, probability: float, n: int = 73) -> Array:
-    """Points on the confidence ellipse, the last equal to the first. center : (2,) m, P : (2, 2) m² → (n, 2) m"""
+    """Points on the confidence ellipse, the last equal to the first. center : (2,) m, P : (2, 2) m²
+    → (n, 2) m
+    """
     e = ellipse(P, probability)
     t = np.linspace(0, 2 * np.pi, n)
     circle = np.stack([e.major * np.cos(t), e.minor * np.sin(t)], axis=-1)
@@ -92,7 +105,8 @@ def cone_halfwidth(variance: float, probability: float) -> float:
 def conditioned(mean: Array, P: Array, offset: float) -> tuple[Array, Array]:
     """The position, were the heading known to lie `offset` rad from its mean.
 
-    p | θ ~ N(p̂ + P_pθ/σ_θ² · offset,  P_pp − P_pθ P_θp/σ_θ²)          mean : (3,), P : (3, 3) → (2,), (2, 2)
+    p | θ ~ N(p̂ + P_pθ/σ_θ² · offset,  P_pp − P_pθ P_θp/σ_θ²)
+    mean : (3,), P : (3, 3) → (2,), (2, 2)
 
     Where the heading is certain there is nothing to learn: the position's own mean and covariance.
     """

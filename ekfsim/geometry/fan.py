@@ -1,7 +1,8 @@
 """A scan, many beams from one place: every wall is asked which beams its two ends enclose.
 
-Seen from the origin a wall covers an angle, and of the sorted headings a contiguous piece lies within it. Only these
-pairs of a wall and a beam are tried; the beams need not be evenly spaced. As in broad.py the ranges are rough at first,
+Seen from the origin a wall covers an angle, and of the sorted headings a contiguous piece lies
+within it. Only these pairs of a wall and a beam are tried; the beams need not be evenly spaced. As
+in broad.py the ranges are rough at first,
 
     r = area / (e × d)     with the wall's edge e and the beam's direction d
 
@@ -16,18 +17,24 @@ from ekfsim.geometry.grid import spread
 from ekfsim.geometry.pairs import first_of, measure
 
 PAD = 1e-9  # of the coordinates' size: how far beside a wall's end a beam still belongs to it
-HALF = 3.0  # rad: a wall that covers more lies at the origin's feet, and its sides are not to be told apart
+# rad: a wall that covers more lies at the origin's feet, and its sides are not to be told apart
+HALF = 3.0
 TURN = 2 * np.pi
 
 
-def fan(ends: Array, x: float, y: float, dx: Array, dy: Array, span: float) -> tuple[Array, Integers, Integers]:
-    """Ranges and walls of beams from (x, y) m in the unit directions (dx, dy), all (n,), and which are in doubt.
+def fan(
+    ends: Array, x: float, y: float, dx: Array, dy: Array, span: float
+) -> tuple[Array, Integers, Integers]:
+    """Ranges and walls of beams from (x, y) m in the unit directions (dx, dy), all (n,), and which
+    are in doubt.
 
-    ends : (W, 4) m: x, y of the first and of the second end of each wall; span : m, the coordinates' size
+    ends : (W, 4) m: x, y of the first and of the second end of each wall; span : m, the
+    coordinates' size
     """
     ax, ay, bx, by = (ends - [x, y, x, y]).T
     area = ay * bx - ax * by
-    unsure = np.abs(area) <= 4 * FINE * span * span  # the origin is near the wall's line, or the wall is tiny
+    # the origin is near the wall's line, or the wall is tiny
+    unsure = np.abs(area) <= 4 * FINE * span * span
     wall, beam = _covered(ax, ay, bx, by, np.arctan2(dy, dx), unsure, PAD * span)
     with np.errstate(divide="ignore", invalid="ignore"):
         r = area[wall] / ((bx - ax)[wall] * dy[beam] - (by - ay)[wall] * dx[beam])
@@ -48,7 +55,9 @@ def fan(ends: Array, x: float, y: float, dx: Array, dy: Array, span: float) -> t
 def _covered(
     ax: Array, ay: Array, bx: Array, by: Array, heading: Array, unsure: Booleans, pad: float
 ) -> tuple[Integers, Integers]:
-    """All pairs of a wall and a beam that it covers, or that passes within `pad` m of its ends, wall after wall."""
+    """All pairs of a wall and a beam that it covers, or that passes within `pad` m of its ends,
+    wall after wall.
+    """
     ahead = heading - heading[0]
     ahead[ahead < 0] += TURN
     order = np.argsort(ahead)
@@ -56,7 +65,8 @@ def _covered(
     sweep = to_b - to_a
     sweep -= TURN * np.rint(sweep / TURN)
     width = np.abs(sweep)
-    distance = np.minimum(np.abs(ax) + np.abs(ay), np.abs(bx) + np.abs(by))  # too long by √2 at most
+    # too long by √2 at most
+    distance = np.minimum(np.abs(ax) + np.abs(ay), np.abs(bx) + np.abs(by))
     beside = np.minimum(4 * pad / np.maximum(distance, pad) + 2 * PAD, np.pi)
     beside[unsure & (width > HALF)] = np.pi
     low = np.where(sweep >= 0, to_a, to_b) - beside - heading[0]
@@ -68,7 +78,8 @@ def _covered(
 
 
 def _between(heading: Array, low: Array, high: Array) -> tuple[Integers, Integers]:
-    """Which of the sorted headings is the first from `low` on, and which the first past `high`, counted on for a turn.
+    """Which of the sorted headings is the first from `low` on, and which the first past `high`,
+    counted on for a turn.
 
     Of evenly spaced headings a division tells.
     """

@@ -1,8 +1,8 @@
 """How to find the first wall on a beam's way without trying each.
 
-A cell lists the walls that cross it, and a beam looks only into the cells on its way (Amanatides & Woo, A Fast Voxel
-Traversal Algorithm, 1987). A crowded cell has a grid of its own: a town of walls in a wide plain is found as fast. What
-it means to meet a wall is told in meeting.py.
+A cell lists the walls that cross it, and a beam looks only into the cells on its way (Amanatides &
+Woo, A Fast Voxel Traversal Algorithm, 1987). A crowded cell has a grid of its own: a town of walls
+in a wide plain is found as fast. What it means to meet a wall is told in meeting.py.
 """
 
 from collections.abc import Mapping
@@ -16,9 +16,12 @@ import numpy as np
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.meeting import REACH, TIE, meet_one
 
-PAD = 1 / 64  # of a cell: a wall is listed in the cells it passes as near as this, so rounding on the way is harmless
+# of a cell: a wall is listed in the cells it passes as near as this, so rounding on the way is
+# harmless
+PAD = 1 / 64
 CROWDED = 64  # walls in a cell from which on it has a grid of its own
-FINEST = 2e-8  # of the coordinates' size: a smaller cell, and rounding would count for beams from near by
+# of the coordinates' size: a smaller cell, and rounding would count for beams from near by
+FINEST = 2e-8
 DEEPEST = 4  # grids within grids; walls that all pass through one point never part
 NOTHING: list["Wall"] = []
 
@@ -27,15 +30,18 @@ Wall = tuple[float, float, float, float, int]  # its ends' x, y, x, y in m, and 
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Square cells over all walls, about as many as there are walls, and round them a border that ends every walk.
+    """Square cells over all walls, about as many as there are walls, and round them a border that
+    ends every walk.
 
-    Cell (i, j) covers x = left + [i, i + 1) cell, y = bottom + [j, j + 1) cell and has the number i · rows + j.
+    Cell (i, j) covers x = left + [i, i + 1) cell, y = bottom + [j, j + 1) cell and has the number i
+    · rows + j.
     """
 
     segments: Array  # (W, 2, 2) m: the ends of each wall
     numbers: Integers  # (W,) the index that each wall has on the map
     size: float  # m, the largest coordinate of any wall
-    horizon: float  # m: as long as |x| + |y| is less, rounding is small against a cell, and the walls are found
+    # m: as long as |x| + |y| is less, rounding is small against a cell, and the walls are found
+    horizon: float
     left: float  # m
     bottom: float  # m
     cell: float  # m
@@ -49,20 +55,29 @@ class Grid:
     @classmethod
     def over(cls, segments: Array) -> Self:
         """A grid over all walls of a map."""
-        return cls._within(segments, segments, np.arange(len(segments)), float(np.abs(segments).max()), 0)
+        return cls._within(
+            segments, segments, np.arange(len(segments)), float(np.abs(segments).max()), 0
+        )
 
     @classmethod
-    def _within(cls, segments: Array, pieces: Array, numbers: Integers, size: float, depth: int) -> Self:
-        """Lay the cells so that even walls that all cross the whole area are listed some 16 times each at most.
+    def _within(
+        cls, segments: Array, pieces: Array, numbers: Integers, size: float, depth: int
+    ) -> Self:
+        """Lay the cells so that even walls that all cross the whole area are listed some 16 times
+        each at most.
 
-        pieces : (W, 2, 2) m, the parts of the walls that lie in the area; numbers : (W,) indices of the walls
+        pieces : (W, 2, 2) m, the parts of the walls that lie in the area; numbers : (W,) indices of
+        the walls
         """
         count, extent = len(segments), np.ptp(pieces, axis=(0, 1))
         lengths = np.abs(pieces[:, 1] - pieces[:, 0]).sum()
-        fine = max(np.sqrt(extent.prod() / count), extent.max() / count, lengths / (16 * count + 4096))
+        fine = max(
+            np.sqrt(extent.prod() / count), extent.max() / count, lengths / (16 * count + 4096)
+        )
         cell = float(max(fine, FINEST * size))
         left, bottom = pieces.min((0, 1)) - (1 + 2 * PAD) * cell
-        columns, rows = (int(n) for n in extent // cell + 4)  # 2 for border, 2 for what is over and the pads
+        # 2 for border, 2 for what is over and the pads
+        columns, rows = (int(n) for n in extent // cell + 4)
 
         wall, at = crossed((pieces - [left, bottom]) / cell, columns, rows)
         order = np.argsort(at, kind="stable")
@@ -83,8 +98,12 @@ class Grid:
 
     @cached_property
     def lists(self) -> list["list[Wall] | Grid | None"]:
-        """What a single beam finds in each cell: its walls, or the grid of a crowd; None for the border."""
-        tuples = list(zip(*self.segments.reshape(-1, 4).T.tolist(), self.numbers.tolist(), strict=True))
+        """What a single beam finds in each cell: its walls, or the grid of a crowd; None for the
+        border.
+        """
+        tuples = list(
+            zip(*self.segments.reshape(-1, 4).T.tolist(), self.numbers.tolist(), strict=True)
+        )
         listed, bounds = [tuples[k] for k in self.walls.tolist()], self.start.tolist()
         lists: list[list[Wall] | Grid | None] = [
             None if outside else listed[a:b]
@@ -95,7 +114,9 @@ class Grid:
         return lists
 
     def walk(self, x: float, y: float, dx: float, dy: float) -> tuple[float, int]:
-        """Range and wall of one beam, from cell to cell in plain floats; nan and -1 where it meets none."""
+        """Range and wall of one beam, from cell to cell in plain floats; nan and -1 where it meets
+        none.
+        """
         span = self.size + abs(x) + abs(y)
         tie, doubt = TIE * span, 4 * REACH * span * span
         cell, rows = self.cell, self.rows
@@ -159,9 +180,11 @@ class Grid:
 
 
 def crossed(segments: Array, columns: int, rows: int) -> tuple[Integers, Integers]:
-    """All pairs of a segment and a cell that it crosses or passes within PAD; segments (n, 2, 2) in units of cells.
+    """All pairs of a segment and a cell that it crosses or passes within PAD; segments (n, 2, 2) in
+    units of cells.
 
-    Each segment is cut into its columns, and what lies in one column runs through neighbouring rows.
+    Each segment is cut into its columns, and what lies in one column runs through neighbouring
+    rows.
     """
     eastward = segments[:, 0, 0] <= segments[:, 1, 0]
     ax, ay, bx, by = np.where(eastward[:, None, None], segments, segments[:, ::-1]).reshape(-1, 4).T
@@ -182,11 +205,14 @@ def crossed(segments: Array, columns: int, rows: int) -> tuple[Integers, Integer
 
 
 def clipped(segments: Array, low: Array, high: Array) -> Array:
-    """The parts of segments within a box (Liang & Barsky, 1984). segments : (n, 2, 2), low and high : (2,)"""
+    """The parts of segments within a box (Liang & Barsky, 1984). segments : (n, 2, 2), low and high
+    : (2,)
+    """
     a, way = segments[:, 0], segments[:, 1] - segments[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
         ends = np.sort([(low - a) / way, (high - a) / way], axis=0)
-    ends = np.where(way == 0, [[[-np.inf]], [[np.inf]]], ends)  # along a side: within it all the way
+    # along a side: within it all the way
+    ends = np.where(way == 0, [[[-np.inf]], [[np.inf]]], ends)
     enter, leave = np.clip(ends[0].max(-1), 0, 1), np.clip(ends[1].min(-1), 0, 1)
     t = np.stack([np.minimum(enter, leave), np.maximum(enter, leave)], axis=-1)
     pieces: Array = np.clip(a[:, None] + t[..., None] * way[:, None], low, high)
@@ -200,7 +226,9 @@ def spread(counts: Integers) -> tuple[Integers, Integers]:
 
 
 def _way(u: float, i: int, d: float, cell: float, stride: int) -> tuple[int, float, float]:
-    """One axis of a walk: the step to the next cell's number, the range at which it is due, and that to one more."""
+    """One axis of a walk: the step to the next cell's number, the range at which it is due, and
+    that to one more.
+    """
     if d > 0:
         return stride, (i + 1 - u) * cell / d, cell / d
     if d < 0:
@@ -208,8 +236,12 @@ def _way(u: float, i: int, d: float, cell: float, stride: int) -> tuple[int, flo
     return 0, inf, inf
 
 
-def _entry(u: float, v: float, dx: float, dy: float, columns: int, rows: int) -> tuple[int, int] | None:
-    """The first cell inside the border on the way of a beam that starts outside, at (u, v) in units of cells."""
+def _entry(
+    u: float, v: float, dx: float, dy: float, columns: int, rows: int
+) -> tuple[int, int] | None:
+    """The first cell inside the border on the way of a beam that starts outside, at (u, v) in units
+    of cells.
+    """
     enter, leave = 0.0, inf
     for place, d, count in ((u, dx, columns), (v, dy, rows)):
         if d:

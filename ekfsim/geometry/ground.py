@@ -39,18 +39,25 @@ class Ground:
         """Whether a robot can stand there : (…). places : (…, 2) m"""
         points = places.reshape(-1, 2)
         taken, indoors = np.zeros(len(points), bool), np.full(len(points), self.room < 0)
-        for number in self._near(np.fmin.reduce(points), np.fmax.reduce(points)) if len(points) else ():
-            boxed = np.flatnonzero(((self.low[number] <= points) & (points <= self.high[number])).all(axis=-1))
+        for number in (
+            self._near(np.fmin.reduce(points), np.fmax.reduce(points)) if len(points) else ()
+        ):
+            boxed = np.flatnonzero(
+                ((self.low[number] <= points) & (points <= self.high[number])).all(axis=-1)
+            )
             within = boxed[_inside(self.rings[number], points[boxed])]
             (indoors if number == self.room else taken)[within] = True
-        free: Booleans = (indoors & ~taken & np.isfinite(points).all(axis=-1)).reshape(places.shape[:-1])
+        free: Booleans = (indoors & ~taken & np.isfinite(points).all(axis=-1)).reshape(
+            places.shape[:-1]
+        )
         return free
 
     def reach(self, place: Array, ways: Array) -> Array:
         """How much of straight ways can be gone to where a robot can stand : (…), each in [0, 1]
 
-        1 where that is so at the end of the way. Elsewhere the way is cut back to the last such place on it, 1 mm clear
-        of the wall; to 0 where there is none. place : (…, 2) m, ways : (…, 2) m, broadcast together
+        1 where that is so at the end of the way. Elsewhere the way is cut back to the last such
+        place on it, 1 mm clear of the wall; to 0 where there is none. place : (…, 2) m, ways : (…,
+        2) m, broadcast together
         """
         place, ways = np.broadcast_arrays(place, ways)
         share = np.ones(place.shape[:-1])
@@ -62,8 +69,8 @@ class Ground:
     def _cut_back(self, place: Array, ways: Array) -> Array:
         """The same of ways that end where no robot can stand : (n,)
 
-        Every wall on a way parts it, and a part is free as a whole or not at all: each is tried in its middle, from the
-        end of the way back to its beginning.
+        Every wall on a way parts it, and a part is free as a whole or not at all: each is tried in
+        its middle, from the end of the way back to its beginning.
         """
         share, length = np.zeros(len(ways)), np.linalg.norm(ways, axis=-1)
         cuts, left = self._cuts(place, ways), np.arange(len(ways))
@@ -79,14 +86,21 @@ class Ground:
         return share
 
     def reach_of_each(self, x: float, y: float, ways: Sequence[tuple[float, ...]]) -> list[float]:
-        """`reach` from one place in plain floats: several times as fast for a few ways (dx, dy, …) m."""
+        """`reach` from one place in plain floats: several times as fast for a few ways (dx, dy, …)
+        m.
+        """
         xs, ys = [x + way[0] for way in ways], [y + way[1] for way in ways]
         near = self._near(np.array([min(xs), min(ys)]), np.array([max(xs), max(ys)]))
         stuck = [not self._free_one(near, *end) for end in zip(xs, ys, strict=True)]
         if not any(stuck):
             return [1.0] * len(ways)
-        near = self._near(np.array([min(x, *xs), min(y, *ys)]), np.array([max(x, *xs), max(y, *ys)]))
-        return [self._cut_back_one(near, x, y, *way[:2]) if cut else 1.0 for way, cut in zip(ways, stuck, strict=True)]
+        near = self._near(
+            np.array([min(x, *xs), min(y, *ys)]), np.array([max(x, *xs), max(y, *ys)])
+        )
+        return [
+            self._cut_back_one(near, x, y, *way[:2]) if cut else 1.0
+            for way, cut in zip(ways, stuck, strict=True)
+        ]
 
     def _free_one(self, near: list[int], x: float, y: float) -> bool:
         """Whether a robot can stand at a place. near : the polygons that may hold it"""
@@ -117,9 +131,14 @@ class Ground:
         return 0.0
 
     def _cuts(self, place: Array, ways: Array) -> Array:
-        """Where ways meet walls, as shares of them, from the last to the first : (n, k); the way's own ends are two."""
+        """Where ways meet walls, as shares of them, from the last to the first : (n, k); the way's
+        own ends are two.
+        """
         ends = place + ways
-        low, high = np.fmin.reduce([place, ends]).min(axis=0), np.fmax.reduce([place, ends]).max(axis=0)
+        low, high = (
+            np.fmin.reduce([place, ends]).min(axis=0),
+            np.fmax.reduce([place, ends]).max(axis=0),
+        )
         near = [np.empty((0, 2, 2)), *(self.rings[number] for number in self._near(low, high))]
         a, along = (edges := np.concatenate(near))[:, 0], edges[:, 1] - edges[:, 0]
         offset, ways = a - place[:, None], ways[:, None]
@@ -132,7 +151,9 @@ class Ground:
 
     def _near(self, low: Array, high: Array) -> list[int]:
         """The polygons whose boxes touch the box from its corner `low` (2,) to `high` (2,)."""
-        touching: list[int] = np.flatnonzero((self._boxes <= np.concatenate([high, -low])).all(axis=-1)).tolist()
+        touching: list[int] = np.flatnonzero(
+            (self._boxes <= np.concatenate([high, -low])).all(axis=-1)
+        ).tolist()
         return touching
 
     @cached_property
@@ -147,12 +168,16 @@ class Ground:
 
 
 def _inside(ring: Array, points: Array) -> Booleans:
-    """Whether points (n, 2) lie in a polygon : (n,). A line from there to the west crosses its edges oddly often."""
+    """Whether points (n, 2) lie in a polygon : (n,). A line from there to the west crosses its
+    edges oddly often.
+    """
     (ax, ay), (bx, by) = ring[:, 0].T, ring[:, 1].T
     x, y = points[:, 0, None], points[:, 1, None]
     beside = (ay > y) != (by > y)
     rise = np.where(beside, by - ay, 1.0)
-    odd: Booleans = np.count_nonzero(beside & (x > ax + (bx - ax) * (y - ay) / rise), axis=-1) % 2 == 1
+    odd: Booleans = (
+        np.count_nonzero(beside & (x > ax + (bx - ax) * (y - ay) / rise), axis=-1) % 2 == 1
+    )
     return odd
 
 

@@ -1,7 +1,8 @@
-"""Many beams at once through the cells of a grid: in every pass each beam tries the walls of its cell and steps on.
+"""Many beams at once through the cells of a grid: in every pass each beam tries the walls of its
+cell and steps on.
 
-The steps are those of `Grid.walk`. Where a beam comes to a crowded cell, a second walk of the same beam begins in the
-grid of that cell, while the first goes on; what either finds shortens both.
+The steps are those of `Grid.walk`. Where a beam comes to a crowded cell, a second walk of the same
+beam begins in the grid of that cell, while the first goes on; what either finds shortens both.
 """
 
 import numpy as np
@@ -18,7 +19,8 @@ def march(cells: Cells, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array
     span = cells.grid.size + np.abs(x) + np.abs(y)
     beams = np.stack([x, y, dx, dy, span])
     tie = TIE * span
-    limit = np.full(len(x), np.inf)  # nothing farther matters: the nearest range so far, and a tie more
+    # nothing farther matters: the nearest range so far, and a tie more
+    limit = np.full(len(x), np.inf)
     everyone = np.arange(len(x))
     place, due = _enter(cells, beams, everyone, np.zeros_like(everyone))
     found = [(everyone[:0], everyone[:0], x[:0])]
@@ -52,10 +54,11 @@ def march(cells: Cells, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array
 
 
 def _enter(cells: Cells, beams: Array, beam: Integers, grid: Integers) -> tuple[Integers, Array]:
-    """Begin a walk of each `beam` (n,) in its `grid` (n,); those that pass the grid by are left out.
+    """Begin a walk of each `beam` (n,) in its `grid` (n,); those that pass the grid by are left
+    out.
 
-    Gives beam, cell, and the steps east and north to the next cell, (4, m); and the ranges at which these steps are
-    due, and those from one to the next, (4, m) m.
+    Gives beam, cell, and the steps east and north to the next cell, (4, m); and the ranges at which
+    these steps are due, and those from one to the next, (4, m) m.
     """
     (x, y, dx, dy, _), (left, bottom, cell), (columns, rows, first) = (
         beams[:, beam],
@@ -64,10 +67,16 @@ def _enter(cells: Cells, beams: Array, beam: Integers, grid: Integers) -> tuple[
     )
     u, v = (x - left) / cell, (y - bottom) / cell
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        west, east, south, north = (1 - u) / dx, (columns - 1 - u) / dx, (1 - v) / dy, (rows - 1 - v) / dy
+        west, east, south, north = (
+            (1 - u) / dx,
+            (columns - 1 - u) / dx,
+            (1 - v) / dy,
+            (rows - 1 - v) / dy,
+        )
         enter = np.maximum(np.maximum(np.minimum(west, east), np.minimum(south, north)), 0.0)
         leave = np.minimum(np.maximum(west, east), np.maximum(south, north))
-        comes = np.flatnonzero(enter <= leave)  # where dx is 0: -inf and inf inside; nan or both alike outside
+        # where dx is 0: -inf and inf inside; nan or both alike outside
+        comes = np.flatnonzero(enter <= leave)
         if len(comes) < len(beam):
             beam, u, v, dx, dy, enter, cell, columns, rows, first = (
                 each[comes] for each in (beam, u, v, dx, dy, enter, cell, columns, rows, first)

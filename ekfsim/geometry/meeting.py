@@ -1,15 +1,17 @@
 """Where a beam meets a wall: what that means.
 
-A wall is a straight line from a to b; a beam leaves its origin o in the unit direction d. Seen from the beam, a point v
-lies `along` = (v − o)·d ahead and `across` = (v − o)×d to the right. A wall whose ends lie on different sides is
-crossed, and the crossing is the mean of the ends' `along`, each weighted with the other's distance across:
+A wall is a straight line from a to b; a beam leaves its origin o in the unit direction d. Seen from
+the beam, a point v lies `along` = (v − o)·d ahead and `across` = (v − o)×d to the right. A wall
+whose ends lie on different sides is crossed, and the crossing is the mean of the ends' `along`,
+each weighted with the other's distance across:
 
     r = (along_a across_b − along_b across_a) / (across_b − across_a)
 
-What rounding must not decide is decided within `reach`, some units in the last place of the coordinates:
+What rounding must not decide is decided within `reach`, some units in the last place of the
+coordinates:
 
-- A beam that passes within reach of a wall's end hits that end. Edges that share a corner get the same numbers for
-  it, so nothing slips between them.
+- A beam that passes within reach of a wall's end hits that end. Edges that share a corner get the
+  same numbers for it, so nothing slips between them.
 - A beam along a wall hits its nearer end.
 - A beam that starts within reach of a wall has range 0, whatever its direction.
 - Of several walls at the same range (within `tie`), the one with the lowest index is hit.
@@ -21,26 +23,36 @@ import numpy as np
 
 from ekfsim.geometry import Array
 
-REACH = 16 * float(np.finfo(float).eps)  # of the coordinates' size: what an aimed beam misses its mark by, and to spare
+# of the coordinates' size: what an aimed beam misses its mark by, and to spare
+REACH = 16 * float(np.finfo(float).eps)
 TIE = 1e-12  # of the coordinates' size: ranges that differ by less are equal
 
 
 def see(segments: Array, x: Array, y: Array, dx: Array, dy: Array) -> Array:
     """Walls as beams see them: along and across of the first end, then of the second, (4, …) m.
 
-    segments : (…, 2, 2) m, broadcast with the beams' origin (x, y) in m and unit direction (dx, dy).
+    segments : (…, 2, 2) m, broadcast with the beams' origin (x, y) in m and unit direction (dx,
+    dy).
     """
-    ax, ay, bx, by = segments[..., 0, 0] - x, segments[..., 0, 1] - y, segments[..., 1, 0] - x, segments[..., 1, 1] - y
+    ax, ay, bx, by = (
+        segments[..., 0, 0] - x,
+        segments[..., 0, 1] - y,
+        segments[..., 1, 0] - x,
+        segments[..., 1, 1] - y,
+    )
     return np.stack([ax * dx + ay * dy, ax * dy - ay * dx, bx * dx + by * dy, bx * dy - by * dx])
 
 
 def meet(seen: Array, reach: Array) -> Array:
-    """(…): the range in m at which beams meet the walls that they `see`, inf where not; told above."""
+    """(…): the range in m at which beams meet the walls that they `see`, inf where not; told
+    above.
+    """
     along_a, across_a, along_b, across_b = seen
     at_a, at_b = np.abs(across_a) <= reach, np.abs(across_b) <= reach
     ahead, aside = along_b - along_a, across_b - across_a
     square = ahead * ahead + aside * aside
-    foot = np.clip(-(along_a * ahead + across_a * aside) / np.where(square, square, 1), 0, 1)  # nearest to the origin
+    # nearest to the origin
+    foot = np.clip(-(along_a * ahead + across_a * aside) / np.where(square, square, 1), 0, 1)
     distance = np.hypot(along_a + foot * ahead, across_a + foot * aside)
     crossing = (along_a * across_b - along_b * across_a) / np.where(aside, aside, 1)
     r = np.where((across_a < 0) != (across_b < 0), crossing, np.inf)
@@ -50,7 +62,9 @@ def meet(seen: Array, reach: Array) -> Array:
     return np.where(r >= 0, r, np.inf)
 
 
-def meet_one(along_a: float, across_a: float, along_b: float, across_b: float, reach: float) -> float:
+def meet_one(
+    along_a: float, across_a: float, along_b: float, across_b: float, reach: float
+) -> float:
     """`meet` of one beam and one wall; less than 0 or nan where they do not."""
     ahead, aside = along_b - along_a, across_b - across_a
     square = ahead * ahead + aside * aside or 1.0
@@ -58,5 +72,13 @@ def meet_one(along_a: float, across_a: float, along_b: float, across_b: float, r
     if hypot(along_a + foot * ahead, across_a + foot * aside) <= reach:
         return 0.0
     if abs(across_a) <= reach or abs(across_b) <= reach:
-        return min(along for along, across in ((along_a, across_a), (along_b, across_b)) if abs(across) <= reach)
-    return (along_a * across_b - along_b * across_a) / aside if (across_a < 0) != (across_b < 0) else nan
+        return min(
+            along
+            for along, across in ((along_a, across_a), (along_b, across_b))
+            if abs(across) <= reach
+        )
+    return (
+        (along_a * across_b - along_b * across_a) / aside
+        if (across_a < 0) != (across_b < 0)
+        else nan
+    )

@@ -1,7 +1,8 @@
 """A close look at pairs of a beam and a wall: which of its walls each beam meets first.
 
-Every fast way of following beams first finds, by whatever shortcut, a few walls that each beam may meet first. What
-these pairs then come to is computed here, and only here, by the rules of meeting.py.
+Every fast way of following beams first finds, by whatever shortcut, a few walls that each beam may
+meet first. What these pairs then come to is computed here, and only here, by the rules of
+meeting.py.
 """
 
 import numpy as np
@@ -11,10 +12,12 @@ from ekfsim.geometry.meeting import REACH, TIE, meet
 
 
 def measure(ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array) -> Array:
-    """(n,): the range in m at which beams meet walls, pair by pair, inf where not: the same as `meet`, only sooner.
+    """(n,): the range in m at which beams meet walls, pair by pair, inf where not: the same as
+    `meet`, only sooner.
 
-    ends : (n, 4) m; the beams' origins (x, y) in m and unit directions; span : (n,) m, the coordinates' size
-    Where the ends lie clearly on both sides of the beam, and its origin clearly off the wall, the crossing is all.
+    ends : (n, 4) m; the beams' origins (x, y) in m and unit directions; span : (n,) m, the
+    coordinates' size Where the ends lie clearly on both sides of the beam, and its origin clearly
+    off the wall, the crossing is all.
     """
     ax, ay, bx, by = ends.T
     ax, ay, bx, by = ax - x, ay - y, bx - x, by - y
@@ -32,10 +35,14 @@ def measure(ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array) 
     return r
 
 
-def first_of(which: Integers, wall: Integers, r: Array, span: Array, walls: int) -> tuple[Array, Integers]:
-    """The nearest wall of each beam, and of those within `tie` the lowest; nan and -1 for a beam without.
+def first_of(
+    which: Integers, wall: Integers, r: Array, span: Array, walls: int
+) -> tuple[Array, Integers]:
+    """The nearest wall of each beam, and of those within `tie` the lowest; nan and -1 for a beam
+    without.
 
-    which, wall, r : (pairs,), the beam, the wall and the range of each pair; span : (beams,) m; walls : how many exist
+    which, wall, r : (pairs,), the beam, the wall and the range of each pair; span : (beams,) m;
+    walls : how many exist
     """
     best = np.full(len(span), np.inf)
     np.minimum.at(best, which, r)

@@ -1,8 +1,9 @@
 """The walls of a map: which polygon each belongs to, and which of them a beam meets first.
 
-A wall is met from either side: a beam that starts inside an obstacle, or outside the boundary, meets the first edge on
-its way, whosesoever it is. What a beam through a corner, along a wall or from a wall meets is told in meeting.py. Which
-of the fast ways is taken when, and why there are so many, is told in __init__.py.
+A wall is met from either side: a beam that starts inside an obstacle, or outside the boundary,
+meets the first edge on its way, whosesoever it is. What a beam through a corner, along a wall or
+from a wall meets is told in meeting.py. Which of the fast ways is taken when, and why there are so
+many, is told in __init__.py.
 """
 
 from collections.abc import Mapping
@@ -47,12 +48,16 @@ class Walls:
     """Every edge of every polygon of one map."""
 
     segments: Array  # (W, 2, 2) m: the ends of each wall
-    normals: Array  # (W, 2) unit normal of each wall, to the left on the way from its first end to its second
+    # (W, 2) unit normal of each wall, to the left on the way from its first end to its second
+    normals: Array
     polygon: Integers  # (W,) which polygon the wall belongs to
-    edge: Integers  # (W,) which edge of it: edge j joins points j and j + 1, the last closes the ring
+    # (W,) which edge of it: edge j joins points j and j + 1, the last closes the ring
+    edge: Integers
     line: Integers  # (W,) edges of one polygon on one straight line share a number
     names: tuple[str, ...]  # of the polygons
-    _recent: dict[tuple[float, float, float], tuple[float, int]] = field(default_factory=dict, repr=False)
+    _recent: dict[tuple[float, float, float], tuple[float, int]] = field(
+        default_factory=dict, repr=False
+    )
 
     @classmethod
     def of(cls, rings: Mapping[str, Array]) -> Self:
@@ -72,14 +77,23 @@ class Walls:
         normals = np.stack([-north, east], -1) / np.hypot(east, north)[:, None]
         none = np.empty(0, np.int64)
         numbers = np.concatenate([none, *polygon])
-        return cls(ends, normals, numbers, np.concatenate([none, *edge]), _lines(ends, numbers), tuple(rings))
+        return cls(
+            ends,
+            normals,
+            numbers,
+            np.concatenate([none, *edge]),
+            _lines(ends, numbers),
+            tuple(rings),
+        )
 
     def name(self, wall: int) -> tuple[str, int]:
         """The polygon that a wall belongs to, and which edge of it: ("desk", 2)."""
         return self.names[self.polygon[wall]], int(self.edge[wall])
 
     def cast(self, origin: Array, heading: Array) -> Hit:
-        """Follow beams to their first walls. origin : (…, 2) m; heading : (…) rad; broadcast together."""
+        """Follow beams to their first walls. origin : (…, 2) m; heading : (…) rad; broadcast
+        together.
+        """
         if origin.ndim == 1 and np.ndim(heading) == 0:
             r, wall = self.first(float(origin[0]), float(origin[1]), float(heading))
             return Hit(np.array(r), np.array(wall))
@@ -89,14 +103,22 @@ class Walls:
         if heading.size > (FEW if backend.used() == "numpy" else FEW_COMPILED):
             ranges, walls = self._all(x.ravel(), y.ravel(), heading.ravel())
         else:
-            hits = [self.first(*beam) for beam in zip(*(v.ravel().tolist() for v in (x, y, heading)), strict=True)]
-            ranges, walls = np.array([r for r, _ in hits]), np.array([wall for _, wall in hits], np.int64)
+            hits = [
+                self.first(*beam)
+                for beam in zip(*(v.ravel().tolist() for v in (x, y, heading)), strict=True)
+            ]
+            ranges, walls = (
+                np.array([r for r, _ in hits]),
+                np.array([wall for _, wall in hits], np.int64),
+            )
         return Hit(ranges.reshape(heading.shape), walls.reshape(heading.shape))
 
     def first(self, x: float, y: float, heading: float) -> tuple[float, int]:
-        """Range and wall of one beam from (x, y) m towards `heading` rad; nan and -1 where it meets none.
+        """Range and wall of one beam from (x, y) m towards `heading` rad; nan and -1 where it meets
+        none.
 
-        The last few are remembered: a beam is looked along before its reading is used, and followed again when it is.
+        The last few are remembered: a beam is looked along before its reading is used, and followed
+        again when it is.
         """
         beam = x, y, heading
         hit = self._recent.get(beam)
@@ -116,7 +138,9 @@ class Walls:
         return float(r[0]), int(wall[0])
 
     def _all(self, x: Array, y: Array, heading: Array) -> tuple[Array, Integers]:
-        """`first` of many beams, all (n,): quickly, and those that are left in doubt once more by a sure way."""
+        """`first` of many beams, all (n,): quickly, and those that are left in doubt once more by a
+        sure way.
+        """
         ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
         for start in range(0, len(x) if self.grid else 0, BLOCK):
             part = slice(start, start + BLOCK)
@@ -124,11 +148,17 @@ class Walls:
                 beams = x[part], y[part], np.cos(heading[part]), np.sin(heading[part])
             ranges[part], walls[part], doubtful = self._quickly(*beams)
             if doubtful.size:
-                ranges[start + doubtful], walls[start + doubtful] = self._surely(*(each[doubtful] for each in beams))
+                ranges[start + doubtful], walls[start + doubtful] = self._surely(
+                    *(each[doubtful] for each in beams)
+                )
         return ranges, walls
 
-    def _quickly(self, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers, Integers]:
-        """Ranges and walls by the way that suits these beams best, and which of them are in doubt."""
+    def _quickly(
+        self, x: Array, y: Array, dx: Array, dy: Array
+    ) -> tuple[Array, Integers, Integers]:
+        """Ranges and walls by the way that suits these beams best, and which of them are in
+        doubt.
+        """
         grid, ends = self.cells.grid, self.segments.reshape(-1, 4)
         if backend.used() == "numba":
             from ekfsim.geometry import compiled
@@ -171,7 +201,11 @@ class Walls:
     @cached_property
     def ground(self) -> Ground:
         """Where a robot can stand among these walls."""
-        return Ground.of(self.segments, self.polygon, self.names.index(BOUNDARY) if BOUNDARY in self.names else -1)
+        return Ground.of(
+            self.segments,
+            self.polygon,
+            self.names.index(BOUNDARY) if BOUNDARY in self.names else -1,
+        )
 
     @cached_property
     def grid(self) -> Grid | None:
@@ -184,8 +218,12 @@ class Walls:
         return Cells.of(Grid.over(self.segments) if self.grid is None else self.grid)
 
 
-def brute_force(segments: Array, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
-    """The first wall of each beam, found by trying every wall: the twin of the fast ways. All beams are (n,)."""
+def brute_force(
+    segments: Array, x: Array, y: Array, dx: Array, dy: Array
+) -> tuple[Array, Integers]:
+    """The first wall of each beam, found by trying every wall: the twin of the fast ways. All beams
+    are (n,).
+    """
     ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
     step = max(1, CHUNK // max(1, len(segments)))
     size = np.abs(segments).max(initial=0.0)
@@ -203,7 +241,9 @@ def brute_force(segments: Array, x: Array, y: Array, dx: Array, dy: Array) -> tu
 
 
 def _edges(points: Array) -> Array:
-    """(n, 2, 2): the edges of a ring, each from its point to the next; a repeated closing point is none of them."""
+    """(n, 2, 2): the edges of a ring, each from its point to the next; a repeated closing point is
+    none of them.
+    """
     points = np.asarray(points, float).reshape(-1, 2)
     if len(points) > 1 and (points[0] == points[-1]).all():
         points = points[:-1]
@@ -228,7 +268,9 @@ def _lines(segments: Array, polygon: Integers) -> Integers:
 
 
 def _groups(within: Integers, value: Array, gap: Array) -> Integers:
-    """(n,): number the runs of nearly equal values; a gap in the sorted values, or another `within`, parts two runs."""
+    """(n,): number the runs of nearly equal values; a gap in the sorted values, or another
+    `within`, parts two runs.
+    """
     order = np.lexsort([value, within])
     parted = (np.diff(within[order]) != 0) | (np.diff(value[order]) > gap[order][1:])
     number = np.empty(len(order), np.int64)

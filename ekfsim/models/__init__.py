@@ -1,1 +1,3 @@
-"""What the textbook calls f and h, each with its Jacobian under it and its noise; a file per robot or sensor."""
+"""What the textbook calls f and h, each with its Jacobian under it and its noise; a file per robot
+or sensor.
+"""

@@ -1,7 +1,7 @@
 """The classroom's motion and sensor, linearised for many runs by Numba: the extra `fast`.
 
-Imported only where geometry/backend.py has been told to use it. All arrays have their entries in front and the runs
-behind: x : (3, N), F : (3, 3, N).
+Imported only where geometry/backend.py has been told to use it. All arrays have their entries in
+front and the runs behind: x : (3, N), F : (3, 3, N).
 """
 
 import math
@@ -13,7 +13,9 @@ from ekfsim.geometry.compiled import compiled
 from ekfsim.geometry.lanes import back, front, lanes
 
 
-def moved(x: Array, u: Array, distance_ratio: float, angle_ratio: float) -> tuple[Array, Array, Array, Array]:
+def moved(
+    x: Array, u: Array, distance_ratio: float, angle_ratio: float
+) -> tuple[Array, Array, Array, Array]:
     """f, F, G and M of `MoveTurn` for x : (N, 3) and u : (N, 2)"""
     N = len(x)
     new = np.empty((3, N)), np.empty((3, 3, N)), np.empty((3, 2, N)), np.empty((2, 2, N))
@@ -34,7 +36,14 @@ def beamed(
 
 @compiled
 def _move_turn(
-    x: Array, u: Array, distance_ratio: float, angle_ratio: float, f: Array, F: Array, G: Array, M: Array
+    x: Array,
+    u: Array,
+    distance_ratio: float,
+    angle_ratio: float,
+    f: Array,
+    F: Array,
+    G: Array,
+    M: Array,
 ) -> None:
     for n in range(x.shape[1]):
         θ, d, a = x[2, n], u[0, n], u[1, n]

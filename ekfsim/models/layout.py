@@ -10,7 +10,9 @@ from ekfsim.geometry import Array
 
 @dataclass(frozen=True)
 class Layout:
-    """The order of a state's entries. Every state holds a pose; what else it holds, only its models know."""
+    """The order of a state's entries. Every state holds a pose; what else it holds, only its models
+    know.
+    """
 
     names: tuple[str, ...]
     position: tuple[int, int] = (0, 1)
@@ -47,5 +49,8 @@ class Layout:
 POSE = Layout(("x", "y", "theta"))  # classroom, mower, pioneer
 SPEED_POSE = Layout(("v", "phi", "x", "y"), position=(2, 3), heading=1, headings=(1,))  # gnss
 INERTIAL = Layout(
-    ("xdot", "x", "ydot", "y", "thetadot", "theta", "theta_prev"), position=(1, 3), heading=5, headings=(5, 6)
+    ("xdot", "x", "ydot", "y", "thetadot", "theta", "theta_prev"),
+    position=(1, 3),
+    heading=5,
+    headings=(5, 6),
 )  # pylon, eq. 5

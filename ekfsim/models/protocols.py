@@ -6,14 +6,18 @@ from ekfsim.geometry import Array
 
 
 class Quantity(NamedTuple):
-    """One number of a motion input or a reading, as people call it. unit : "m", "rad", "m/s", "s", …, "" for none"""
+    """One number of a motion input or a reading, as people call it. unit : "m", "rad", "m/s", "s",
+    …, "" for none
+    """
 
     name: str
     unit: str
 
 
 class Motion(Protocol):
-    """x⁺ = f(x, u + noise of covariance M) + noise of covariance Q, linearised by F = ∂f/∂x and G = ∂f/∂u."""
+    """x⁺ = f(x, u + noise of covariance M) + noise of covariance Q, linearised by F = ∂f/∂x and G =
+    ∂f/∂u.
+    """
 
     __slots__ = ()
 
@@ -48,7 +52,9 @@ class Sensor(Protocol):
 
     @property
     def outputs(self) -> tuple[Quantity, ...]:
-        """What the entries of z are. Those in rad are directions: z − h wraps them, and a mean of them is circular."""
+        """What the entries of z are. Those in rad are directions: z − h wraps them, and a mean of
+        them is circular.
+        """
 
     def h(self, x: Array) -> Array:
         """The reading that the state x predicts : (…, k), nan where it predicts none."""
@@ -62,7 +68,9 @@ class Sensor(Protocol):
         return z - h
 
     def sight(self, x: Array, P: Array) -> Any:
-        """What this sensor alone knows of a reading before it is used; None where there is nothing more to know."""
+        """What this sensor alone knows of a reading before it is used; None where there is nothing
+        more to know.
+        """
         return None
 
 

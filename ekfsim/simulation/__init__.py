@@ -1,6 +1,7 @@
 """World + commands or drive + draws → Entries: a log being written.
 
-The truth moves here and nowhere else; what the filter is given (odometry, readings, its own map) leaves in the Entry.
+The truth moves here and nowhere else; what the filter is given (odometry, readings, its own map)
+leaves in the Entry.
 """
 
 from collections.abc import Iterator

@@ -21,20 +21,28 @@ def gaussian(mean: Array, covariance: Array, generator: "Generator") -> Array:
 
 
 def readings(sensor: Sensor, x: Array, generator: "Generator") -> Array:
-    """z = h(x) + noise of covariance R for each state : (…, k), nan where the sensor meets nothing. x : (…, n)"""
+    """z = h(x) + noise of covariance R for each state : (…, k), nan where the sensor meets nothing.
+    x : (…, n)
+    """
     h, _, R = sensor.linearize(x)
     return gaussian(h, np.nan_to_num(R), generator)
 
 
 def echoes(pair: Pair, n: int, generator: "Generator") -> Array:
-    """n echoes of 1 V height from anywhere in the pair's range, T and α as the pair's vary : (n, 4) V, s, s, 1"""
+    """n echoes of 1 V height from anywhere in the pair's range, T and α as the pair's vary : (n, 4)
+    V, s, s, 1
+    """
     τ = pair.flight(generator.uniform(pair.nearest, pair.farthest, n))
-    T, α = (typical * (1 + pair.spread * generator.standard_normal(n)) for typical in (pair.rise, pair.power))
+    T, α = (
+        typical * (1 + pair.spread * generator.standard_normal(n))
+        for typical in (pair.rise, pair.power)
+    )
     return np.stack([1 / height(1.0, α), τ, T, α], axis=-1)
 
 
 def sigma_of(snr: float) -> float:
-    """σ of the noise in V, where a carrier of 1 V height stands `snr` dB above it: SNR = 10 log₁₀ (½ V²/σ²).
+    """σ of the noise in V, where a carrier of 1 V height stands `snr` dB above it: SNR = 10 log₁₀
+    (½ V²/σ²).
 
     >>> round(sigma_of(20.0), 4)
     0.0707

@@ -10,8 +10,8 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.ground import CLEARANCE
 from ekfsim.geometry.lanes import front, lanes
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.laser import Laser
-from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.motions.move_turn import MoveTurn
+from ekfsim.models.sensors.laser import Laser
 from ekfsim.records import Control, Entry, Kidnap, Move, Reading, Say, Sense, expand
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import Draws, true_start
@@ -21,7 +21,9 @@ FEW = 32  # walls near any of the robots that are sooner looked at one by one
 
 
 def obey(scene: Scene, draws: Draws) -> Iterator[Entry]:
-    """The log of a robot that obeys commands. Entry 0 is the start; then one for each expanded command."""
+    """The log of a robot that obeys commands. Entry 0 is the start; then one for each expanded
+    command.
+    """
     world, drawn = scene.world, 0
     motion = MoveTurn(world.told.noise.odometry_distance, world.told.noise.odometry_angle)
     truth = true_start(world, draws)
@@ -44,21 +46,30 @@ def obey(scene: Scene, draws: Draws) -> Iterator[Entry]:
                 yield Entry(index, None, truth, command)
 
 
-def _drive(world: World, pose: Array, move: Move, normals: Sequence[Array]) -> tuple[Array, Array, Integers]:
-    """Drive, then turn: the true pose after it (…, 3), the odometry (…, 2), and the wall that was bumped into (…)."""
+def _drive(
+    world: World, pose: Array, move: Move, normals: Sequence[Array]
+) -> tuple[Array, Array, Integers]:
+    """Drive, then turn: the true pose after it (…, 3), the odometry (…, 2), and the wall that was
+    bumped into (…).
+    """
     noise, faults = world.noise, world.faults
     execution_distance, execution_angle, odometry_distance, odometry_angle = normals
     wheels = move.distance + noise.execution_distance * abs(move.distance) * execution_distance
     way, bump = _until_wall(world, pose, (1 - move.slip) * wheels)
     turn = move.angle + noise.execution_angle * abs(move.angle) * execution_angle
     turned = way / (1 - move.slip) if move.slip < 1 else wheels  # what the wheels did of it
-    d = faults.odometry_distance_scale * turned + noise.odometry_distance * abs(turned) * odometry_distance
+    d = (
+        faults.odometry_distance_scale * turned
+        + noise.odometry_distance * abs(turned) * odometry_distance
+    )
     a = faults.odometry_angle_scale * turn + noise.odometry_angle * abs(turn) * odometry_angle
     return MoveTurn(0, 0).f(pose, _paired(way, turn)), _paired(d, a), bump
 
 
 def _until_wall(world: World, pose: Array, way: Array) -> tuple[Array, Integers]:
-    """The way, cut 1 mm short of the first wall (0 if that is nearer), and that wall, −1 where none is in the way."""
+    """The way, cut 1 mm short of the first wall (0 if that is nearer), and that wall, −1 where none
+    is in the way.
+    """
     if pose.ndim == 1:
         return _until_wall_one(world, pose, float(way))
     some = _may_bump(world.map.walls, pose, way)
@@ -76,7 +87,9 @@ def _until_wall(world: World, pose: Array, way: Array) -> tuple[Array, Integers]
 
 
 def _may_bump(walls: Walls, pose: Array, way: Array) -> Integers:
-    """Which of N runs may meet a wall on their way or come near one: few in a study, where all go much the same way."""
+    """Which of N runs may meet a wall on their way or come near one: few in a study, where all go
+    much the same way.
+    """
     reach, place = np.abs(way) + 2 * CLEARANCE, front(pose, 1)[:2]
     far = float(reach.max())
     near = walls.near(place.min(axis=1) - far, place.max(axis=1) + far)
@@ -84,7 +97,9 @@ def _may_bump(walls: Walls, pose: Array, way: Array) -> Integers:
         return np.arange(len(way) if len(near) else 0)
     ends = walls.segments[near]
     first, last = ends.min(axis=1)[..., None], ends.max(axis=1)[..., None]
-    return np.flatnonzero(((first <= place + reach) & (last >= place - reach)).all(axis=1).any(axis=0))
+    return np.flatnonzero(
+        ((first <= place + reach) & (last >= place - reach)).all(axis=1).any(axis=0)
+    )
 
 
 def _until_wall_one(world: World, pose: Array, way: float) -> tuple[Array, Integers]:

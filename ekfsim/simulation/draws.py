@@ -1,4 +1,6 @@
-"""The random numbers of runs: each a function of the seed, the number of the draw and the run alone."""
+"""The random numbers of runs: each a function of the seed, the number of the draw and the run
+alone.
+"""
 
 from collections.abc import Sequence
 
@@ -11,15 +13,16 @@ from ekfsim.seeds import MOST_SEED, REPEATS
 from ekfsim.world import World
 
 BLOCK = 1024  # runs that share a generator
-PARTICLES, STREAMS = 1, 2  # keys of the generators of particle filters and of streams, apart from those of the draws
+# keys of the generators of particle filters and of streams, apart from those of the draws
+PARTICLES, STREAMS = 1, 2
 
 
 class Draws:
     """The random numbers of some runs: a function of (seed, index, run) alone.
 
-    Draw i of the runs 1024·b … 1024·b + 1023 comes from Generator(PCG64(SeedSequence([seed, i, b]))): normals of shape
-    (1024, 4) first, then uniforms of shape (1024, 2). So another ratio, filter or gate changes no draw, and any run of
-    a study can be played alone.
+    Draw i of the runs 1024·b … 1024·b + 1023 comes from Generator(PCG64(SeedSequence([seed, i,
+    b]))): normals of shape (1024, 4) first, then uniforms of shape (1024, 2). So another ratio,
+    filter or gate changes no draw, and any run of a study can be played alone.
     """
 
     def __init__(self, seed: int, runs: Integers) -> None:
@@ -56,14 +59,20 @@ class Draws:
                 uniforms_of[:, here] = generator.random((BLOCK, 2))[rows].T
         return tuple(normals_of), tuple(uniforms_of)
 
-    def _draw_neighbours(self, i: int, b: int, rows: slice, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
+    def _draw_neighbours(
+        self, i: int, b: int, rows: slice, uniforms: bool
+    ) -> tuple[Sequence[Array], Sequence[Array]]:
         """The same for runs that follow one another in one block, as those of a study do."""
         generator = self._generator(i, b)
         normals = generator.standard_normal((BLOCK if uniforms else rows.stop, 4))[rows]
         return tuple(normals.T), tuple(generator.random((BLOCK, 2))[rows].T) if uniforms else ()
 
-    def _draw_one(self, i: int, b: int, row: int, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
-        """The same for one run: of the normals no more than is needed, for the uniforms stand behind all of them."""
+    def _draw_one(
+        self, i: int, b: int, row: int, uniforms: bool
+    ) -> tuple[Sequence[Array], Sequence[Array]]:
+        """The same for one run: of the normals no more than is needed, for the uniforms stand
+        behind all of them.
+        """
         generator = self._generator(i, b)
         normals = generator.standard_normal((BLOCK if uniforms else row + 1, 4))[row].tolist()
         return normals, generator.random((BLOCK, 2))[row].tolist() if uniforms else ()
@@ -75,20 +84,25 @@ class Draws:
 class Stream:
     """Standard normals of some runs, taken one after another: a function of (seed, run, key) alone.
 
-    Those of run k come from Generator(PCG64(SeedSequence([seed, k], spawn_key=(2, *key)))) in the order of time.
-    However many are taken at once, they are the same: a driven robot's noises are drawn for many ticks together.
+    Those of run k come from Generator(PCG64(SeedSequence([seed, k], spawn_key=(2, *key)))) in the
+    order of time. However many are taken at once, they are the same: a driven robot's noises are
+    drawn for many ticks together.
     """
 
     def __init__(self, seed: int, runs: Integers, key: tuple[int, ...]) -> None:
         self._axes = runs.shape
         self._generators = [
-            np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, int(run)], spawn_key=(STREAMS, *key))))
+            np.random.Generator(
+                np.random.PCG64(np.random.SeedSequence([seed, int(run)], spawn_key=(STREAMS, *key)))
+            )
             for run in np.atleast_1d(runs)
         ]
 
     def normals(self, rows: int, columns: int) -> Array:
         """The next ones : (rows, …, columns)"""
-        drawn = np.stack([generator.standard_normal((rows, columns)) for generator in self._generators], axis=1)
+        drawn = np.stack(
+            [generator.standard_normal((rows, columns)) for generator in self._generators], axis=1
+        )
         return drawn.reshape(rows, *self._axes, columns)
 
     def uniforms(self, rows: int) -> Array:
@@ -98,7 +112,9 @@ class Stream:
 
 
 def _verify(seed: int, runs: Integers) -> None:
-    """Raises UsageError for a seed that would repeat another's draws, and for a seed or runs that have none."""
+    """Raises UsageError for a seed that would repeat another's draws, and for a seed or runs that
+    have none.
+    """
     if not 0 <= seed <= MOST_SEED:
         wrong = "negative" if seed < 0 else f"too large: {REPEATS}"
         raise UsageError(f"seed {seed} is {wrong}; choose one from 0 to {MOST_SEED}")
@@ -107,7 +123,9 @@ def _verify(seed: int, runs: Integers) -> None:
 
 
 def _neighbours(runs: Integers) -> tuple[int, slice] | None:
-    """The block that holds all of these runs, and their rows in it, where they follow one another; otherwise None."""
+    """The block that holds all of these runs, and their rows in it, where they follow one another;
+    otherwise None.
+    """
     if runs.ndim != 1 or not runs.size:
         return None
     b, row = divmod(int(runs[0]), BLOCK)
@@ -125,5 +143,8 @@ def true_start(world: World, draws: Draws) -> Array:
 def particle_generators(seed: int, runs: Integers) -> Sequence[np.random.Generator]:
     """A generator for the particles of each run, alike whether it is run alone or beside others."""
     _verify(seed, runs)
-    keys = (np.random.SeedSequence([seed, int(run)], spawn_key=(PARTICLES,)) for run in np.atleast_1d(runs))
+    keys = (
+        np.random.SeedSequence([seed, int(run)], spawn_key=(PARTICLES,))
+        for run in np.atleast_1d(runs)
+    )
     return [np.random.Generator(np.random.PCG64(key)) for key in keys]

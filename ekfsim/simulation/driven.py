@@ -1,4 +1,6 @@
-"""A robot that is driven along a way, its instruments read at their own rates: world + drive + draws → Entries."""
+"""A robot that is driven along a way, its instruments read at their own rates: world + drive +
+draws → Entries.
+"""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -23,25 +25,39 @@ from ekfsim.systems.robots import PylonCart
 GPS_SIGMA, GPS_PERIOD = 0.4, 2.0  # m, s: of the pylon cart's GPS, which is recorded and not used
 SOON = 1e-9  # of a period: what rounding makes of an instant
 TICKS_AT_ONCE = 8_000  # of one run: the first picture does not wait for the last tick
-AT_ONCE = 100_000  # ticks times runs that are worked out together: one by one is slow, all at once takes much memory
-DISTURBANCE, INPUT, FIX, READING, OUTLIER = range(5)  # the streams of random numbers, the last two for each target
+# ticks times runs that are worked out together: one by one is slow, all at once takes much memory
+AT_ONCE = 100_000
+# the streams of random numbers, the last two for each target
+DISTURBANCE, INPUT, FIX, READING, OUTLIER = range(5)
 
 
 def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
-    """The log of a driven robot: at every tick its motion input, then the readings of that instant, one after another.
+    """The log of a driven robot: at every tick its motion input, then the readings of that instant,
+    one after another.
 
-    The truth follows the right equations and the robot's own numbers, whatever reading of the document and whatever
-    numbers the filter is told. What disturbs the motion, the noise of its input and the noise of each target's readings
-    are streams of their own (see `Stream`). They go on whether a target is seen or not, so no noise, range, field of
-    view or fault changes the numbers of another.
+    The truth follows the right equations and the robot's own numbers, whatever reading of the
+    document and whatever numbers the filter is told. What disturbs the motion, the noise of its
+    input and the noise of each target's readings are streams of their own (see `Stream`). They go
+    on whether a target is seen or not, so no noise, range, field of view or fault changes the
+    numbers of another.
     """
     world, robot, believed = scene.world, scene.world.robot, scene.world.told_robot
     assert robot is not None
     assert believed is not None
-    told, motion, course = believed.motion(scene.reading), robot.motion("corrected"), way.course(1 / robot.rate)
+    told, motion, course = (
+        believed.motion(scene.reading),
+        robot.motion("corrected"),
+        way.course(1 / robot.rate),
+    )
     start, wanted = true_start(world, draws), course.poses(world.start, 1 / robot.rate)
-    driver = Driver(course, wanted, start, robot.rate, _process(motion, world.layout), draws.stream(DISTURBANCE))
-    inputs, gps, watches = draws.stream(INPUT), _Gps(draws.stream(FIX)), list(_watches(scene, draws))
+    driver = Driver(
+        course, wanted, start, robot.rate, _process(motion, world.layout), draws.stream(DISTURBANCE)
+    )
+    inputs, gps, watches = (
+        draws.stream(INPUT),
+        _Gps(draws.stream(FIX)),
+        list(_watches(scene, draws)),
+    )
     past = Past(start, max((watch.faults.delay for watch in watches), default=0.0) * robot.rate)
     yield Entry(0, None, start, t=0.0)
     index = 0
@@ -54,14 +70,18 @@ def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
         readings = _readings(watches, ticks, past, u, robot.rate, world.layout)
         for i, tick in enumerate(ticks.tolist()):
             index, t = index + 1, (tick + 1) / robot.rate
-            yield Entry(index, Control(told, u[i]), truth[i], t=t, fix=None if fixes is None else fixes[i])
+            yield Entry(
+                index, Control(told, u[i]), truth[i], t=t, fix=None if fixes is None else fixes[i]
+            )
             for reading in readings[i]:
                 index += 1
                 yield Entry(index, reading, truth[i], t=t)
 
 
 class _Watch(NamedTuple):
-    """One target of one instrument, what is wrong with the instrument, and the noise of its readings."""
+    """One target of one instrument, what is wrong with the instrument, and the noise of its
+    readings.
+    """
 
     instrument: Instrument
     believed: Instrument  # as the filter is told
@@ -72,10 +92,13 @@ class _Watch(NamedTuple):
     outliers: Stream | None  # None where there are none
 
     def read(self, pose: Array, x: Array, u: Array) -> Array:
-        """Its readings from true poses (D, …, 3) and their states x : (D, …, k), nan where it is not in view."""
+        """Its readings from true poses (D, …, 3) and their states x : (D, …, k), nan where it is
+        not in view.
+        """
         h, _, R = self.true.sensor.linearize(x)
         bias: Array = np.broadcast_to(self.faults.bias or (0.0,), h.shape)
-        if isinstance(self.instrument, Pylon):  # the lidar's own noise, then turned by the yaw as it was measured
+        # the lidar's own noise, then turned by the yaw as it was measured
+        if isinstance(self.instrument, Pylon):
             h, bias = _turned(h, u[..., 2] - pose[..., 2]), _turned(bias, u[..., 2])
             R = np.broadcast_to(np.eye(2) * self.instrument.sigma**2, (*h.shape, 2))
         noise = _noise(np.nan_to_num(R), self.noise)
@@ -103,7 +126,9 @@ def _watches(scene: Scene, draws: Draws) -> Iterator[_Watch]:
     for number, ((believed, known), (instrument, real)) in enumerate(both):
         faults = world.drive_faults.sensors.get(instrument.name, SOUND)
         outliers = draws.stream(OUTLIER, number) if faults.outliers > 0 else None
-        yield _Watch(instrument, believed, known, real, faults, draws.stream(READING, number), outliers)
+        yield _Watch(
+            instrument, believed, known, real, faults, draws.stream(READING, number), outliers
+        )
 
 
 def _readings(
@@ -143,18 +168,24 @@ class _Gps:
 
 def _due(often: float, ticks: Integers, rate: float) -> Booleans:
     """Whether an instrument that is read so often is read at the end of a tick. often, rate : Hz"""
-    due: Booleans = np.floor((ticks + 1) / rate * often + SOON) > np.floor(ticks / rate * often + SOON)
+    due: Booleans = np.floor((ticks + 1) / rate * often + SOON) > np.floor(
+        ticks / rate * often + SOON
+    )
     return due
 
 
 def _noise(covariance: Array, stream: Stream) -> Array:
     """Noise of covariances (T, …, m, m) : (T, …, m)"""
-    noise: Array = np.matvec(square_root(covariance), stream.normals(len(covariance), covariance.shape[-1]))
+    noise: Array = np.matvec(
+        square_root(covariance), stream.normals(len(covariance), covariance.shape[-1])
+    )
     return noise
 
 
 def _process(motion: Motion, layout: Layout) -> Array:
-    """Q of the pose, for a tick : (3, 3). None of the right motions has one that depends on its input."""
+    """Q of the pose, for a tick : (3, 3). None of the right motions has one that depends on its
+    input.
+    """
     Q = motion.Q(np.zeros(len(motion.inputs)))
     return np.zeros((3, 3)) if np.ndim(Q) == 0 else layout.pose_covariance(np.asarray(Q))
 

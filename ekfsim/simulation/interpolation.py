@@ -1,4 +1,6 @@
-"""A fix at every row of the wheels, by its number: what the authors of document 003 give to their filter."""
+"""A fix at every row of the wheels, by its number: what the authors of document 003 give to their
+filter.
+"""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -6,17 +8,19 @@ from dataclasses import replace
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.models.position import Position
+from ekfsim.models.sensors.position import Position
 from ekfsim.records import Control, Entry, Reading
 
 
 def stretched(entries: Iterable[Entry]) -> Iterator[Entry]:
-    """The same log with a reading after each motion input; what was recorded is spread evenly over them, by its number.
+    """The same log with a reading after each motion input; what was recorded is spread evenly over
+    them, by its number.
 
-    Row i of n, the start being row 0, has the fix at place i (K − 1)/n of the K that were recorded, on the straight
-    line from the one before that place to the one after it. No stamp is looked at: where the first fix comes late, or
-    one is missing, all are given to the wrong rows. Nor could a filter at work do so: it would have to know the next
-    fix, and how many will come. Readings of other instruments stay where they are.
+    Row i of n, the start being row 0, has the fix at place i (K − 1)/n of the K that were recorded,
+    on the straight line from the one before that place to the one after it. No stamp is looked at:
+    where the first fix comes late, or one is missing, all are given to the wrong rows. Nor could a
+    filter at work do so: it would have to know the next fix, and how many will come. Readings of
+    other instruments stay where they are.
     """
     log = list(entries)
     given = [fix for entry in log if (fix := _fix(entry)) is not None]
@@ -36,7 +40,11 @@ def stretched(entries: Iterable[Entry]) -> Iterator[Entry]:
 
 def _fix(entry: Entry) -> Reading | None:
     """The fix that an entry brings, None where it brings something else."""
-    return entry.given if isinstance(entry.given, Reading) and isinstance(entry.given.sensor, Position) else None
+    return (
+        entry.given
+        if isinstance(entry.given, Reading) and isinstance(entry.given.sensor, Position)
+        else None
+    )
 
 
 def _at(place: float, fixes: list[Array]) -> Array:

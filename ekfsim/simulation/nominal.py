@@ -1,4 +1,6 @@
-"""The nominal trajectory: where a robot would be that does what it is asked to, from where it is believed to start."""
+"""The nominal trajectory: where a robot would be that does what it is asked to, from where it is
+believed to start.
+"""
 
 from collections.abc import Iterable
 
@@ -6,7 +8,7 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
-from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.records import Command, Move, expand
 from ekfsim.scene import Scene
 from ekfsim.simulation.driver import ticks_of
@@ -15,7 +17,9 @@ from ekfsim.systems.robots import Robot
 
 
 def nominal_trajectory(scene: Scene) -> Array:
-    """States before, between and after all motion inputs of a scene that is simulated : (T + 1, n)"""
+    """States before, between and after all motion inputs of a scene that is simulated : (T + 1,
+    n)
+    """
     world, robot = scene.world, scene.world.told_robot
     if world.robot is None or robot is None:
         return _commanded(scene.commands, world.told.start)
@@ -34,7 +38,9 @@ def _commanded(commands: Iterable[Command], start: Array) -> Array:
 
 
 def _driven(course: Course, dt: float, start: Array, robot: Robot) -> Array:
-    """A driven robot on its course. What in its state is no pose is what one motion input makes of it, from rest."""
+    """A driven robot on its course. What in its state is no pose is what one motion input makes of
+    it, from rest.
+    """
     poses = course.poses(start, dt)
     poses[:, 2] = wrap(poses[:, 2])
     states = robot.layout.state(poses)

@@ -1,4 +1,6 @@
-"""1024 runs side by side → a Tally. They are the unit of work: the runs of a block share their draws."""
+"""1024 runs side by side → a Tally. They are the unit of work: the runs of a block share their
+draws.
+"""
 
 import functools
 import math
@@ -42,13 +44,18 @@ class Ends(NamedTuple):
 
 
 def run_block(scene: Scene, first: int, runs: int, fast: bool = False) -> Tally:
-    """What becomes of the runs first … first + runs − 1 of a scene; fast : by code that Numba compiles"""
+    """What becomes of the runs first … first + runs − 1 of a scene; fast : by code that Numba
+    compiles
+    """
     with using("numba" if fast else used()):
-        return functools.reduce(operator.add, (watched(scene, *some).tally() for some in at_once(scene, first, runs)))
+        return functools.reduce(
+            operator.add, (watched(scene, *some).tally() for some in at_once(scene, first, runs))
+        )
 
 
 def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
-    """The runs first … first + runs − 1 in portions that fit the memory, each its first and how many.
+    """The runs first … first + runs − 1 in portions that fit the memory, each its first and how
+    many.
 
     Only of particles there may be too many for a block's runs to be watched side by side.
     """
@@ -122,7 +129,12 @@ class Watch:
         if self._step == self._told[len(self._rows)]:
             pose, truth = posed(step.posterior, self._layout), step.entry.truth
             assert truth is not None
-            counted = nees_counts(now), coverage_counts(pose, truth), nees_sums(now), error_squares(pose, truth)
+            counted = (
+                nees_counts(now),
+                coverage_counts(pose, truth),
+                nees_sums(now),
+                error_squares(pose, truth),
+            )
             self._rows.append(sum(counted, ()))
             self._times.append(math.nan if step.entry.t is None else step.entry.t)
 
@@ -134,7 +146,10 @@ class Watch:
         pose = posed(self._ended.posterior, self._layout)
         e = error(pose, self._ended.entry.truth)
         return Ends(
-            self._last.above(LOST), *covered(e, pose.covariance), np.hypot(e[..., 0], e[..., 1]), abs(e[..., 2])
+            self._last.above(LOST),
+            *covered(e, pose.covariance),
+            np.hypot(e[..., 0], e[..., 1]),
+            abs(e[..., 2]),
         )
 
     def tally(self) -> Tally:
@@ -172,4 +187,6 @@ class Watch:
         """The run that ended worst, of equals the lowest number."""
         i = int(np.argmax(np.where(last.impossible, np.inf, last.value)))
         impossible = bool(last.impossible[i])
-        return Extreme(impossible, 0.0 if impossible else float(last.value[i]), int(self.numbers[i]))
+        return Extreme(
+            impossible, 0.0 if impossible else float(last.value[i]), int(self.numbers[i])
+        )

@@ -17,12 +17,16 @@ AHEAD = 4  # blocks for each worker that are handed out at once
 
 
 def cluster(address: str, tell: Callable[[str], None]) -> Engine:
-    """An engine of the workers of a scheduler. Raises UsageError without `distributed`, RunError where none answers."""
+    """An engine of the workers of a scheduler. Raises UsageError without `distributed`, RunError
+    where none answers.
+    """
     try:
         import dask
         import distributed
     except ImportError:
-        raise UsageError("--cluster needs the package 'distributed': pip install 'ekfsim[cluster]'") from None
+        raise UsageError(
+            "--cluster needs the package 'distributed': pip install 'ekfsim[cluster]'"
+        ) from None
     for name in list(logging.root.manager.loggerDict):  # they tell at length what we say in a line
         if name.partition(".")[0] in ("distributed", "tornado", "asyncio"):
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
@@ -33,10 +37,16 @@ def cluster(address: str, tell: Callable[[str], None]) -> Engine:
             client = _connected(distributed, address)
             try:
                 yield from _done(distributed, client, work, tasks, tell)
-            except (distributed.client.FutureCancelledError, distributed.comm.core.CommClosedError, TimeoutError):
+            except (
+                distributed.client.FutureCancelledError,
+                distributed.comm.core.CommClosedError,
+                TimeoutError,
+            ):
                 raise RunError(f"the scheduler at {address} is gone") from None
             except ModuleNotFoundError as lack:
-                raise RunError(f"a worker lacks {lack.name}; install ekfsim there as here") from None
+                raise RunError(
+                    f"a worker lacks {lack.name}; install ekfsim there as here"
+                ) from None
             except distributed.KilledWorker:
                 raise RunError("a block was given up, as every worker that began it died") from None
             finally:
@@ -46,19 +56,32 @@ def cluster(address: str, tell: Callable[[str], None]) -> Engine:
 
 
 def _connected(distributed: Any, address: str) -> Any:
-    """A client of a scheduler. That something listens is seen first, for the client would try for half a minute."""
+    """A client of a scheduler. That something listens is seen first, for the client would try for
+    half a minute.
+    """
     scheme, _, rest = address.rpartition("://")
     host, _, port = rest.rpartition(":")
     if scheme not in ("", "tcp", "tls") or not host or not port.isdigit():
-        raise UsageError(f"--cluster {address}: is no address of a scheduler; write e.g. tcp://127.0.0.1:8786")
+        raise UsageError(
+            f"--cluster {address}: is no address of a scheduler; write e.g. tcp://127.0.0.1:8786"
+        )
     try:
         with socket.create_connection((host.strip("[]"), int(port)), timeout=SECONDS) as wire:
-            if scheme != "tls" and not 0 < int.from_bytes(wire.recv(8, socket.MSG_WAITALL), "little") < GREETING:
+            if (
+                scheme != "tls"
+                and not 0 < int.from_bytes(wire.recv(8, socket.MSG_WAITALL), "little") < GREETING
+            ):
                 raise RunError(f"no scheduler at {address}: something else answers there")
         return distributed.Client(address, timeout=SECONDS, set_as_default=False)
     except (OSError, OverflowError, UnicodeError, TimeoutError) as error:
-        why = f"{error.strerror}" if isinstance(error, OSError) and error.strerror else "it does not answer"
-        raise RunError(f"no scheduler at {address}: {why}; start one with `dask scheduler`") from None
+        why = (
+            f"{error.strerror}"
+            if isinstance(error, OSError) and error.strerror
+            else "it does not answer"
+        )
+        raise RunError(
+            f"no scheduler at {address}: {why}; start one with `dask scheduler`"
+        ) from None
     except (ValueError, TypeError, RuntimeError) as error:
         raise UsageError(f"--cluster {address}: {error}") from None
 

@@ -1,4 +1,6 @@
-"""Two settings side by side on the same draws: differences of pairs, each with its 95 % interval."""
+"""Two settings side by side on the same draws: differences of pairs, each with its 95 %
+interval.
+"""
 
 import functools
 import math
@@ -7,9 +9,9 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
 from ekfsim.errors import UsageError
-from ekfsim.files.filter_checks import refuse_unread
-from ekfsim.files.load_study import FILTER, Request
-from ekfsim.files.settings import Setting, filters_in, setting
+from ekfsim.files.scenes.filter_checks import refuse_unread
+from ekfsim.files.scenes.load_study import FILTER, Request
+from ekfsim.files.scenes.settings import Setting, filters_in, setting
 from ekfsim.study.pairs import Pairs, Shared, Sums, run_pairs
 from ekfsim.study.plan import Plan, Task
 from ekfsim.study.results import Share, Z
@@ -25,12 +27,18 @@ class Comparison:
 
     @classmethod
     def of(cls, request: Request) -> Self:
-        """What is asked, ready to be done. Raises UsageError or InputError where it is no comparison."""
+        """What is asked, ready to be done. Raises UsageError or InputError where it is no
+        comparison.
+        """
         name = request.name
         if not request.a and not request.b:
-            raise UsageError(f"{name}: nothing is compared; write e.g. --a guard=off --b guard=skip,gate=0.99")
+            raise UsageError(
+                f"{name}: nothing is compared; write e.g. --a guard=off --b guard=skip,gate=0.99"
+            )
         if request.sweep or len(request.filters) > 1:
-            raise UsageError(f"{name}: a study of several cells; compare two: say which by --a and --b")
+            raise UsageError(
+                f"{name}: a study of several cells; compare two: say which by --a and --b"
+            )
         a, b = (Plan.of(side(request, settings)) for settings in (request.a, request.b))
         if a.identity() == b.identity():
             raise UsageError(f"{name}: a and b are the same; let them differ")
@@ -64,7 +72,9 @@ def side(request: Request, settings: tuple[Setting, ...]) -> Request:
 
 
 def with_sides(request: Request, a: str | None, b: str | None) -> Request:
-    """The same request with what the command line sets for either side. Raises UsageError where that means nothing."""
+    """The same request with what the command line sets for either side. Raises UsageError where
+    that means nothing.
+    """
     return replace(
         request,
         a=request.a if a is None else told_side(a, "--a"),
@@ -77,11 +87,16 @@ def told_side(text: str, option: str) -> tuple[Setting, ...]:
     found = []
     for part in text.split(","):
         if "," in text and "=" not in part:
-            raise UsageError(f"{option} {text}: '{part}' is no KEY=VALUE; write e.g. {option} guard=skip,gate=0.99")
+            raise UsageError(
+                f"{option} {text}: '{part}' is no KEY=VALUE; write e.g. {option} "
+                f"guard=skip,gate=0.99"
+            )
         key, _, value = (word.strip() for word in part.partition("="))
         if key == FILTER:
             filters_in(value, f"{option} {FILTER}")
-        found.append(Setting(FILTER, value, f"{option} {part}") if key == FILTER else setting(part, option))
+        found.append(
+            Setting(FILTER, value, f"{option} {part}") if key == FILTER else setting(part, option)
+        )
     for n, one in enumerate(found):
         if one.key in [other.key for other in found[:n]]:
             raise UsageError(f"{option} {text}: '{one.key}' is set twice; keep one of them")
@@ -104,7 +119,8 @@ class Difference(NamedTuple):
 
 
 def of_shares(found: Shared) -> Difference:
-    """The difference of two shares of the same runs: method 10 of Newcombe, Statistics in Medicine 17, 1998, 2635.
+    """The difference of two shares of the same runs: method 10 of Newcombe, Statistics in Medicine
+    17, 1998, 2635.
 
     With Wilson's interval (l, u) of each share p and their correlation φ,
 

@@ -1,4 +1,6 @@
-"""One step of N runs → counts and sums: how many lie above a quantile, inside the ellipse, inside the cone."""
+"""One step of N runs → counts and sums: how many lie above a quantile, inside the ellipse, inside
+the cone.
+"""
 
 from typing import NamedTuple
 
@@ -28,7 +30,9 @@ class Judged(NamedTuple):
 
     @classmethod
     def of(cls, step: Step, shape: tuple[int, ...]) -> "Judged":
-        """The NEES after a step. An estimate that is no number is as impossible as one that is certain and wrong."""
+        """The NEES after a step. An estimate that is no number is as impossible as one that is
+        certain and wrong.
+        """
         assert step.nees is not None
         number = np.isfinite(step.posterior.mean).all(axis=-1)
         impossible = np.broadcast_to(step.nees.impossible | ~number, shape)
@@ -36,7 +40,9 @@ class Judged(NamedTuple):
         return cls(value, np.broadcast_to(step.nees.dof, shape), impossible)
 
     def above(self, probability: float) -> Booleans:
-        """Which runs lie above a quantile of χ², each by its own degrees of freedom; the impossible ones do : (N,)"""
+        """Which runs lie above a quantile of χ², each by its own degrees of freedom; the impossible
+        ones do : (N,)
+        """
         return self.impossible | (self.value > bounds(probability, self.dof))
 
     def below(self, probability: float) -> Booleans:
@@ -60,11 +66,15 @@ def bounds(probability: float, dof: Integers) -> Array:
 def nees_counts(now: Judged) -> tuple[int, ...]:
     """Runs that are judged, impossible, above the three quantiles."""
     above = (now.above(probability) for probability in (0.5, 0.95, LOST))
-    return tuple(int(np.count_nonzero(runs)) for runs in (now.known | now.impossible, now.impossible, *above))
+    return tuple(
+        int(np.count_nonzero(runs)) for runs in (now.known | now.impossible, now.impossible, *above)
+    )
 
 
 def coverage_counts(pose: Gaussian, truth: Array) -> tuple[int, ...]:
-    """Runs inside their ellipse, that have one, inside their cone, that have one. An impossible one is outside."""
+    """Runs inside their ellipse, that have one, inside their cone, that have one. An impossible one
+    is outside.
+    """
     e, P = error(pose, truth), pose.covariance
     unsure = (P[..., 2, 2] > ROUNDING**2) | ~(abs(e[..., 2]) <= OUTSIDE)
     held = unsure & inside_cone(pose, truth, COVERAGE)
@@ -72,7 +82,9 @@ def coverage_counts(pose: Gaussian, truth: Array) -> tuple[int, ...]:
 
 
 def covered(e: Array, P: Array) -> tuple[Booleans, Booleans]:
-    """Which runs are inside their ellipse, and which have one that has an area, or are impossible : (N,) each"""
+    """Which runs are inside their ellipse, and which have one that has an area, or are impossible :
+    (N,) each
+    """
     square, rank, off = squared_error(e[..., :2], P[..., :2, :2])
     off = off | ~np.isfinite(square) | ~np.isfinite(e[..., :2]).all(axis=-1)
     drawn: Booleans = (rank == 2) | off
@@ -82,7 +94,11 @@ def covered(e: Array, P: Array) -> tuple[Booleans, Booleans]:
 def nees_sums(now: Judged) -> tuple[float, ...]:
     """Runs with a NEES, its degrees of freedom, and its sum."""
     known = now.known
-    return int(np.count_nonzero(known)), int(np.sum(now.dof[known])), float(np.sum(now.value[known]))
+    return (
+        int(np.count_nonzero(known)),
+        int(np.sum(now.dof[known])),
+        float(np.sum(now.value[known])),
+    )
 
 
 def error_squares(pose: Gaussian, truth: Array) -> tuple[float, float]:
@@ -95,7 +111,12 @@ def spread(last: Judged, numbers: Integers) -> dict[int, Bin]:
     """Runs by the logarithm of their NEES: enough to find the median and a run that is near it."""
     with np.errstate(divide="ignore", invalid="ignore"):
         octaves = PER_OCTAVE * np.log2(last.value)
-    bins = np.where(last.impossible, IMPOSSIBLE, np.clip(np.floor(np.nan_to_num(octaves)), -WIDEST, WIDEST))
+    bins = np.where(
+        last.impossible, IMPOSSIBLE, np.clip(np.floor(np.nan_to_num(octaves)), -WIDEST, WIDEST)
+    )
     keys, first, counts = np.unique(bins.astype(np.int64), return_index=True, return_counts=True)
     lowest = numbers[first]
-    return {key: Bin(n, run) for key, n, run in zip(keys.tolist(), counts.tolist(), lowest.tolist(), strict=True)}
+    return {
+        key: Bin(n, run)
+        for key, n, run in zip(keys.tolist(), counts.tolist(), lowest.tolist(), strict=True)
+    }

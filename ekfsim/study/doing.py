@@ -1,4 +1,6 @@
-"""Doing a plan: every block that the journal lacks, kept as it is done; or all blocks, where nothing is kept."""
+"""Doing a plan: every block that the journal lacks, kept as it is done; or all blocks, where
+nothing is kept.
+"""
 
 from collections.abc import Callable, Iterable
 from typing import Any, Generic, Protocol, Self, TypeVar
@@ -42,7 +44,9 @@ def unkept(plan: Plan, engine: Engine, done: Callable[[Task, Tally], None]) -> l
     return [Result(case, blocks.total()) for case, blocks in zip(plan.cases, found, strict=True)]
 
 
-def total(work: Work[S], tasks: Iterable[Task], engine: Engine, done: Callable[[Task, S], None]) -> S:
+def total(
+    work: Work[S], tasks: Iterable[Task], engine: Engine, done: Callable[[Task, S], None]
+) -> S:
     """All blocks of one case together, without a journal."""
     found = _InOrder[S]()
     for task, made in engine(work, tasks):
@@ -52,7 +56,9 @@ def total(work: Work[S], tasks: Iterable[Task], engine: Engine, done: Callable[[
 
 
 class _InOrder(Generic[S]):
-    """Blocks put together in their order, in whichever they come: sums of floating numbers depend on it."""
+    """Blocks put together in their order, in whichever they come: sums of floating numbers depend
+    on it.
+    """
 
     def __init__(self) -> None:
         self._found: S | None = None

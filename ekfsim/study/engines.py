@@ -1,4 +1,6 @@
-"""Where blocks run: here, in processes of this machine, or on a cluster. Each engine yields them as they are done."""
+"""Where blocks run: here, in processes of this machine, or on a cluster. Each engine yields them as
+they are done.
+"""
 
 import contextlib
 import functools
@@ -27,7 +29,9 @@ class Work(Protocol[T_co]):
     """What is done in blocks of runs: a study, a comparison."""
 
     def block(self, case: int) -> Callable[[int, int], T_co]:
-        """What becomes of runs of a case: a function of the first and of how many, that can be packed and sent."""
+        """What becomes of runs of a case: a function of the first and of how many, that can be
+        packed and sent.
+        """
 
 
 class Engine(Protocol):
@@ -44,9 +48,13 @@ def serial(work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
 
 
 def do_packed(packed: bytes, first: int, runs: int, version: str) -> Any:
-    """A block, wherever this is called. Raises RunError where another version of ekfsim is installed."""
+    """A block, wherever this is called. Raises RunError where another version of ekfsim is
+    installed.
+    """
     if version != VERSION:
-        raise RunError(f"a worker has ekfsim {VERSION}, and this is {version}; install the same version there")
+        raise RunError(
+            f"a worker has ekfsim {VERSION}, and this is {version}; install the same version there"
+        )
     try:
         return _unpacked(packed)(first, runs)
     except ModuleNotFoundError as missing:
@@ -55,7 +63,9 @@ def do_packed(packed: bytes, first: int, runs: int, version: str) -> Any:
 
 @functools.lru_cache(maxsize=8)
 def _unpacked(packed: bytes) -> Callable[[int, int], Any]:
-    """What is in a parcel, unpacked once: the walls of its scene are made ready once for all of its blocks."""
+    """What is in a parcel, unpacked once: the walls of its scene are made ready once for all of its
+    blocks.
+    """
     block: Callable[[int, int], Any] = pickle.loads(packed)
     return block
 
@@ -83,7 +93,8 @@ def pool(workers: int) -> Engine:
 
         def hand_out(many: int) -> None:
             for task in itertools.islice(waiting, many):
-                with _heeding_signals_later(), _one_thread_each():  # processes are made as blocks come
+                # processes are made as blocks come
+                with _heeding_signals_later(), _one_thread_each():
                     running[executor.submit(do_packed, *parcels(task))] = task
 
         try:
@@ -93,21 +104,27 @@ def pool(workers: int) -> Engine:
                     yield running.pop(future), future.result()
                     hand_out(1)
         except BrokenProcessPool:
-            raise RunError("a worker process died: it was killed, or there is too little memory for so many") from None
+            raise RunError(
+                "a worker process died: it was killed, or there is too little memory for so many"
+            ) from None
         finally:
             executor.shutdown(wait=False, cancel_futures=True)
             for child in set(active_children()) - before:
                 child.terminate()
             for thread in set(threading.enumerate()) - threads:
-                with contextlib.suppress(RuntimeError):  # one that was just made and has not begun cannot be joined
-                    thread.join(SECONDS)  # else one of them may still be at work when all else is torn down
+                # one that was just made and has not begun cannot be joined
+                with contextlib.suppress(RuntimeError):
+                    # else one of them may still be at work when all else is torn down
+                    thread.join(SECONDS)
 
     return engine
 
 
 @contextlib.contextmanager
 def _one_thread_each() -> Iterator[None]:
-    """Processes that begin in this block calculate with one thread each: there are as many as there are cores."""
+    """Processes that begin in this block calculate with one thread each: there are as many as there
+    are cores.
+    """
     names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
     held = {name: os.environ.get(name) for name in names}
     os.environ.update(dict.fromkeys(names, "1"))
@@ -123,7 +140,8 @@ def _one_thread_each() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _heeding_signals_later() -> Iterator[None]:
-    """What asks us to end is heeded after this block: then all processes that begin in it are known, and end with us.
+    """What asks us to end is heeded after this block: then all processes that begin in it are
+    known, and end with us.
 
     They themselves hear no Ctrl-C before `_begin_worker` has told them to leave it to us.
     """
@@ -131,7 +149,9 @@ def _heeding_signals_later() -> Iterator[None]:
         yield
         return
     came: list[int] = []
-    numbers = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    numbers = [
+        getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+    ]
     handlers = {number: signal.getsignal(number) for number in numbers}
     mask = getattr(signal, "pthread_sigmask", None)  # Windows has none
     heard = mask(signal.SIG_BLOCK, {signal.SIGINT}) if mask else None

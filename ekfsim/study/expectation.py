@@ -1,4 +1,6 @@
-"""What a scene promises of its runs, held against what became of them: `expect` in its commands file."""
+"""What a scene promises of its runs, held against what became of them: `expect` in its commands
+file.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -21,11 +23,14 @@ class Finding:
     share: Share
     low: float  # where it is to lie
     high: float
-    side: Side = ""  # of ΣNIS and NEES: on which side of their 95 % band the runs lie that are counted
+    # of ΣNIS and NEES: on which side of their 95 % band the runs lie that are counted
+    side: Side = ""
 
     @property
     def kept(self) -> bool:
-        """Whether it lies there. A band that is silent keeps below its bound; no share lies nowhere."""
+        """Whether it lies there. A band that is silent keeps below its bound; no share lies
+        nowhere.
+        """
         if self.side == "outside":
             return self.share.value < self.high
         return self.low <= self.share.value <= self.high
@@ -37,10 +42,15 @@ def promised(plan: Plan, runs: int | None) -> Plan:
     Raises UsageError where the scene promises nothing, and where there are several.
     """
     if len(plan.cases) > 1:
-        raise UsageError("--expect verifies what one scene promises of one filter; leave --sweep out, and name one")
+        raise UsageError(
+            "--expect verifies what one scene promises of one filter; leave --sweep out, and name "
+            "one"
+        )
     expect, name = plan.cases[0].scene.expect, plan.request.commands_name
     if expect is None or not list(findings(expect, None)):
-        raise UsageError(f"{name}: promises nothing; write e.g. expect: {{lost: [0, 0.02], nis: silent}} into it")
+        raise UsageError(
+            f"{name}: promises nothing; write e.g. expect: {{lost: [0, 0.02], nis: silent}} into it"
+        )
     return replace(plan, request=replace(plan.request, runs=runs or expect.runs))
 
 
@@ -62,10 +72,14 @@ def findings(expect: Expect, result: Result | None) -> Iterator[Finding]:
     if expect.nis is not None:
         yield _level("nis", expect.nis, NIS, (of.nis_above, of.nis_below) if of else (0, 0), runs)
     if expect.nees is not None:
-        yield _level("nees", expect.nees, NEES, (of.nees_above, of.nees_below) if of else (0, 0), runs)
+        yield _level(
+            "nees", expect.nees, NEES, (of.nees_above, of.nees_below) if of else (0, 0), runs
+        )
 
 
-def _level(name: Literal["nis", "nees"], level: Level, bound: float, counts: tuple[int, int], runs: int) -> Finding:
+def _level(
+    name: Literal["nis", "nees"], level: Level, bound: float, counts: tuple[int, int], runs: int
+) -> Finding:
     """A promise about the runs above and below a band."""
     above, below = counts
     match level:

@@ -1,7 +1,7 @@
 """Each finished block at once on disk: what a study has done survives whatever ends it.
 
-A JSON Lines file: first what decides the numbers of the study, then a line for each block. A last line that is torn
-was never finished; its block is done again.
+A JSON Lines file: first what decides the numbers of the study, then a line for each block. A last
+line that is torn was never finished; its block is done again.
 """
 
 import hashlib
@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 
 from ekfsim.errors import UsageError
 from ekfsim.files.packaged import PACKAGE
-from ekfsim.files.writing import told
+from ekfsim.files.results.writing import told
 from ekfsim.study.plan import Plan, Task
 from ekfsim.study.tally import Tally
 from ekfsim.version import VERSION
@@ -26,7 +26,9 @@ FORMAT = 1
 class Journal:
     """The blocks that are done. Of each only its place in the file is held in memory."""
 
-    def __init__(self, path: Path, file: BinaryIO, places: dict[tuple[int, int], tuple[int, int]]) -> None:
+    def __init__(
+        self, path: Path, file: BinaryIO, places: dict[tuple[int, int], tuple[int, int]]
+    ) -> None:
         self.path = path
         self._file = file
         self._places = places  # (case, block) → where its line begins, and its length
@@ -38,7 +40,9 @@ class Journal:
         return len(self._places)
 
     def add(self, task: Task, tally: Tally) -> None:
-        """Keep a finished block. When this returns, a power cut may come. Raises RunError where the disk is full."""
+        """Keep a finished block. When this returns, a power cut may come. Raises RunError where the
+        disk is full.
+        """
         line = _line({"case": task.case, "block": task.block, "tally": tally.plain()})
         with told(self.path):
             place = self._file.seek(0, os.SEEK_END)
@@ -54,7 +58,9 @@ class Journal:
         return Tally.of_plain(json.loads(self._file.read(length))["tally"])
 
     def total(self, plan: Plan, case: int) -> Tally:
-        """All blocks of a case together, always in their order: sums of floating numbers depend on it."""
+        """All blocks of a case together, always in their order: sums of floating numbers depend on
+        it.
+        """
         tallies = map(self.tally, plan.tasks_of(case))
         total = next(tallies)
         for tally in tallies:
@@ -64,14 +70,17 @@ class Journal:
 
 @contextmanager
 def journal_in(folder: Path, plan: Plan, resume: bool, force: bool) -> Iterator[Journal]:
-    """The journal of a study in its folder of work, begun or gone on with; removed where nothing came to be in it.
+    """The journal of a study in its folder of work, begun or gone on with; removed where nothing
+    came to be in it.
 
     Raises UsageError where there is one that must not be touched, or another study is at work.
     """
     path = folder / NAME
     with told(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+b")
+        file = os.fdopen(
+            os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+b"
+        )
     journal, ours = None, False
     try:
         _lock(file, folder)  # before anything in it is touched: it may be another's
@@ -99,18 +108,24 @@ def remove(folder: Path) -> None:
 
 
 def _lock(file: BinaryIO, folder: Path) -> None:
-    """Raises UsageError where another process holds the journal. Where nothing can be locked, nothing is."""
+    """Raises UsageError where another process holds the journal. Where nothing can be locked,
+    nothing is.
+    """
     with suppress(ImportError, OSError):
         import fcntl
 
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise UsageError(f"{folder}: another study is at work there; wait for it, or choose another name") from None
+            raise UsageError(
+                f"{folder}: another study is at work there; wait for it, or choose another name"
+            ) from None
 
 
 def _begun(file: BinaryIO, plan: Plan, path: Path) -> dict[tuple[int, int], tuple[int, int]]:
-    """Where the lines of an older journal stand, after what was torn of it is cut off; a new one gets its head."""
+    """Where the lines of an older journal stand, after what was torn of it is cut off; a new one
+    gets its head.
+    """
     places: dict[tuple[int, int], tuple[int, int]] = {}
     end = 0
     for number, line in enumerate(file):
@@ -142,16 +157,21 @@ def _compare(head: Mapping[str, Any], plan: Plan, path: Path) -> None:
                 if name in ("commands", "world")
                 else f"{name} was {was.get(name) or 'not given'}, and is now {value or 'not given'}"
             )
-            raise UsageError(f"{path.parent}: was begun as another study: {what}; begin anew with --force")
+            raise UsageError(
+                f"{path.parent}: was begun as another study: {what}; begin anew with --force"
+            )
     if head.get("program") != program():
         raise UsageError(
-            f"{path.parent}: was begun by a program that was not this one to the letter, though of version {VERSION}, "
+            f"{path.parent}: was begun by a program that was not this one to the letter, though "
+            f"of version {VERSION}, "
             "too; its numbers may be others: begin anew with --force"
         )
 
 
 def program() -> str:
-    """The program itself as a word: between two releases its numbers change, and its version does not."""
+    """The program itself as a word: between two releases its numbers change, and its version does
+    not.
+    """
     whole = hashlib.sha256()
     for path in sorted(PACKAGE.rglob("*.py")):
         whole.update(path.read_bytes())

@@ -1,4 +1,6 @@
-"""1024 runs, each of them once under either of two settings → Pairs: the unit of work of a comparison."""
+"""1024 runs, each of them once under either of two settings → Pairs: the unit of work of a
+comparison.
+"""
 
 import functools
 import operator
@@ -51,7 +53,9 @@ class Sums(NamedTuple):
         a, b = a[known], b[known]
         d = b - a
         Σa, Σb, Σd, Σdd = (float(np.sum(numbers)) for numbers in (a, b, d, d * d))
-        return cls(len(d), Σa, Σb, Σd, Σdd, int(np.count_nonzero(d < 0)), int(np.count_nonzero(d > 0)))
+        return cls(
+            len(d), Σa, Σb, Σd, Σdd, int(np.count_nonzero(d < 0)), int(np.count_nonzero(d > 0))
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,21 +77,30 @@ class Pairs:
             self.a + other.a,
             self.b + other.b,
             Shared(*(one + another for one, another in zip(self.lost, other.lost, strict=True))),
-            Shared(*(one + another for one, another in zip(self.inside, other.inside, strict=True))),
-            Sums._make(one + another for one, another in zip(self.position, other.position, strict=True)),
-            Sums._make(one + another for one, another in zip(self.heading, other.heading, strict=True)),
+            Shared(
+                *(one + another for one, another in zip(self.inside, other.inside, strict=True))
+            ),
+            Sums._make(
+                one + another for one, another in zip(self.position, other.position, strict=True)
+            ),
+            Sums._make(
+                one + another for one, another in zip(self.heading, other.heading, strict=True)
+            ),
             Counter(self.a_errors) + Counter(other.a_errors),
             Counter(self.b_errors) + Counter(other.b_errors),
         )
 
 
 def run_pairs(a: Scene, b: Scene, first: int, runs: int, fast: bool = False) -> Pairs:
-    """What becomes of the runs first … first + runs − 1 under either of two settings, on the same draws.
+    """What becomes of the runs first … first + runs − 1 under either of two settings, on the same
+    draws.
 
     fast : by code that Numba compiles
     """
     with using("numba" if fast else used()):
-        portions = min(at_once(a, first, runs), at_once(b, first, runs), key=lambda some: some[0][1])
+        portions = min(
+            at_once(a, first, runs), at_once(b, first, runs), key=lambda some: some[0][1]
+        )
         return functools.reduce(operator.add, (_pairs(a, b, *some) for some in portions))
 
 
@@ -110,9 +123,12 @@ def _pairs(a: Scene, b: Scene, first: int, runs: int) -> Pairs:
 def octaves(errors: Array) -> dict[int, int]:
     """Runs by the logarithm of their error, those without a number left out. errors : (N,) m
 
-    >>> octaves(np.array([1.0, 1.1, 2.0, 0.0, np.nan])) == {0: 2, PER_OCTAVE: 1, NARROWEST * PER_OCTAVE: 1}
+    >>> found = octaves(np.array([1.0, 1.1, 2.0, 0.0, np.nan]))
+    >>> found == {0: 2, PER_OCTAVE: 1, NARROWEST * PER_OCTAVE: 1}
     True
     """
     known = np.maximum(errors[np.isfinite(errors)], 2.0**NARROWEST)
-    keys, counts = np.unique(np.floor(PER_OCTAVE * np.log2(known)).astype(np.int64), return_counts=True)
+    keys, counts = np.unique(
+        np.floor(PER_OCTAVE * np.log2(known)).astype(np.int64), return_counts=True
+    )
     return dict(zip(keys.tolist(), counts.tolist(), strict=True))

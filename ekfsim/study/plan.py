@@ -1,4 +1,6 @@
-"""What is asked → what is to be done: every cell of the grid, watched by every filter, in blocks of runs."""
+"""What is asked → what is to be done: every cell of the grid, watched by every filter, in blocks of
+runs.
+"""
 
 import functools
 import hashlib
@@ -9,13 +11,13 @@ from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 from ekfsim.errors import UsageError
-from ekfsim.files.commands_file import CommandsKeys
-from ekfsim.files.load import read, read_scene
-from ekfsim.files.load_study import Request
-from ekfsim.files.marked import parse
+from ekfsim.files.keys.commands import CommandsKeys
 from ekfsim.files.packaged import world_beside
-from ekfsim.files.settings import Setting
+from ekfsim.files.scenes.load import read, read_scene
+from ekfsim.files.scenes.load_study import Request
+from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.source import bytes_of, text_of
+from ekfsim.files.yaml.marked import parse
 from ekfsim.geometry import backend
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import BLOCK
@@ -56,26 +58,40 @@ class Plan:
 
     @classmethod
     def of(cls, request: Request) -> Self:
-        """The plan of what is asked. Raises UsageError or InputError where a cell of it is no sound scene."""
+        """The plan of what is asked. Raises UsageError or InputError where a cell of it is no sound
+        scene.
+        """
         if request.a or request.b:
-            raise UsageError(f"{request.name}: puts two settings side by side; run it with `ekfsim compare`")
+            raise UsageError(
+                f"{request.name}: puts two settings side by side; run it with `ekfsim compare`"
+            )
         if request.fast and not backend.compiles():
             raise UsageError("--fast needs Numba; install it with: pip install 'ekfsim[fast]'")
         keys = read(request.commands, str(request.commands), "commands").keys
         if isinstance(keys, CommandsKeys) and keys.recording is not None:
-            raise UsageError(f"{request.commands_name}: a recording is one run only; study a simulated one")
+            raise UsageError(
+                f"{request.commands_name}: a recording is one run only; study a simulated one"
+            )
         if request.excess:
             raise UsageError("; ".join(request.excess))
         cases, warnings = list[Case](), dict[str, None]()
         if request.written_by not in ("", VERSION):
-            told = f"{request.name}: the study was written by ekfsim {request.written_by}, this is {VERSION}"
+            told = (
+                f"{request.name}: the study was written by ekfsim {request.written_by}, this "
+                f"is {VERSION}"
+            )
             warnings[f"{told}: its numbers may differ"] = None
         for values in itertools.product(*request.sweep):
-            loaded = read_scene(request.commands, request.world, None, request.reading, (*request.settings, *values))
+            loaded = read_scene(
+                request.commands, request.world, None, request.reading, (*request.settings, *values)
+            )
             scene = loaded.get()
             warnings |= dict.fromkeys(loaded.warnings)
             seeded = scene if request.seed is None else replace(scene, seed=request.seed)
-            cases += [Case(values, replace(seeded, filter=name)) for name in request.filters or (scene.filter,)]
+            cases += [
+                Case(values, replace(seeded, filter=name))
+                for name in request.filters or (scene.filter,)
+            ]
         return cls(request, tuple(cases), tuple(warnings))
 
     @property
@@ -126,7 +142,10 @@ class Plan:
             "runs": request.runs,
             "seed": self.seed,
             "filters": ",".join(self.filters),
-            "sweep": " ".join(f"{values[0].key}={','.join(one.value for one in values)}" for values in request.sweep),
+            "sweep": " ".join(
+                f"{values[0].key}={','.join(one.value for one in values)}"
+                for values in request.sweep
+            ),
             "set": " ".join(map(str, request.settings)),
             "reading": request.reading,
             "fast": request.fast,

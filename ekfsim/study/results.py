@@ -1,4 +1,6 @@
-"""Tally → numbers that carry their uncertainty: shares with Wilson's interval, means with the band of χ²."""
+"""Tally → numbers that carry their uncertainty: shares with Wilson's interval, means with the band
+of χ².
+"""
 
 import math
 from collections.abc import Mapping
@@ -14,9 +16,11 @@ Z = 1.959963984540054  # of the 95 % interval
 
 
 class Share(NamedTuple):
-    """A share of some runs, with its 95 % interval (Wilson 1927): right also for shares near 0 and 1, and few runs.
+    """A share of some runs, with its 95 % interval (Wilson 1927): right also for shares near 0 and
+    1, and few runs.
 
-    >>> [round(number, 4) for number in (Share(2, 1000).value, Share(2, 1000).low, Share(2, 1000).high)]
+    >>> share = Share(2, 1000)
+    >>> [round(number, 4) for number in (share.value, share.low, share.high)]
     [0.002, 0.0005, 0.0073]
     """
 
@@ -50,11 +54,15 @@ class Share(NamedTuple):
     @property
     def _half(self) -> float:
         n, p = self.of, self.value
-        return Z * math.sqrt(p * (1 - p) / n + (Z / (2 * n)) ** 2) / (1 + Z * Z / n) if n else math.nan
+        return (
+            Z * math.sqrt(p * (1 - p) / n + (Z / (2 * n)) ** 2) / (1 + Z * Z / n) if n else math.nan
+        )
 
 
 class Mean(NamedTuple):
-    """A mean of χ² variables, and the two-sided 95 % band that it lies in where all is as the filter says."""
+    """A mean of χ² variables, and the two-sided 95 % band that it lies in where all is as the
+    filter says.
+    """
 
     value: float
     low: float
@@ -62,7 +70,9 @@ class Mean(NamedTuple):
 
     @classmethod
     def of(cls, total: float, dof: int, n: int) -> "Mean":
-        """The mean of n of them that together have `dof` degrees of freedom; nan where there is none."""
+        """The mean of n of them that together have `dof` degrees of freedom; nan where there is
+        none.
+        """
         if n == 0:
             return cls(math.nan, math.nan, math.nan)
         low, high = band(0.95, dof)
@@ -127,7 +137,9 @@ class Result:
         return spread[_middle({key: held.runs for key, held in spread.items()})].lowest
 
     def time_of(self, step: int | None) -> float:
-        """The instant of a step in s, to the nearest that is told of; nan where there is no clock."""
+        """The instant of a step in s, to the nearest that is told of; nan where there is no
+        clock.
+        """
         if step is None:
             return math.nan
         at = int(abs(self.tally.steps - step).argmin())

@@ -1,4 +1,6 @@
-"""Results → CSV: a row a case, and a row a step. No date and no path: the same bytes wherever the runs were made."""
+"""Results → CSV: a row a case, and a row a step. No date and no path: the same bytes wherever the
+runs were made.
+"""
 
 import csv
 import math
@@ -30,7 +32,9 @@ def write_summary(file: TextIO, plan: Plan, results: Iterable[Result]) -> None:
     table = csv.writer(file, lineterminator="\n")
     table.writerow([*plan.keys, "filter", *AT_STEP, *OF_RUNS, *_origin_columns(plan)])
     for result in results:
-        table.writerow([*_case(result), *_at(result.last), *_of_runs(result), *_origin(result, plan)])
+        table.writerow(
+            [*_case(result), *_at(result.last), *_of_runs(result), *_origin(result, plan)]
+        )
 
 
 def write_steps(file: TextIO, plan: Plan, results: Iterable[Result]) -> None:
@@ -60,12 +64,16 @@ def _of_runs(result: Result) -> Iterator[str]:
     yield warning(result)
     yield from map(_cell, (*nis, of.nis_readings))
     yield from map(_cell, (of.nis_runs, of.nis_above, of.nis_below, of.nees_above, of.nees_below))
-    yield from map(_cell, (result.lost_from, result.time_of(result.lost_from), result.worst, result.typical))
+    yield from map(
+        _cell, (result.lost_from, result.time_of(result.lost_from), result.worst, result.typical)
+    )
     yield from _verdict(Verdict(result))
 
 
 def _verdict(found: Verdict) -> Iterator[str]:
-    """The word at the end, 1 where it is decided and 0 where it only leans; the word on the way, and where it holds."""
+    """The word at the end, 1 where it is decided and 0 where it only leans; the word on the way,
+    and where it holds.
+    """
     end, way = found.at_end, found.on_the_way
     yield end.word.value
     yield "" if end.word is Word.NO_EVIDENCE else str(int(end.decided))
@@ -84,7 +92,9 @@ def _origin_columns(plan: Plan) -> list[str]:
 
 def _origin(result: Result, plan: Plan) -> list[str]:
     scene, settings = result.case.scene, " ".join(map(str, plan.request.settings))
-    told = zip(ORIGIN, (scene.seed, scene.gate, scene.guard, scene.reading, settings, VERSION), strict=True)
+    told = zip(
+        ORIGIN, (scene.seed, scene.gate, scene.guard, scene.reading, settings, VERSION), strict=True
+    )
     return [_cell(value) for name, value in told if name not in plan.keys]
 
 

@@ -1,4 +1,6 @@
-"""What is left of many runs when they are over: a record that merges with others, and whose size knows no runs."""
+"""What is left of many runs when they are over: a record that merges with others, and whose size
+knows no runs.
+"""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -15,7 +17,8 @@ class AtSteps(NamedTuple):
 
     judged: Integers  # runs of which the NEES says something: some freedom, or an impossible belief
     impossible: Integers
-    above_50: Integers  # runs whose NEES lies above the 50 % quantile of χ², impossible ones included
+    # runs whose NEES lies above the 50 % quantile of χ², impossible ones included
+    above_50: Integers
     above_95: Integers
     above_999: Integers
     in_ellipse: Integers
@@ -49,7 +52,9 @@ class OfRuns(NamedTuple):
 
 
 class Extreme(NamedTuple):
-    """The run that ended worst: an impossible belief, else the largest last NEES; of equals the lowest number."""
+    """The run that ended worst: an impossible belief, else the largest last NEES; of equals the
+    lowest number.
+    """
 
     impossible: bool
     nees: float
@@ -95,11 +100,16 @@ class Tally:
         )
 
     def plain(self) -> list[Any]:
-        """Lists and numbers, fit for JSON, from which `of_plain` makes the same tally to the last bit."""
+        """Lists and numbers, fit for JSON, from which `of_plain` makes the same tally to the last
+        bit.
+        """
         return [
             *(self.runs, self.steps.tolist(), self.times.tolist()),
             *([column.tolist() for column in self.at], list(self.of)),
-            *(sorted(self.lost_from.items()), sorted((key, *held) for key, held in self.spread.items())),
+            *(
+                sorted(self.lost_from.items()),
+                sorted((key, *held) for key, held in self.spread.items()),
+            ),
             list(self.worst),
         ]
 
@@ -111,7 +121,9 @@ class Tally:
             runs,
             np.array(steps, np.int64),
             np.array(times, np.float64),
-            AtSteps._make(np.array(c, dtype_of(name)) for name, c in zip(AtSteps._fields, at, strict=True)),
+            AtSteps._make(
+                np.array(c, dtype_of(name)) for name, c in zip(AtSteps._fields, at, strict=True)
+            ),
             OfRuns(*of),
             dict(lost_from),
             {key: Bin(runs, lowest) for key, runs, lowest in spread},

@@ -1,8 +1,9 @@
-"""What can be said of a filter after many runs, in two parts: how they ended, and what happened on the way.
+"""What can be said of a filter after many runs, in two parts: how they ended, and what happened on
+the way.
 
-At the end there are shares of runs, each with its 95 % interval (Wilson): one that reaches over the edge between two
-words decides nothing, and the filter only leans. A run that happens to end well is no clean bill: on the way the
-readings tell (NIS), and the steps at which too many runs are lost.
+At the end there are shares of runs, each with its 95 % interval (Wilson): one that reaches over the
+edge between two words decides nothing, and the filter only leans. A run that happens to end well is
+no clean bill: on the way the readings tell (NIS), and the steps at which too many runs are lost.
 """
 
 import math
@@ -31,7 +32,9 @@ class Word(Enum):
 
 @dataclass(frozen=True)
 class Measure:
-    """A share of runs at the end, the range in which it is right, and what it says of the filter outside of it."""
+    """A share of runs at the end, the range in which it is right, and what it says of the filter
+    outside of it.
+    """
 
     share: Share
     low: float
@@ -57,7 +60,8 @@ class Measure:
 
     @property
     def runs_to_tell(self) -> float:
-        """Of how many runs its interval would no longer reach over an edge, were the share the same; inf on the edge.
+        """Of how many runs its interval would no longer reach over an edge, were the share the
+        same; inf on the edge.
 
         The interval of the share p of n runs ends at e where (p − e)² = z² e (1 − e) / n.
         """
@@ -79,7 +83,9 @@ class AtEnd:
 
     @classmethod
     def of(cls, last: AtStep) -> "AtEnd":
-        """The measures of the last step. More above the median, fewer inside, more lost: over-confident."""
+        """The measures of the last step. More above the median, fewer inside, more lost:
+        over-confident.
+        """
         confident, cautious = Word.OVER_CONFIDENT, Word.OVER_CAUTIOUS
         return cls(
             last.runs,
@@ -95,18 +101,23 @@ class AtEnd:
 
     @property
     def word(self) -> Word:
-        """Consistent where all three are right. Of two faults over-confidence is told: it is the one that loses robots.
+        """Consistent where all three are right. Of two faults over-confidence is told: it is the
+        one that loses robots.
 
         Where no run is uncertain of anything there is nothing that could be right.
         """
         if not self.above_median.share.of:
             return Word.NO_EVIDENCE
         words = {measure.word for measure in self.measures}
-        return next(w for w in (Word.OVER_CONFIDENT, Word.OVER_CAUTIOUS, Word.CONSISTENT) if w in words)
+        return next(
+            w for w in (Word.OVER_CONFIDENT, Word.OVER_CAUTIOUS, Word.CONSISTENT) if w in words
+        )
 
     @property
     def decided(self) -> bool:
-        """Whether the intervals leave no doubt: of all measures that it is right, or of one that it is not."""
+        """Whether the intervals leave no doubt: of all measures that it is right, or of one that it
+        is not.
+        """
         if self.word is Word.NO_EVIDENCE:
             return False
         enough = all if self.word is Word.CONSISTENT else any
@@ -114,18 +125,26 @@ class AtEnd:
 
     @property
     def runs_to_tell(self) -> float:
-        """How many runs would decide, were all shares what they are of these; inf where one lies on its edge."""
+        """How many runs would decide, were all shares what they are of these; inf where one lies on
+        its edge.
+        """
         enough = max if self.word is Word.CONSISTENT else min
         siding = [measure for measure in self.measures if measure.word is self.word]
-        return max(enough(measure.runs_to_tell * self.runs / measure.share.of for measure in siding), FEWEST)
+        return max(
+            enough(measure.runs_to_tell * self.runs / measure.share.of for measure in siding),
+            FEWEST,
+        )
 
 
 @dataclass(frozen=True)
 class OnTheWay:
-    """What happened on the way: NIS of all readings, and the steps at which too many runs were lost."""
+    """What happened on the way: NIS of all readings, and the steps at which too many runs were
+    lost.
+    """
 
     nis: Mean  # per number read
-    steps: tuple[AtStep, ...]  # where the interval of the share beyond the χ² 99.9 % quantile lies above 2 %
+    # where the interval of the share beyond the χ² 99.9 % quantile lies above 2 %
+    steps: tuple[AtStep, ...]
     judged: int  # steps that were looked at
 
     @classmethod
@@ -144,10 +163,12 @@ class OnTheWay:
 
     @property
     def decided(self) -> bool:
-        """Whether it is more than chance: NIS lies outside its band, or a step stands out from all that were looked at.
+        """Whether it is more than chance: NIS lies outside its band, or a step stands out from all
+        that were looked at.
 
-        Among a thousand steps one of a few runs lies beyond 99.9 % sooner or later. So as many must lie there that,
-        were it 2 % of all runs, chance would put them there at one of all steps in one study of forty (Bonferroni).
+        Among a thousand steps one of a few runs lies beyond 99.9 % sooner or later. So as many must
+        lie there that, were it 2 % of all runs, chance would put them there at one of all steps in
+        one study of forty (Bonferroni).
         """
         from scipy.special import bdtrc  # takes a fifth of a second to import
 
@@ -155,7 +176,9 @@ class OnTheWay:
         if self.nis.value > max(high, self.nis.high) or self.nis.value < min(low, self.nis.low):
             return True
         shares = (at.above_999 for at in self.steps)
-        return any(self.judged * bdtrc(share.runs - 1, share.of, MOST_LOST) < ONE_SIDED for share in shares)
+        return any(
+            self.judged * bdtrc(share.runs - 1, share.of, MOST_LOST) < ONE_SIDED for share in shares
+        )
 
     @property
     def worst(self) -> AtStep:

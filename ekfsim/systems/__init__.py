@@ -1,27 +1,39 @@
-"""The systems of the documents, put together: what each robot measures of its motion, and what its instruments read.
+"""The systems of the documents, put together: what each robot measures of its motion, and what its
+instruments read.
 
-SYSTEMS names them. The classroom has no entry: its robot obeys commands one by one (see `simulation`). "Document 000"
-and so on, wherever the package cites an equation, are these, and here is where their equations stand:
+SYSTEMS names them. The classroom has no entry: its robot obeys commands one by one (see
+`simulation`). "Document 000" and so on, wherever the package cites an equation, are these, and here
+is where their equations stand:
 
     000  mower: Kiriy & Buehler, Three-state Extended Kalman Filter for Mobile Robot Localization
-         8, 9 filters/ekf.py · 10 to 12, 27, 28 filters/correcting.py · 16 to 22, 26, 29 models/wheels.py, midpoint.py
-         23 to 25, 30 models/landmarks.py · its listing: filters/listing.py, models/frozen.py
-    001  pioneer: Tamás, Lazea, Robotin, Marcu, Herle & Szekely, State Estimation Based on Kalman Filtering Techniques
-         in Navigation
+         8, 9 filters/ekf.py · 10 to 12, 27, 28 filters/correcting.py
+         16 to 22, 26, 29 models/motions/wheels.py, midpoint.py
+         23 to 25, 30 models/sensors/landmarks.py
+         its listing: filters/listing.py, models/sensors/frozen.py
+    001  pioneer: Tamás, Lazea, Robotin, Marcu, Herle & Szekely, State Estimation Based on Kalman
+         Filtering Techniques in Navigation
          7 to 11 filters/kf.py, nominal.py · 12, 13 filters/ekf.py · 14 to 17 filters/unscented.py
          20 to 28 filters/ukf.py, ukf_augmented.py (22)
-         18, 19 models/polar.py · 29 to 35 models/odometry.py · 38 models/echo.py, and its estimate systems/echo.py
-         fig. 4 models/infrared.py · fig. 6 models/ultrasonic.py · 36, 37 models/yaw.py, which it does not use itself
+         18, 19 models/sensors/polar.py · 29 to 35 models/motions/odometry.py
+         36, 37 models/sensors/yaw.py, which it does not use itself
+         38 models/sensors/echo.py, and its estimate systems/echo.py
+         fig. 4 models/sensors/infrared.py · fig. 6 models/sensors/ultrasonic.py
     002  classroom: Localization and the extended Kalman filter, an assignment
-         1, 3, 6 models/move_turn.py · 8, and the Jacobian J_H models/laser.py · 4, 7, 9 to 12 filters/ekf.py
+         1, 3, 6 models/motions/move_turn.py · 8, and the Jacobian J_H models/sensors/laser.py
+         4, 7, 9 to 12 filters/ekf.py
     003  gnss: Sahni, Assignment 3: Sensor fusion for lawn mower
-         2 models/position.py · 3, 4 and the integrals models/wheel_speeds.py · 5 to 7 filters/ekf.py
-         as its authors have coded it: WheelSpeedsAsWritten, filters/listing.py, simulation/interpolation.py
+         2 models/sensors/position.py · 3, 4 and the integrals models/motions/wheel_speeds.py
+         5 to 7 filters/ekf.py
+         as its authors have coded it: WheelSpeedsAsWritten, filters/listing.py,
+         simulation/interpolation.py
     004  pylon: King & Johnson, Lab 3: Extended Kalman Filter for Localization
-         1 to 4 filters/ekf.py · 5 to 7, and R_t of 10 models/planar_imu.py · 8, 9, and Q_t of 10 models/offset.py
-         the yaw filter of its conclusion models/lidar.py · 11 geometry/outline.py · 12 figures/track.py
+         1 to 4 filters/ekf.py · 5 to 7, and R_t of 10 models/motions/planar_imu.py
+         8, 9, and Q_t of 10 models/sensors/offset.py
+         the yaw filter of its conclusion models/sensors/lidar.py
+         11 geometry/outline.py · 12 figures/track.py
 
-Two more systems read published logs, with models that no document prints: landmarks (MRCLAM) and ranges (Plaza).
+Two more systems read published logs, with models that no document prints: landmarks (MRCLAM) and
+ranges (Plaza).
 """
 
 from dataclasses import dataclass
@@ -40,12 +52,22 @@ from ekfsim.systems.instruments import (
     Ranges,
     Ultrasonic,
 )
-from ekfsim.systems.robots import GnssMower, IRobotCreate, Mower, Pioneer, PylonCart, RangingMower, Robot
+from ekfsim.systems.robots import (
+    GnssMower,
+    IRobotCreate,
+    Mower,
+    Pioneer,
+    PylonCart,
+    RangingMower,
+    Robot,
+)
 
 
 @dataclass(frozen=True)
 class System:
-    """One of the documents' systems: its robot and its instruments, each default the document's number."""
+    """One of the documents' systems: its robot and its instruments, each default the document's
+    number.
+    """
 
     robot: Robot
     instruments: tuple[Instrument, ...]
@@ -61,5 +83,17 @@ SYSTEMS: dict[str, System] = {
 }
 INSTRUMENTS: dict[str, type[Instrument]] = {
     kind.name: kind
-    for kind in (Markers, RangeBearings, Ranges, Bearings, Gnss, Pylon, Lidar, Ultrasonic, Infrared, Compass, Gyro)
+    for kind in (
+        Markers,
+        RangeBearings,
+        Ranges,
+        Bearings,
+        Gnss,
+        Pylon,
+        Lidar,
+        Ultrasonic,
+        Infrared,
+        Compass,
+        Gyro,
+    )
 }

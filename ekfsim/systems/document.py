@@ -1,4 +1,6 @@
-"""Which reading of a document a run follows, where its print, its own code and the right equation differ."""
+"""Which reading of a document a run follows, where its print, its own code and the right equation
+differ.
+"""
 
 from typing import Literal, get_args
 

@@ -1,4 +1,6 @@
-"""The ways that a simulated robot is driven: as a list of speeds, or along a path that its driver holds it to."""
+"""The ways that a simulated robot is driven: as a list of speeds, or along a path that its driver
+holds it to.
+"""
 
 import math
 from dataclasses import dataclass
@@ -17,11 +19,15 @@ class Course(NamedTuple):
     held: bool  # whether the driver steers back when the robot strays from it
 
     def poses(self, start: Array, dt: float) -> Array:
-        """Where a robot without noise stands before, between and after the steps : (N + 1, 3) m, m, rad unwrapped"""
+        """Where a robot without noise stands before, between and after the steps : (N + 1, 3) m, m,
+        rad unwrapped
+        """
         heading = start[2] + np.concatenate([[0.0], np.cumsum(self.turn_rate * dt)])
         middle = (heading[1:] + heading[:-1]) / 2
         steps = self.speed[:, None] * dt * np.stack([np.cos(middle), np.sin(middle)], axis=-1)
-        return np.column_stack([start[:2] + np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)]), heading])
+        return np.column_stack(
+            [start[:2] + np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)]), heading]
+        )
 
 
 class Drive(Protocol):
@@ -62,11 +68,16 @@ class Square:
     clockwise: bool = False
 
     def course(self, dt: float) -> Course:
-        """Speeds and turn rates, `dt` s each; each side and each turn is made exactly, at a speed just below."""
+        """Speeds and turn rates, `dt` s each; each side and each turn is made exactly, at a speed
+        just below.
+        """
         sign = -1.0 if self.clockwise else 1.0
         along = _whole(self.side / self.speed, dt)
         turning = _whole(math.pi / 2 / self.turn_rate, dt)
-        side, turn = Stretch(self.side / along, 0.0, along), Stretch(0.0, sign * math.pi / 2 / turning, turning)
+        side, turn = (
+            Stretch(self.side / along, 0.0, along),
+            Stretch(0.0, sign * math.pi / 2 / turning, turning),
+        )
         return _sampled((side, turn) * (4 * self.laps), dt, held=True)
 
 
@@ -88,7 +99,9 @@ class Circle:
 
 @dataclass(frozen=True)
 class Spiral:
-    """From the outside of a field inwards, round and round, at a constant speed; it starts as the pose looks."""
+    """From the outside of a field inwards, round and round, at a constant speed; it starts as the
+    pose looks.
+    """
 
     width: float = 50.0  # m, of the field across the first heading
     length: float = 75.0  # m, along it
@@ -99,7 +112,8 @@ class Spiral:
     def course(self, dt: float) -> Course:
         """Speeds and turn rates, `dt` s each.
 
-        An ellipse whose axes shrink by the spacing at every round, down to a fifth, walked along by its arc length.
+        An ellipse whose axes shrink by the spacing at every round, down to a fifth, walked along by
+        its arc length.
         """
         sign = -1.0 if self.clockwise else 1.0
         short = min(self.width, self.length) / 2

@@ -1,4 +1,6 @@
-"""What is wrong with a driven robot and its instruments, and no one knows: neither the filter nor the log tells."""
+"""What is wrong with a driven robot and its instruments, and no one knows: neither the filter nor
+the log tells.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,7 +12,8 @@ from ekfsim.geometry import Array
 class SensorFaults:
     """What is wrong with the readings of one instrument."""
 
-    bias: tuple[float, ...] = ()  # added to each entry of a reading, in its unit; () where nothing is
+    # added to each entry of a reading, in its unit; () where nothing is
+    bias: tuple[float, ...] = ()
     outliers: float = 0.0  # probability that a reading is one
     outlier_size: float = 10.0  # by which the noise of an outlier is multiplied
     delay: float = 0.0  # s: what is read at t is what was there at t − delay
@@ -21,7 +24,9 @@ SOUND = SensorFaults()
 
 @dataclass(frozen=True)
 class DriveFaults:
-    """What is wrong with what a robot measures of its motion, and with its instruments, by their kind."""
+    """What is wrong with what a robot measures of its motion, and with its instruments, by their
+    kind.
+    """
 
     left_scale: float = 1.0
     right_scale: float = 1.0
@@ -31,10 +36,13 @@ class DriveFaults:
     forward_bias: float = 0.0  # m/s²
     lateral_bias: float = 0.0  # m/s²
     yaw_bias: float = 0.0  # rad
-    sensors: Mapping[str, SensorFaults] = field(default_factory=dict)  # a plain one: workers of a study are sent it
+    # a plain one: workers of a study are sent it
+    sensors: Mapping[str, SensorFaults] = field(default_factory=dict)
 
     def misread(self, u: Array, entries: Mapping[str, int]) -> Array:
-        """The motion input that is measured where u : (…, m) is right. entries : which entry each fault is about"""
+        """The motion input that is measured where u : (…, m) is right. entries : which entry each
+        fault is about
+        """
         measured = u.copy()
         for name, entry in entries.items():
             if name.endswith("_scale"):

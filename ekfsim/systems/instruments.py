@@ -1,4 +1,5 @@
-"""The instruments that the robots carry: how often each is read, what it can see, and the sensor model of each target.
+"""The instruments that the robots carry: how often each is read, what it can see, and the sensor
+model of each target.
 
 An instrument makes one sensor for each thing that it may see: a landmark, a direction, the sky.
 """
@@ -13,15 +14,15 @@ import numpy as np
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.infrared import COLOURS, InfraredBeam
-from ekfsim.models.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.layout import Layout
-from ekfsim.models.lidar import LidarOffset
-from ekfsim.models.offset import LandmarkOffset
-from ekfsim.models.position import Position
 from ekfsim.models.protocols import Sensor
-from ekfsim.models.ultrasonic import UltrasonicBeam
-from ekfsim.models.yaw import Yaw
+from ekfsim.models.sensors.infrared import COLOURS, InfraredBeam
+from ekfsim.models.sensors.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
+from ekfsim.models.sensors.lidar import LidarOffset
+from ekfsim.models.sensors.offset import LandmarkOffset
+from ekfsim.models.sensors.position import Position
+from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
+from ekfsim.models.sensors.yaw import Yaw
 from ekfsim.systems.document import DocumentReading
 
 ALL_ROUND = ((-math.pi, math.pi),)
@@ -58,7 +59,8 @@ class Instrument(Protocol):
     """What a simulation and a recorded log need to know of an instrument."""
 
     name: ClassVar[str]  # the kind, as world files call it
-    readings: ClassVar[tuple[DocumentReading, ...]]  # in which other equations than the corrected ones are followed
+    # in which other equations than the corrected ones are followed
+    readings: ClassVar[tuple[DocumentReading, ...]]
 
     @property
     def rate(self) -> float:
@@ -94,7 +96,9 @@ class _Looking:
 
 @dataclass(frozen=True)
 class Markers(_Looking):
-    """Document 000: cameras in front and behind that tell azimuth and elevation of surveyed markers."""
+    """Document 000: cameras in front and behind that tell azimuth and elevation of surveyed
+    markers.
+    """
 
     name: ClassVar[str] = "markers"
     readings: ClassVar[tuple[DocumentReading, ...]] = ("printed",)
@@ -113,7 +117,13 @@ class Markers(_Looking):
         sign = -1.0 if around.reading == "printed" else 1.0
         for mark in around.landmarks:
             angles = MarkerAngles(
-                mark.x, mark.y, self.height, self.azimuth_sigma, self.elevation_sigma, sign, around.layout
+                mark.x,
+                mark.y,
+                self.height,
+                self.azimuth_sigma,
+                self.elevation_sigma,
+                sign,
+                around.layout,
             )
             yield Target(f"marker {mark.id}", angles, (mark.x, mark.y))
 
@@ -132,7 +142,9 @@ class RangeBearings(_Looking):
     def targets(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each landmark."""
         for mark in around.landmarks:
-            sensor = RangeBearing(mark.x, mark.y, self.range_sigma, self.bearing_sigma, around.layout)
+            sensor = RangeBearing(
+                mark.x, mark.y, self.range_sigma, self.bearing_sigma, around.layout
+            )
             yield Target(f"landmark {mark.id}", sensor, (mark.x, mark.y))
 
 
@@ -150,13 +162,17 @@ class Bearings(_Looking):
         """A sensor for each landmark."""
         for mark in around.landmarks:
             yield Target(
-                f"landmark {mark.id}", BearingOnly(mark.x, mark.y, self.sigma, around.layout), (mark.x, mark.y)
+                f"landmark {mark.id}",
+                BearingOnly(mark.x, mark.y, self.sigma, around.layout),
+                (mark.x, mark.y),
             )
 
 
 @dataclass(frozen=True)
 class Ranges(_Looking):
-    """A radio that tells the range to nodes alone. What it says is scale · r + bias, and is corrected before use."""
+    """A radio that tells the range to nodes alone. What it says is scale · r + bias, and is
+    corrected before use.
+    """
 
     name: ClassVar[str] = "range"
     rate: float = 4.0
@@ -169,14 +185,20 @@ class Ranges(_Looking):
     def targets(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each node."""
         for mark in around.landmarks:
-            yield Target(f"node {mark.id}", RangeOnly(mark.x, mark.y, self.sigma, around.layout), (mark.x, mark.y))
+            yield Target(
+                f"node {mark.id}",
+                RangeOnly(mark.x, mark.y, self.sigma, around.layout),
+                (mark.x, mark.y),
+            )
 
     def corrected(self, raw: float) -> float:
         """The range that a raw reading stands for, in m."""
         return (raw - self.bias) / self.scale
 
     def as_corrected_by(self, believed: "Ranges", z: Array) -> Array:
-        """Readings of this radio where they are corrected with the scale and bias of another one."""
+        """Readings of this radio where they are corrected with the scale and bias of another
+        one.
+        """
         if (self.scale, self.bias) == (believed.scale, believed.bias):
             return z
         return (self.scale * z + self.bias - believed.bias) / believed.scale
@@ -199,7 +221,9 @@ class Gnss(_Looking):
 
 @dataclass(frozen=True)
 class Pylon(_Looking):
-    """Document 004: a lidar that tells the offset of one pylon, turned into the global frame by the yaw."""
+    """Document 004: a lidar that tells the offset of one pylon, turned into the global frame by the
+    yaw.
+    """
 
     name: ClassVar[str] = "pylon"
     readings: ClassVar[tuple[DocumentReading, ...]] = ("printed", "coded")
@@ -209,16 +233,22 @@ class Pylon(_Looking):
     views: tuple[tuple[float, float], ...] = ALL_ROUND
 
     def targets(self, around: Surroundings) -> Iterator[Target]:
-        """A sensor for each pylon; only `corrected` knows that an error of the yaw moves the reading sideways."""
+        """A sensor for each pylon; only `corrected` knows that an error of the yaw moves the
+        reading sideways.
+        """
         yaw_sigma = around.yaw_sigma if around.reading == "corrected" else 0.0
         for mark in around.landmarks:
-            sensor = LandmarkOffset(mark.x, mark.y, self.sigma, self.sigma, around.layout, yaw_sigma)
+            sensor = LandmarkOffset(
+                mark.x, mark.y, self.sigma, self.sigma, around.layout, yaw_sigma
+            )
             yield Target("pylon", sensor, (mark.x, mark.y))
 
 
 @dataclass(frozen=True)
 class Lidar(_Looking):
-    """The same lidar, its reading left as it sees the pylon: what document 004's conclusion asks for."""
+    """The same lidar, its reading left as it sees the pylon: what document 004's conclusion asks
+    for.
+    """
 
     name: ClassVar[str] = "lidar"
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
@@ -230,7 +260,9 @@ class Lidar(_Looking):
     def targets(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each pylon."""
         for mark in around.landmarks:
-            yield Target("lidar", LidarOffset(mark.x, mark.y, self.sigma, around.layout), (mark.x, mark.y))
+            yield Target(
+                "lidar", LidarOffset(mark.x, mark.y, self.sigma, around.layout), (mark.x, mark.y)
+            )
 
 
 EIGHT = tuple(math.radians(angle) for angle in range(-180, 180, 45))
@@ -252,13 +284,17 @@ class Ultrasonic(_Looking):
     def targets(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each beam."""
         for number, bearing in enumerate(self.bearings):
-            beam = UltrasonicBeam(around.walls, bearing, self.sigma, self.sigma_per_metre, self.nearest, self.farthest)
+            beam = UltrasonicBeam(
+                around.walls, bearing, self.sigma, self.sigma_per_metre, self.nearest, self.farthest
+            )
             yield Target(f"ultrasonic {number}", beam)
 
 
 @dataclass(frozen=True)
 class Infrared(_Looking):
-    """Document 001: pairs of an infrared emitter and receiver; the intensity falls with the distance (fig. 4)."""
+    """Document 001: pairs of an infrared emitter and receiver; the intensity falls with the
+    distance (fig. 4).
+    """
 
     name: ClassVar[str] = "infrared"
     rate: float = 2.0
@@ -274,7 +310,8 @@ class Infrared(_Looking):
         """A sensor for each pair."""
         for number, bearing in enumerate(self.bearings):
             beam = InfraredBeam(
-                around.walls, bearing, self.gain, self.offset, COLOURS[self.colour], self.sigma, self.nearest,
+                around.walls, bearing, self.gain, self.offset, COLOURS[self.colour], self.sigma,
+                self.nearest,
                 self.farthest,
             )  # fmt: skip
             yield Target(f"infrared {number}", beam)
@@ -282,7 +319,9 @@ class Infrared(_Looking):
 
 @dataclass(frozen=True)
 class Compass(_Looking):
-    """Document 001: tells the absolute yaw; "in indoor conditions" of "rather poor quality", and so left out there."""
+    """Document 001: tells the absolute yaw; "in indoor conditions" of "rather poor quality", and so
+    left out there.
+    """
 
     name: ClassVar[str] = "compass"
     rate: float = 2.0
@@ -296,9 +335,11 @@ class Compass(_Looking):
 
 @dataclass(frozen=True)
 class Gyro(_Looking):
-    """Document 001: a gyroscope that tells the yaw relative to the mark, along which it was set to 0.
+    """Document 001: a gyroscope that tells the yaw relative to the mark, along which it was set to
+    0.
 
-    It has summed up its rates itself. What it drifts is no white noise: no filter here is told, see `faults`.
+    It has summed up its rates itself. What it drifts is no white noise: no filter here is told, see
+    `faults`.
     """
 
     name: ClassVar[str] = "gyro"

@@ -1,7 +1,8 @@
-"""The robots of the documents: what each measures of its own motion, with the noise that the document states.
+"""The robots of the documents: what each measures of its own motion, with the noise that the
+document states.
 
-A robot tells the motion model that its filter uses, the first covariance, and (for a simulation) what its instruments
-would say of a true motion were they free of noise.
+A robot tells the motion model that its filter uses, the first covariance, and (for a simulation)
+what its instruments would say of a true motion were they free of noise.
 """
 
 import math
@@ -15,12 +16,12 @@ import numpy as np
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.layout import INERTIAL, POSE, SPEED_POSE, Layout
-from ekfsim.models.odometry import ArctanOdometry, SkidSteer
-from ekfsim.models.planar_imu import PlanarImu
+from ekfsim.models.motions.odometry import ArctanOdometry, SkidSteer
+from ekfsim.models.motions.planar_imu import PlanarImu
+from ekfsim.models.motions.unicycle import Stride, Unicycle
+from ekfsim.models.motions.wheel_speeds import WheelSpeeds, WheelSpeedsAsWritten
+from ekfsim.models.motions.wheels import GyroWheels, TwoWheels, WheelsBesideGyro
 from ekfsim.models.protocols import Motion
-from ekfsim.models.unicycle import Stride, Unicycle
-from ekfsim.models.wheel_speeds import WheelSpeeds, WheelSpeedsAsWritten
-from ekfsim.models.wheels import GyroWheels, TwoWheels, WheelsBesideGyro
 from ekfsim.systems.document import DocumentReading
 
 
@@ -44,8 +45,10 @@ WAY_AND_TURN: Entries = MappingProxyType({"distance_scale": 0, "turn_scale": 1})
 class Robot(Protocol):
     """What a filter and a simulation need to know of a robot."""
 
-    readings: ClassVar[tuple[DocumentReading, ...]]  # in which other equations than the corrected ones are followed
-    faults: ClassVar[Entries]  # which of DriveFaults it may have, each with the entry of u that it is about
+    # in which other equations than the corrected ones are followed
+    readings: ClassVar[tuple[DocumentReading, ...]]
+    # which of DriveFaults it may have, each with the entry of u that it is about
+    faults: ClassVar[Entries]
 
     @property
     def rate(self) -> float:
@@ -88,7 +91,8 @@ class Mower:
     position_sigma: float = 0.01  # m, eq. 29
     heading_sigma: float = math.sqrt(7.62e-5)  # rad, eq. 29: 0.5°, as its variance is printed
     gyro_sigma: float = 0.0  # rad/s; the document leaves the gyro's noise to Q
-    odometry: Literal["gyro", "midpoint"] = "gyro"  # what tells the turn: the gyro, or the wheels by eq. 20
+    # what tells the turn: the gyro, or the wheels by eq. 20
+    odometry: Literal["gyro", "midpoint"] = "gyro"
     layout: Layout = field(default=POSE, init=False)
 
     @property
@@ -107,12 +111,16 @@ class Mower:
 
     def ideal(self, tick: Tick) -> Array:
         """ΔD_L, ΔD_R, ω, dt"""
-        return _stacked(tick, [*_wheel_ways(tick.distance, tick.turn, self.width), tick.turn / tick.dt])
+        return _stacked(
+            tick, [*_wheel_ways(tick.distance, tick.turn, self.width), tick.turn / tick.dt]
+        )
 
 
 @dataclass(frozen=True)
 class Pioneer:
-    """Document 001: a P3 robot; u = (ΔD_L, ΔD_R) as its wheels count them, or skid-steered (u_L, u_R, dt)."""
+    """Document 001: a P3 robot; u = (ΔD_L, ΔD_R) as its wheels count them, or skid-steered (u_L,
+    u_R, dt).
+    """
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
     faults: ClassVar[Entries] = WHEELS
@@ -121,12 +129,15 @@ class Pioneer:
     wheel_ratio: float = 0.05  # σ of a wheel's way, per m
     wheel_floor: float = 0.002  # m, and of a wheel at rest
     odometry: Literal["arctan", "midpoint", "skidSteer"] = "arctan"
-    skid: tuple[tuple[float, float], ...] = ((0.5, 0.5), (0.0, 0.0), (2.5, -2.5))  # eq. 30: rows u_x, u_y, ω of (R, L)
+    # eq. 30: rows u_x, u_y, ω of (R, L)
+    skid: tuple[tuple[float, float], ...] = ((0.5, 0.5), (0.0, 0.0), (2.5, -2.5))
     skid_sigma: float = 0.02  # m/s, of each side's speed
     layout: Layout = field(default=POSE, init=False)
 
     def motion(self, reading: DocumentReading) -> Motion:
-        """Eqs 31 to 33, or another model of the same wheels; alike in every reading, for they are right as printed."""
+        """Eqs 31 to 33, or another model of the same wheels; alike in every reading, for they are
+        right as printed.
+        """
         match self.odometry:
             case "skidSteer":
                 return SkidSteer(self.skid, self.skid_sigma)
@@ -142,7 +153,10 @@ class Pioneer:
         """The wheels' ways whose model makes the true turn of them; skid-steered their speeds."""
         if self.odometry == "skidSteer":
             forward, turning = self.skid[0], self.skid[2]
-            sides = np.linalg.solve(np.array([forward, turning]), np.stack([tick.distance, tick.turn])) / tick.dt
+            sides = (
+                np.linalg.solve(np.array([forward, turning]), np.stack([tick.distance, tick.turn]))
+                / tick.dt
+            )
             return _stacked(tick, [sides[1], sides[0]])
         turn = np.tan(tick.turn) if self.odometry == "arctan" else tick.turn
         return np.stack(_wheel_ways(tick.distance, turn, self.width), axis=-1)
@@ -150,7 +164,9 @@ class Pioneer:
 
 @dataclass(frozen=True)
 class GnssMower:
-    """Document 003: a lawn mower that measures the speed of its wheels at 200 Hz; u = (v_L, v_R, dt)."""
+    """Document 003: a lawn mower that measures the speed of its wheels at 200 Hz; u = (v_L, v_R,
+    dt).
+    """
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ("coded",)
     faults: ClassVar[Entries] = WHEELS
@@ -161,7 +177,9 @@ class GnssMower:
     layout: Layout = field(default=SPEED_POSE, init=False)
 
     def motion(self, reading: DocumentReading) -> Motion:
-        """The document's integrals; `coded` is the recipe of its authors, kept as a counter-example."""
+        """The document's integrals; `coded` is the recipe of its authors, kept as a
+        counter-example.
+        """
         if reading == "coded":
             return WheelSpeedsAsWritten(self.half_track)
         return WheelSpeeds(self.half_track, self.speed_density, self.turn_density)
@@ -181,7 +199,9 @@ class PylonCart:
     """Document 004: a cart with an inertial unit; u = (a_x, a_y, yaw, dt)."""
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ("printed", "coded")
-    faults: ClassVar[Entries] = MappingProxyType({"forward_bias": 0, "lateral_bias": 1, "yaw_bias": 2})
+    faults: ClassVar[Entries] = MappingProxyType(
+        {"forward_bias": 0, "lateral_bias": 1, "yaw_bias": 2}
+    )
     rate: float = 10.0
     forward_sigma: float = math.sqrt(1.8373)  # m/s², R_t of eq. 10
     lateral_sigma: float = math.sqrt(1.1991)  # m/s²
@@ -189,7 +209,9 @@ class PylonCart:
     layout: Layout = field(default=INERTIAL, init=False)
 
     def motion(self, reading: DocumentReading) -> Motion:
-        """Eqs 5 to 7; `printed` has eq. 5's minus, and the authors' code does not wrap the difference of two yaws."""
+        """Eqs 5 to 7; `printed` has eq. 5's minus, and the authors' code does not wrap the
+        difference of two yaws.
+        """
         return PlanarImu(
             self.forward_sigma,
             self.lateral_sigma,

@@ -1,1 +1,6 @@
-"""How people see a run: narrative, frames, the terminal, a window. Everything here is a function of Steps."""
+"""How people see a run. Everything here is a function of Steps.
+
+words/      the narrative and its numbers    picture/   what matplotlib draws of a step
+terminal/   a run at the keyboard            film/      frames, GIF, MP4
+study/      what is told of many runs
+"""

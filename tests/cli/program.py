@@ -1,4 +1,5 @@
-"""The program as its user meets it: in this process where that is enough, else as a process of its own."""
+"""The program as its user meets it: in this process where that is enough, else as a process of its
+own."""
 
 import io
 import os
@@ -22,7 +23,9 @@ try: cli.main()
 finally: print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, file=sys.stderr)
 """  # tells the most memory that the program ever held, in kB
 PATIENCE = 300  # s after which a process that does not end is a failure, on a busy machine, too
-ENDINGS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+ENDINGS = [
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+]
 
 WORLD = """\
 name: lab
@@ -69,7 +72,9 @@ def lay_out(folder: Path) -> Path:
 
 def ekfsim(*args: object, keys: bytes = b"", encoding: str = "utf-8") -> Ended:
     """Run the program in this process, with these bytes as its standard input."""
-    streams = [io.TextIOWrapper(io.BytesIO(content), encoding, "replace") for content in (keys, b"", b"")]
+    streams = [
+        io.TextIOWrapper(io.BytesIO(content), encoding, "replace") for content in (keys, b"", b"")
+    ]
     before = {number: signal.getsignal(number) for number in ENDINGS}
     status = 0
     try:
@@ -87,19 +92,30 @@ def ekfsim(*args: object, keys: bytes = b"", encoding: str = "utf-8") -> Ended:
             signal.signal(number, handler)
     for stream in streams[1:]:
         stream.flush()
-    return Ended(status, *(stream.buffer.getvalue().decode(errors="replace") for stream in streams[1:]))
+    return Ended(
+        status, *(stream.buffer.getvalue().decode(errors="replace") for stream in streams[1:])
+    )
 
 
 def process(
-    *args: object, keys: bytes = b"", before: str = "", after: str = "", program: str = PROGRAM, **environment: str
+    *args: object,
+    keys: bytes = b"",
+    before: str = "",
+    after: str = "",
+    program: str = PROGRAM,
+    **environment: str,
 ) -> Ended:
-    """Run the program as a process, through a shell; before and after it stand what the shell is to do about it."""
+    """Run the program as a process, through a shell; before and after it stand what the shell is to
+    do about it."""
     environment = {**os.environ, "DISPLAY": "", **environment}
     done = subprocess.run(
-        ["bash", "-c", f'{before} "$@" {after}', "bash", sys.executable, "-c", program, *map(str, args)],
+        ["bash", "-c", f'{before} "$@" {after}', "bash", sys.executable, "-c", program, *map(str,
+        args)],
         input=keys, capture_output=True, timeout=PATIENCE, check=False, env=environment,
     )  # fmt: skip
-    return Ended(done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace"))
+    return Ended(
+        done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
+    )
 
 
 def started(*args: object, **how: object) -> subprocess.Popen[bytes]:

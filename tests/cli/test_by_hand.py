@@ -1,7 +1,8 @@
 """Every number that the long form tells of the tour, recomputed from other numbers that it tells.
 
-Given are what no one can compute: commands, odometry, ranges, the truth, the ratios, the corners of walls. How far a
-number may be off is what the last digits of those that it is computed from let it be.
+Given are what no one can compute: commands, odometry, ranges, the truth, the ratios, the corners of
+walls. How far a number may be off is what the last digits of those that it is computed from let it
+be.
 """
 
 import math
@@ -15,7 +16,8 @@ from scipy.stats import chi2
 K2 = -2 * math.log(1 - 0.954)  # k² of the ellipse
 NUMBER = r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?"
 DATA = [
-    r"ekfsim .*", r"matrices, derivatives .*", r"innovation  .*", r"NIS  .*", r"NEES  .*", r"degrees of freedom .*",
+    r"ekfsim .*", r"matrices, derivatives .*", r"innovation  .*", r"NIS  .*", r"NEES  .*",
+    r"degrees of freedom .*",
     r"guard  .*", r"run  .*", r"==>[A-Z][^0-9]*",
 ]  # fmt: skip
 
@@ -26,12 +28,17 @@ class Told(float):
     def __new__(cls, text):
         told = super().__new__(cls, text)
         digits = re.sub(r"e.*|[-.]", "", text).lstrip("0")
-        told.half = 0.5 * 10.0 ** (math.floor(math.log10(abs(told))) - max(len(digits), 6) + 1) if told else 0.0
+        told.half = (
+            0.5 * 10.0 ** (math.floor(math.log10(abs(told))) - max(len(digits), 6) + 1)
+            if told
+            else 0.0
+        )
         return told
 
 
 def agrees(told, function, *given):
-    """Whether numbers told are those that a function makes of other numbers told, whatever these were rounded from."""
+    """Whether numbers told are those that a function makes of other numbers told, whatever these
+    were rounded from."""
     flat = [number for each in given for number in np.ravel(np.array(each, object))]
     shapes = [np.shape(each) for each in given]
 
@@ -51,7 +58,8 @@ def agrees(told, function, *given):
             slack = slack + np.nanmax(np.abs(np.array(moved) - expected), axis=0)
     off = np.abs(np.array(told, float) - expected)
     assert (off <= 1.01 * slack + 1e-13).all(), (list(map(float, told)), expected, slack)
-    assert (slack < 1e-2 * np.abs(expected) + 2e-3).all(), (told, slack)  # or nothing would be held against anything
+    # or nothing would be held against anything
+    assert (slack < 1e-2 * np.abs(expected) + 2e-3).all(), (told, slack)
     return True
 
 
@@ -66,7 +74,8 @@ class Narrative:
         return self.at < len(self.lines) and re.fullmatch(pattern, self.lines[self.at]) is not None
 
     def take(self, pattern):
-        """The numbers of the next line; an equation's number and what stands between marks in a pattern are none."""
+        """The numbers of the next line; an equation's number and what stands between marks in a
+        pattern are none."""
         line = self.lines[self.at]
         assert self.comes(pattern), (pattern, line)
         self.at += 1
@@ -110,7 +119,8 @@ def J_u(x):
 
 
 def to_wall(x, bearing, corners):
-    """Range, its derivatives, and the angle between beam and wall, along a beam to the line through two corners."""
+    """Range, its derivatives, and the angle between beam and wall, along a beam to the line through
+    two corners."""
     x, y, θ = pose(x)
     θ += math.radians(bearing)
     a, along = corners[:2], corners[2:] - corners[:2]
@@ -135,7 +145,8 @@ def error(x, truth):
 
 
 def nees(P, x, truth):
-    """Of the entries that P leaves uncertain; told in six digits, P has no other rank than it has rows."""
+    """Of the entries that P leaves uncertain; told in six digits, P has no other rank than it has
+    rows."""
     alive = np.diagonal(P) > 1e-24
     return (
         error(x, truth)[alive] @ np.linalg.solve(P[np.ix_(alive, alive)], error(x, truth)[alive])
@@ -149,7 +160,14 @@ class ByHand(Narrative):
 
     def __init__(self, text):
         super().__init__(text)
-        self.nis, self.errors, self.reckoned_errors, self.moves, self.readings, self.says = [], [], [], 0, 0, 0
+        self.nis, self.errors, self.reckoned_errors, self.moves, self.readings, self.says = (
+            [],
+            [],
+            [],
+            0,
+            0,
+            0,
+        )
 
     def run(self):
         while not self.comes(r"The noise ratios: .*"):
@@ -216,7 +234,8 @@ class ByHand(Narrative):
         (z,) = self.take("The range is (.*)")
         (h,) = self.take(r"The predicted range was (.*)   \(eq 8: h\(x\)\)")
         edge, angle = self.take(
-            r"It was expected to meet edge (\d+) of [a-z]+; the angle between beam and wall is (.*) degrees"
+            r"It was expected to meet edge (\d+) of [a-z]+; the angle between beam and wall is "
+            r"(.*) degrees"
         )
         corners = self.take(r"That edge, counted from 1 in the file's order, goes from (.* to .*)")
         assert edge >= 1
@@ -229,7 +248,8 @@ class ByHand(Narrative):
         (S,) = self.take(r"S is (.*)   \(eq 11: J_H P J_H' \+ C_v\)")
         assert agrees([S], lambda H, P, C_v: H @ P @ H + C_v, H, self.P, C_v)
         r, σ, nis = self.take(
-            rf"The innovation is ({NUMBER}), its standard deviation ({NUMBER}); NIS is ({NUMBER})   \(eq 9: r = z - h\)"
+            rf"The innovation is ({NUMBER}), its standard deviation ({NUMBER}); NIS is ({NUMBER}) "
+            rf"  \(eq 9: r = z - h\)"
         )
         assert agrees([r, σ], lambda z, h, S: [z - h, math.sqrt(S)], z, h, S)
         assert agrees([nis], lambda r, S: r * r / S, r, S)
@@ -247,22 +267,28 @@ class ByHand(Narrative):
         self.judge()
 
     def doubt(self, bearing):
-        """A pose at the end of one of the axes of P, what of it is told in words, and the way to the wall there."""
-        told = self.take(r"This beam is ambiguous: expected to meet edge \d+ of [a-z]+, but from a pose within 3 sigma "
+        """A pose at the end of one of the axes of P, what of it is told in words, and the way to
+        the wall there."""
+        told = self.take(r"This beam is ambiguous: expected to meet edge \d+ of [a-z]+, but from "
+                         r"a pose within 3 sigma "
                          r"\((.*)\) it would meet edge \d+ of [a-z]+")  # fmt: skip
         place, corners, after = [], [], []
         found = re.fullmatch(
-            r"  From \(x, y, th\) = (\(.*\)), it would meet edge \d+ of [a-z]+, from (.* to .*), after (.*)",
+            r"  From \(x, y, th\) = (\(.*\)), it would meet edge \d+ of [a-z]+, from (.* to .*), "
+            r"after (.*)",
             self.lines[self.at],
         )
         self.at += 1
-        place, corners, (after,) = ([Told(n) for n in re.findall(NUMBER, group)] for group in found.groups())
+        place, corners, (after,) = (
+            [Told(n) for n in re.findall(NUMBER, group)] for group in found.groups()
+        )
         assert agrees([after], lambda x, b, c: to_wall(x, b, c)[0], place, bearing, corners)
         for i in range(6):
 
             def arm(x, P, i=i):
                 λ, V = np.linalg.eigh(P)
-                v = V[:, i % 3] * (1 if V[np.argmax(abs(V[:, i % 3])), i % 3] > 0 else -1)  # one of its two ends
+                # one of its two ends
+                v = V[:, i % 3] * (1 if V[np.argmax(abs(V[:, i % 3])), i % 3] > 0 else -1)
                 return degrees(pose(x) + (3 if i < 3 else -3) * math.sqrt(λ[i % 3]) * v)
 
             here = arm(np.array(self.x, float), np.array(self.P, float))
@@ -274,7 +300,11 @@ class ByHand(Narrative):
         x, probe = pose(np.array(self.x, float)), pose(np.array(place, float))
         c, s = math.cos(x[2]), math.sin(x[2])
         east, north = probe[:2] - x[:2]
-        parts = [abs(c * east + s * north), abs(c * north - s * east), math.degrees(abs(probe[2] - x[2]))]
+        parts = [
+            abs(c * east + s * north),
+            abs(c * north - s * east),
+            math.degrees(abs(probe[2] - x[2])),
+        ]
         assert told == pytest.approx(parts, rel=0.06)  # in two digits
 
     def judge(self):
@@ -282,13 +312,15 @@ class ByHand(Narrative):
         self.take("Uncertainty ellipse is:")
         minor, major, turned, half = (
             self.take(pattern)[0]
-            for pattern in (r"  minor radius is (.*)", r"  major radius is (.*)", r"  orientation is (.*) degrees",
+            for pattern in (r"  minor radius is (.*)", r"  major radius is (.*)",
+                            r"  orientation is (.*) degrees",
                             r"  2\*sigma_theta is (.*) degrees")
         )  # fmt: skip
         assert agrees([minor, major, half], lambda P: np.array(ellipse(P))[[0, 1, 3]], self.P)
         assert agrees([turned], lambda P: ellipse(P)[2], self.P)
         line = self.lines[self.at]
-        value, dof = self.take(r"The true position lies \w+ the ellipse, the true heading \w+ the cone; "
+        value, dof = self.take(r"The true position lies \w+ the ellipse, the true heading \w+ the "
+                               r"cone; "
                                r"NEES is (.*) \((\d) degrees? of freedom\)")  # fmt: skip
         P, x, truth = (np.array(each, float) for each in (self.P, self.x, self.truth))
         e = error(x, truth)
@@ -306,7 +338,9 @@ class ByHand(Narrative):
         limit = chi2.ppf(0.99, dof)
         assert self.comes(rf"{name} lies .*") == (value > limit)
         if value > limit:
-            assert self.take(rf"{name} lies above its 99 % quantile, (.*)") == pytest.approx([limit], rel=1e-5)
+            assert self.take(rf"{name} lies above its 99 % quantile, (.*)") == pytest.approx(
+                [limit], rel=1e-5
+            )
 
     def count(self):
         x, truth = np.array(self.x, float), np.array(self.truth, float)
@@ -323,11 +357,16 @@ class ByHand(Narrative):
             return [math.sqrt(np.mean(e**2)), np.max(np.abs(e))]
 
         told = self.take(r"Position error: (.*)")
-        assert told == pytest.approx([*of(np.hypot(*here[:, :2].T)), *of(np.hypot(*reckoned[:, :2].T))], rel=2e-5)
+        assert told == pytest.approx(
+            [*of(np.hypot(*here[:, :2].T)), *of(np.hypot(*reckoned[:, :2].T))], rel=2e-5
+        )
         told = self.take(r"Heading error: (.*)")
-        assert told == pytest.approx([*of(np.degrees(here[:, 2])), *of(np.degrees(reckoned[:, 2]))], rel=2e-5)
+        assert told == pytest.approx(
+            [*of(np.degrees(here[:, 2])), *of(np.degrees(reckoned[:, 2]))], rel=2e-5
+        )
         readings, total, each, low, high, last, bound, dof = self.take(
-            r"Verdict: consistent: the NIS of (\d+) readings sums to (.*) \((.*) per number read\), "
+            r"Verdict: consistent: the NIS of (\d+) readings sums to (.*) \((.*) per number "
+            r"read\), "
             r"within the 99 % band (.*); at the last step "
             r"NEES is (.*), below its 99\.9 % bound (.*)"
         )

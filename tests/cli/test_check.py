@@ -23,14 +23,17 @@ def test_each_sound_file_is_ok_on_a_line_of_its_own():
 
 
 def test_every_mistake_of_every_file_is_told_at_its_place(place):
-    (place / "wrong.yaml").write_text(SHORT.replace("distance: 1", "distanz: 1").replace("angle: 0", "angle: no"))
+    (place / "wrong.yaml").write_text(
+        SHORT.replace("distance: 1", "distanz: 1").replace("angle: 0", "angle: no")
+    )
     (place / "odd.yaml").write_text(WORLD.replace("0.05", "-1", 1))
     told = ekfsim("check", "wrong.yaml", "world.yaml", "odd.yaml")
     assert told.status == 2
     assert told.err == ""
     assert told.out.splitlines() == [
         "wrong.yaml:3:12: commands[0].move: unknown key 'distanz'; did you mean 'distance'?",
-        "wrong.yaml:4:20: commands[1].sense.angle: 'no' is text where a number belongs; write e.g. 90",
+        "wrong.yaml:4:20: commands[1].sense.angle: 'no' is text where a number belongs; write "
+        "e.g. 90",
         "world.yaml: ok",
         "odd.yaml:7:27: noise.executionDstSigmaRatio: -1 is negative; write a number of 0 or more",
     ]
@@ -40,8 +43,14 @@ def test_a_missing_file_hides_no_other(place):
     (place / "empty.yaml").write_text("")
     told = ekfsim("check", "nowhere.yaml", "world.yaml", ".", "empty.yaml")
     assert told.status == 2
-    assert told.err == "ekfsim: nowhere.yaml: no such file\nekfsim: .: is a folder; name a file in it\n"
-    assert told.out == ("world.yaml: ok\nempty.yaml:1:1: the file is empty; see `ekfsim new` for one to start from\n")
+    assert (
+        told.err
+        == "ekfsim: nowhere.yaml: no such file\nekfsim: .: is a folder; name a file in it\n"
+    )
+    assert told.out == (
+        "world.yaml: ok\nempty.yaml:1:1: the file is empty; see `ekfsim new` for one to start "
+        "from\n"
+    )
 
 
 def test_what_is_no_text_is_told_in_a_line(place):
@@ -89,7 +98,9 @@ def test_list_names_all_that_comes_along():
         assert (told.status, told.err) == (0, "")
         names = [line.split()[0] for line in told.out.splitlines() if line.startswith("  ")]
         assert sorted(names) == sorted(packaged(kind))
-    groups = [line.split(":")[0] for line in ekfsim("list").out.splitlines() if not line.startswith(" ")]
+    groups = [
+        line.split(":")[0] for line in ekfsim("list").out.splitlines() if not line.startswith(" ")
+    ]
     assert groups[:3] == ["start here", "proofs", "divergence"]
 
 
@@ -137,7 +148,11 @@ def test_a_shared_world_is_told_of_once(tmp_path, monkeypatch):
     told = ekfsim("check", "./w.yaml", "c.yaml")
     assert told.status == 2
     lines = told.out.splitlines()
-    assert [line.split(": ")[1] for line in lines] == ["start", "noise", "what is wrong with it is told above"]
+    assert [line.split(": ")[1] for line in lines] == [
+        "start",
+        "noise",
+        "what is wrong with it is told above",
+    ]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no pipes by name here")
@@ -148,19 +163,29 @@ def test_a_pipe_is_read_once():
 
 
 def test_output_that_only_ascii_can_reach_still_comes():
-    for args in (["--help"], ["run", "--help"], ["list"], ["schema", "world"], ["run", "tour", "-q"]):
+    for args in (
+        ["--help"],
+        ["run", "--help"],
+        ["list"],
+        ["schema", "world"],
+        ["run", "tour", "-q"],
+    ):
         told = ekfsim(*args, encoding="ascii")
         assert told.status == 0
         assert told.out
 
 
-@pytest.mark.parametrize(("name", "kind"), [("my-world.yaml", "world"), ("sub/my-commands.yaml", "commands")])
+@pytest.mark.parametrize(
+    ("name", "kind"), [("my-world.yaml", "world"), ("sub/my-commands.yaml", "commands")]
+)
 def test_new_writes_a_file_that_check_finds_ok(place, name, kind):
     told = ekfsim("new", name)
     assert told.status == 0
     assert told.out == f"{name}: a {kind} file to start from; ekfsim check {name} validates it\n"
     if kind == "commands":  # its world is the one to be made next
-        named = next(line for line in Path(name).read_text().splitlines() if line.startswith("world:"))
+        named = next(
+            line for line in Path(name).read_text().splitlines() if line.startswith("world:")
+        )
         world = Path(name).parent / named.split()[1]
         if not world.exists():
             assert ekfsim("new", world, "--kind", "world").status == 0
@@ -171,7 +196,10 @@ def test_new_overwrites_nothing_unasked(place):
     before = (place / "world.yaml").read_text()
     told = ekfsim("new", "world.yaml")
     assert told.status == 2
-    assert told.err == "ekfsim: world.yaml: exists already; choose another name, or replace it with --force\n"
+    assert (
+        told.err
+        == "ekfsim: world.yaml: exists already; choose another name, or replace it with --force\n"
+    )
     assert (place / "world.yaml").read_text() == before
     assert ekfsim("new", "world.yaml", "--force").status == 0
     assert (place / "world.yaml").read_text() != before
@@ -181,14 +209,18 @@ def test_new_asks_which_kind():
     for name in ("file.yaml", "world-commands.yaml"):
         told = ekfsim("new", name)
         assert told.status == 2
-        assert told.err == f"ekfsim: {name}: a world or commands? say --kind world or --kind commands\n"
+        assert (
+            told.err
+            == f"ekfsim: {name}: a world or commands? say --kind world or --kind commands\n"
+        )
         assert not Path(name).exists()
         assert ekfsim("new", name, "--kind", "world").status == 0
     assert ekfsim("new", "other.yaml", "--kind", "robot").status == 2
 
 
 @pytest.mark.parametrize(
-    "name", ["", "-", ".", "world.yaml/new-world.yaml", "world" * 60, "/proc/world", "world.yaml/a/world"]
+    "name",
+    ["", "-", ".", "world.yaml/new-world.yaml", "world" * 60, "/proc/world", "world.yaml/a/world"],
 )
 def test_new_where_no_file_can_be(place, name):
     before = left_in(place)
@@ -198,7 +230,9 @@ def test_new_where_no_file_can_be(place, name):
     assert left_in(place) == before
 
 
-@pytest.mark.parametrize("args", [[], ["walk"], ["check"], ["schema"], ["schema", "robot"], ["--walk"], ["new"]])
+@pytest.mark.parametrize(
+    "args", [[], ["walk"], ["check"], ["schema"], ["schema", "robot"], ["--walk"], ["new"]]
+)
 def test_wrong_usage_is_told_with_the_way_out(args):
     told = ekfsim(*args)
     assert told.status == 2
@@ -219,13 +253,19 @@ def test_a_recording_without_a_path_is_ok_and_cannot_be_run():
     assert (told.status, told.out, told.err) == (0, "pylon_log: ok\n", "")
     told = ekfsim("run", "pylon_log")
     assert (told.status, told.out) == (2, "")
-    assert re.search(r"pylon_log.yaml:\d+:12: recording: the recording names no path; give one with --log\n$", told.err)
+    assert re.search(
+        r"pylon_log.yaml:\d+:12: recording: the recording names no path; give one with --log\n$",
+        told.err,
+    )
 
 
 def test_a_log_where_nothing_was_recorded():
     told = ekfsim("run", "short.yaml", "--log", "log.csv")
     assert (told.status, told.out) == (2, "")
-    line = "short.yaml:3:3: commands: the file has 'commands', not a recording; --log has nothing to replace\n"
+    line = (
+        "short.yaml:3:3: commands: the file has 'commands', not a recording; --log has nothing "
+        "to replace\n"
+    )
     assert told.err == line
     told = ekfsim("run", "short.yaml", "--reading", "spoken")
     assert told.status == 2
@@ -233,7 +273,8 @@ def test_a_log_where_nothing_was_recorded():
 
 
 def test_mistakes_and_warnings_of_a_file_are_together_what_anybody_reads(tmp_path):
-    move = "  - move: {distance: 1, angle: 400, slip: 2}\n"  # in degrees a great many, and more slip than there is
+    # in degrees a great many, and more slip than there is
+    move = "  - move: {distance: 1, angle: 400, slip: 2}\n"
     for count, warnings in ((60, 0), (40, 10)):
         (tmp_path / "many.yaml").write_text("world: room\ncommands:\n" + move * count)
         told = ekfsim("check", tmp_path / "many.yaml")

@@ -33,7 +33,10 @@ def table(folder):
 
 def test_two_settings_are_told_in_a_table_and_in_sentences(place):
     lines = told("diverge-01-wrong-wall", "--b", "guard=skip", *RUNS).splitlines()
-    assert lines[0] == "diverge-01-wrong-wall: 200 runs of seed 27, each under either setting on the same draws"
+    assert (
+        lines[0]
+        == "diverge-01-wrong-wall: 200 runs of seed 27, each under either setting on the same draws"
+    )
     assert lines[1:3] == ["  a: as the file stands", "  b: guard=skip"]
     assert " ".join(lines[3].split()) == "at the last step a b b − a 95 % interval a alone b alone"
     assert lines[9].startswith("b loses fewer runs, by 34 percentage points (27.4 to 40.8): ")
@@ -57,9 +60,16 @@ def test_what_a_study_of_either_side_finds_is_what_is_compared():
 
 
 def test_a_folder_holds_all_that_is_needed_to_repeat_it(place):
-    said = told("short.yaml", "--a", "guard=off", "--b", f"filter=iekf,{LOUD}", "--set", "faults.rangeBias=0.05", *RUNS,
+    said = told("short.yaml", "--a", "guard=off", "--b", f"filter=iekf,{LOUD}", "--set",
+    "faults.rangeBias=0.05", *RUNS,
                 "-o", "out")  # fmt: skip
-    assert left_in(place / "out") == ["commands.yaml", "compare.csv", "compare.png", "compare.yaml", "world.yaml"]
+    assert left_in(place / "out") == [
+        "commands.yaml",
+        "compare.csv",
+        "compare.png",
+        "compare.yaml",
+        "world.yaml",
+    ]
     again = told("out/compare.yaml", "-o", "again")
     assert again.partition("\n")[2] == said.partition("\n")[2]
     for name in ("compare.csv", "compare.yaml"):
@@ -91,17 +101,41 @@ def test_the_options_of_either_side_win_over_those_of_both():
     ("args", "line"),
     [
         ([], "short.yaml: nothing is compared; write e.g. --a guard=off --b guard=skip,gate=0.99"),
-        (["--a", "gate=0.9", "--b", "gate=0.9"], "short.yaml: a and b are the same; let them differ"),
-        (["--a", "gate=0.9", "--b", "gate=0.90,gate=0.5"], "--b gate=0.90,gate=0.5: 'gate' is set twice; keep one of"),
-        (["--a", "guard"], "--a guard: this is no KEY=VALUE; write e.g. --a noise.rangeSigmaRatio=0.02"),
+        (
+            ["--a", "gate=0.9", "--b", "gate=0.9"],
+            "short.yaml: a and b are the same; let them differ",
+        ),
+        (
+            ["--a", "gate=0.9", "--b", "gate=0.90,gate=0.5"],
+            "--b gate=0.90,gate=0.5: 'gate' is set twice; keep one of",
+        ),
+        (
+            ["--a", "guard"],
+            "--a guard: this is no KEY=VALUE; write e.g. --a noise.rangeSigmaRatio=0.02",
+        ),
         (["--a", ""], "--a : this is no KEY=VALUE;"),
-        (["--a", "guard=off,"], "--a guard=off,: '' is no KEY=VALUE; write e.g. --a guard=skip,gate=0.99"),
-        (["--b", "filter=ekf,ukf"], "--b filter=ekf,ukf: 'ukf' is no KEY=VALUE; write e.g. --b guard=skip,gate=0.99"),
+        (
+            ["--a", "guard=off,"],
+            "--a guard=off,: '' is no KEY=VALUE; write e.g. --a guard=skip,gate=0.99",
+        ),
+        (
+            ["--b", "filter=ekf,ukf"],
+            "--b filter=ekf,ukf: 'ukf' is no KEY=VALUE; write e.g. --b guard=skip,gate=0.99",
+        ),
         (["--a", "gaurd=off"], "--a gaurd=off: unknown key 'gaurd'; did you mean 'guard'?"),
-        (["--b", "guard=maybe"], "--b guard=maybe: 'maybe' is not known here; write off, warn or skip"),
-        (["--b", "filter=oracle"], f"--b filter oracle: there is no such filter; known: {', '.join(FILTERS)}"),
+        (
+            ["--b", "guard=maybe"],
+            "--b guard=maybe: 'maybe' is not known here; write off, warn or skip",
+        ),
+        (
+            ["--b", "filter=oracle"],
+            f"--b filter oracle: there is no such filter; known: {', '.join(FILTERS)}",
+        ),
         (["--b", "gate=2"], "--b gate=2: "),
-        (["--filter", "ekf,ukf", "--b", "gate=0.9"], "short.yaml: a study of several cells; compare two: say which"),
+        (
+            ["--filter", "ekf,ukf", "--b", "gate=0.9"],
+            "short.yaml: a study of several cells; compare two: say which",
+        ),
     ],
 )
 def test_what_cannot_be_compared_is_refused_in_a_line(place, args, line):
@@ -112,7 +146,9 @@ def test_what_cannot_be_compared_is_refused_in_a_line(place, args, line):
 
 
 def test_mistakes_in_a_file_of_a_comparison_are_told_at_their_place(place):
-    (place / "compare.yaml").write_text("study: short.yaml\na: {gaurd: off}\nb: {filter: oracle, gate: [1]}\n")
+    (place / "compare.yaml").write_text(
+        "study: short.yaml\na: {gaurd: off}\nb: {filter: oracle, gate: [1]}\n"
+    )
     ended = ekfsim("compare", "compare.yaml")
     assert ended.status == 2
     assert "compare.yaml:3:" in ended.err
@@ -124,7 +160,9 @@ def test_mistakes_in_a_file_of_a_comparison_are_told_at_their_place(place):
 
 
 def test_check_looks_at_either_side(place):
-    (place / "compare.yaml").write_text("study: short.yaml\na: {gate: 2, filter: ukf}\nb: {start.x: 100}\n")
+    (place / "compare.yaml").write_text(
+        "study: short.yaml\na: {gate: 2, filter: ukf}\nb: {start.x: 100}\n"
+    )
     ended = ekfsim("check", "compare.yaml")
     assert ended.status == 2
     first, second = ended.out.splitlines()

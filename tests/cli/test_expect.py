@@ -24,7 +24,9 @@ def test_promises_that_are_kept_are_told_with_their_figures_and_end_in_0(place):
     assert (ended.status, ended.err) == (0, "")
     first, *lines = ended.out.splitlines()
     assert first == "short.yaml: 200 runs of seed 0, filter ekf"
-    assert [line.split(": ")[:2] for line in lines] == [[name, "kept"] for name in ("lost", "coverage", "nis", "nees")]
+    assert [line.split(": ")[:2] for line in lines] == [
+        [name, "kept"] for name in ("lost", "coverage", "nis", "nees")
+    ]
     assert all(" % [" in line and " of 200 runs " in line for line in lines)
     assert lines[0].endswith("are lost at the end, 0 to 20 % promised")
     assert lines[2].endswith("outside its two-sided 95 % band, fewer than 40 % promised")
@@ -34,7 +36,11 @@ def test_promises_that_are_kept_are_told_with_their_figures_and_end_in_0(place):
 @pytest.mark.parametrize(
     ("expect", "line"),
     [
-        ("lost: [0.5, 1]", "lost: NOT kept: 3.5 % [1.7, 7.0] of 200 runs are lost at the end, 50 to 100 % promised"),
+        (
+            "lost: [0.5, 1]",
+            "lost: NOT kept: 3.5 % [1.7, 7.0] of 200 runs are lost at the end, 50 to 100 % "
+            "promised",
+        ),
         ("coverage: [0, 0.1]", "inside the 95.4 % ellipse, 0 to 10 % promised"),
         ("nis: high", "have a sum of NIS above its two-sided 95 % band, at least 40 % promised"),
         ("nis: low", "have a sum of NIS below its two-sided 95 % band, at least 40 % promised"),
@@ -73,19 +79,36 @@ def test_the_study_is_written_where_a_folder_is_named(place):
 
 def test_without_an_ellipse_no_coverage_can_be_kept(place):
     world = (place / "world.yaml").read_text()
-    (place / "world.yaml").write_text(world.replace(", sigma: {x: 0.1, y: 0.1, theta: 5}", "").replace("0.05", "0"))
+    (place / "world.yaml").write_text(
+        world.replace(", sigma: {x: 0.1, y: 0.1, theta: 5}", "").replace("0.05", "0")
+    )
     ended = ekfsim("study", promise(place, "expect: {coverage: [0, 1]}\n"), "--expect")
     assert ended.status == 1
-    assert ended.out.splitlines()[1].startswith("coverage: NOT kept: no run ends with an ellipse that has an area,")
+    assert ended.out.splitlines()[1].startswith(
+        "coverage: NOT kept: no run ends with an ellipse that has an area,"
+    )
 
 
 @pytest.mark.parametrize(
     ("expect", "args", "line"),
     [
-        ("", ["--expect"], "short.yaml: promises nothing; write e.g. expect: {lost: [0, 0.02], nis: silent} into it"),
+        (
+            "",
+            ["--expect"],
+            "short.yaml: promises nothing; write e.g. expect: {lost: [0, 0.02], nis: silent} into "
+            "it",
+        ),
         ("expect: {runs: 5}\n", ["--expect"], "short.yaml: promises nothing;"),
-        (KEPT, ["--expect", "--sweep", "gate=0.9,0.99"], "--expect verifies what one scene promises of one filter;"),
-        (KEPT, ["--expect", "--filter", "ekf,ukf"], "--expect verifies what one scene promises of one filter;"),
+        (
+            KEPT,
+            ["--expect", "--sweep", "gate=0.9,0.99"],
+            "--expect verifies what one scene promises of one filter;",
+        ),
+        (
+            KEPT,
+            ["--expect", "--filter", "ekf,ukf"],
+            "--expect verifies what one scene promises of one filter;",
+        ),
         (KEPT, ["--resume"], "Missing option '--out' / '-o'."),
         (KEPT, ["--expect", "--resume"], "Missing option '--out' / '-o'."),
     ],

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from program import SHORT, WORLD, ekfsim
 
 few = settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow])
-CONTROLS = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f]")  # \r and \x85 break lines in YAML
+# \r and \x85 break lines in YAML
+CONTROLS = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f]")
 
 
 def numbers(low, high):
@@ -21,13 +22,19 @@ def numbers(low, high):
 angles = st.one_of(st.sampled_from([0.0, 90.0, -90.0, 180.0, -180.0]), numbers(-720, 720))
 ratios = st.one_of(st.sampled_from([0.0, 0.05]), numbers(0, 2))
 moves = st.fixed_dictionaries(
-    {"distance": st.one_of(st.just(0.0), numbers(-20, 20)), "angle": angles}, optional={"slip": numbers(0, 1)}
+    {"distance": st.one_of(st.just(0.0), numbers(-20, 20)), "angle": angles},
+    optional={"slip": numbers(0, 1)},
 )
 singles = st.one_of(
     st.builds(lambda move: {"move": move}, moves),
     st.builds(lambda angle: {"sense": {"angle": angle}}, angles),
     st.builds(lambda angle: {"sense": {"angle": angle}}, angles),
-    st.builds(lambda x, y, theta: {"kidnap": {"x": x, "y": y, "theta": theta}}, numbers(-4, 4), numbers(-4, 4), angles),
+    st.builds(
+        lambda x, y, theta: {"kidnap": {"x": x, "y": y, "theta": theta}},
+        numbers(-4, 4),
+        numbers(-4, 4),
+        angles,
+    ),
     st.builds(lambda text: {"say": text}, st.text(max_size=20)),
 )
 commands = st.recursive(
@@ -42,29 +49,47 @@ commands = st.recursive(
 
 @st.composite
 def polygons(draw, x, y):
-    """A star about (x, y), whose corners come in the order of their angles: it crosses itself nowhere."""
+    """A star about (x, y), whose corners come in the order of their angles: it crosses itself
+    nowhere."""
     corners = draw(st.integers(3, 7))
     radii = draw(st.lists(numbers(0.2, 1.2), min_size=corners, max_size=corners))
     return [
-        [round(x + r * math.cos(2 * math.pi * k / corners), 6), round(y + r * math.sin(2 * math.pi * k / corners), 6)]
+        [
+            round(x + r * math.cos(2 * math.pi * k / corners), 6),
+            round(y + r * math.sin(2 * math.pi * k / corners), 6),
+        ]
         for k, r in enumerate(radii)
     ]
 
 
 @st.composite
 def worlds(draw):
-    places = draw(st.lists(st.sampled_from([(2, 2), (-2, 2), (2, -2), (-2, -2), (4, 0)]), max_size=4, unique=True))
+    places = draw(
+        st.lists(
+            st.sampled_from([(2, 2), (-2, 2), (2, -2), (-2, -2), (4, 0)]), max_size=4, unique=True
+        )
+    )
     names = ("executionDst", "executionAng", "odometryDst", "odometryAng", "range")
     world = {
         "name": "lab",
-        "obstacles": [{"name": f"o{n}", "points": draw(polygons(*at))} for n, at in enumerate(places)],
-        "start": {"x": draw(numbers(-0.5, 0.5)), "y": draw(numbers(-0.5, 0.5)), "theta": draw(angles)},
+        "obstacles": [
+            {"name": f"o{n}", "points": draw(polygons(*at))} for n, at in enumerate(places)
+        ],
+        "start": {
+            "x": draw(numbers(-0.5, 0.5)),
+            "y": draw(numbers(-0.5, 0.5)),
+            "theta": draw(angles),
+        },
         "noise": {f"{name}SigmaRatio": draw(ratios) for name in names},
     }
     if draw(st.booleans()):
         world["boundary"] = [[-5, -5], [5, -5], [5, 5], [-5, 5]]
     if draw(st.booleans()):
-        world["start"]["sigma"] = {"x": draw(ratios), "y": draw(ratios), "theta": draw(numbers(0, 40))}
+        world["start"]["sigma"] = {
+            "x": draw(ratios),
+            "y": draw(ratios),
+            "theta": draw(numbers(0, 40)),
+        }
     if places and draw(st.booleans()):
         world["belief"] = {"missing": ["o0"], "noise": {"odometryDstSigmaRatio": draw(ratios)}}
     if draw(st.booleans()):
@@ -80,7 +105,10 @@ def scenes(draw):
         "commands": draw(st.lists(commands, max_size=6)),
     }
     if draw(st.booleans()):
-        scene |= {"gate": draw(numbers(0.01, 0.99)), "guard": draw(st.sampled_from(["off", "warn", "skip"]))}
+        scene |= {
+            "gate": draw(numbers(0.01, 0.99)),
+            "guard": draw(st.sampled_from(["off", "warn", "skip"])),
+        }
     return scene
 
 
@@ -137,12 +165,19 @@ def test_a_sound_scene_runs_to_its_verdict_with_numbers_that_hang_together(world
 def test_bytes_are_told_not_tripped_over(world, scene):
     with TemporaryDirectory() as folder:
         path = files(folder, world, scene)
-        for args in (["check", path], ["check", f"{folder}/w.yaml"], ["run", path], ["run", "tour", "--world", path]):
+        for args in (
+            ["check", path],
+            ["check", f"{folder}/w.yaml"],
+            ["run", path],
+            ["run", "tour", "--world", path],
+        ):
             assert ekfsim(*args).status == 2
 
 
 @few
-@given(st.sampled_from([WORLD, SHORT]), st.integers(0, 300), st.binary(max_size=12), st.integers(0, 12))
+@given(
+    st.sampled_from([WORLD, SHORT]), st.integers(0, 300), st.binary(max_size=12), st.integers(0, 12)
+)
 def test_a_file_with_a_slip_of_the_keyboard_is_told_or_runs(text, at, typed, lost):
     slipped = text.encode()[:at] + typed + text.encode()[at + lost :]
     with TemporaryDirectory() as folder:
@@ -159,8 +194,10 @@ def test_a_file_with_a_slip_of_the_keyboard_is_told_or_runs(text, at, typed, los
 
 
 @few
-@given(st.lists(st.one_of(st.sampled_from(["run", "check", "--gate", "--world", "-q", "tour"]), st.text(
-    st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=6)), max_size=5))  # fmt: skip
+@given(st.lists(st.one_of(st.sampled_from(["run", "check", "--gate", "--world", "-q", "tour"]),
+    st.text(
+    st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=6)),
+    max_size=5))  # fmt: skip
 def test_no_line_of_arguments_trips_it(args):
     if "new" in args or any(arg.startswith(("--tr", "--cs", "--su", "--tu")) for arg in args):
         return  # they write

@@ -8,16 +8,16 @@ from itertools import islice
 import pytest
 from program import ekfsim
 
-from ekfsim.files.load import load_scene
 from ekfsim.files.packaged import resolve
-from ekfsim.files.trace import line_of
+from ekfsim.files.results.trace import line_of
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters import FILTERS
 from ekfsim.localization import play
-from ekfsim.views.beams import beam
-from ekfsim.views.captions import notes, spread, title
-from ekfsim.views.narrative import narrate
-from ekfsim.views.playback import views
-from ekfsim.views.sights import sight
+from ekfsim.views.picture.sights import sight
+from ekfsim.views.terminal.playback import views
+from ekfsim.views.words.beams import beam
+from ekfsim.views.words.captions import notes, spread, title
+from ekfsim.views.words.narrative import narrate
 
 NO_NUMBER = re.compile(r"\b(nan|inf|infinity)\b", re.IGNORECASE)
 EVERY = [(scene, filter) for scene in ("square", "tour") for filter in FILTERS]
@@ -31,7 +31,11 @@ DRIVES = {
 
 def outputs(folder, *run):
     """The narrative, and every file that a run writes."""
-    files = [*("--trace", folder / "trace"), *("--csv", folder / "csv"), *("--summary", folder / "summary")]
+    files = [
+        *("--trace", folder / "trace"),
+        *("--csv", folder / "csv"),
+        *("--summary", folder / "summary"),
+    ]
     done = ekfsim("run", *run, *files, "--tum", folder / "tum")
     assert done.status == 0, done.err
     yield "narrative", done.out
@@ -77,7 +81,10 @@ def test_the_range_of_a_tangent_may_be_negative_and_is_told_so(tmp_path):
 
 def test_where_the_estimate_itself_sees_no_wall(tmp_path):
     told = dict(outputs(tmp_path, "diverge-01-wrong-wall", "--filter", "pf", "--world", "corridor"))
-    unseen = sum(line["wall"] is None and line["predicted_range"] is not None for line in sense_lines(told["trace"]))
+    unseen = sum(
+        line["wall"] is None and line["predicted_range"] is not None
+        for line in sense_lines(told["trace"])
+    )
     assert unseen > 0
     assert told["narrative"].count("The beam of the estimate itself meets no wall") == unseen
 
@@ -98,7 +105,12 @@ def test_what_is_written_beside_pictures(system, filter):
     scene = replace(scene, filter=filter)
     for view in islice(views(play(scene)), 25):
         seen = beam(view.step, scene) or sight(view.step)
-        words = [narrate(view, scene), title(view, 9), *notes(view, scene, seen), spread(view, 0.954)]
+        words = [
+            narrate(view, scene),
+            title(view, 9),
+            *notes(view, scene, seen),
+            spread(view, 0.954),
+        ]
         words.append(json.dumps(line_of(view.step, scene, 0.954), allow_nan=False))
         assert not NO_NUMBER.search("\n".join(words))
 
@@ -111,4 +123,6 @@ def test_a_search_that_was_cut_off_is_told_in_narrative_trace_and_study(tmp_path
         assert (texts["narrative"].count("did not settle") > 0) == told
         assert texts["narrative"].count("did not settle") == lines.count(False)
         done = ekfsim("study", "tour", *cut, "--runs", 4)
-        assert ("readings the search for the most probable state did not settle" in done.out) == told, done.err
+        assert (
+            "readings the search for the most probable state did not settle" in done.out
+        ) == told, done.err

@@ -1,4 +1,5 @@
-"""Whatever a path leads to, or may not lead to: each option that takes one tells it in a line, with status 2."""
+"""Whatever a path leads to, or may not lead to: each option that takes one tells it in a line, with
+status 2."""
 
 import ctypes
 import os
@@ -13,10 +14,20 @@ WRITING = [  # {} is where a result is to go
     ("render short.yaml -o {}", "render short.yaml -o {}.gif"),
     ("run short.yaml -q --trace {}", "run short.yaml -q --csv {}", "run short.yaml -q --tum {}"),
     ("run short.yaml -q --summary {}", "record drive.yaml -o {}", "figures classroom -o {}"),
-    ("study short.yaml --runs 1 -o {}", "compare short.yaml --runs 1 --b guard=skip -o {}", "new {} --kind world"),
+    (
+        "study short.yaml --runs 1 -o {}",
+        "compare short.yaml --runs 1 --b guard=skip -o {}",
+        "new {} --kind world",
+    ),
 ]
 READING = [  # {} is what is to be read
-    ("run {}", "play {}", "check {}", "study {} --runs 1 -o out", "compare {} --runs 1 --b guard=skip"),
+    (
+        "run {}",
+        "play {}",
+        "check {}",
+        "study {} --runs 1 -o out",
+        "compare {} --runs 1 --b guard=skip",
+    ),
     ("run short.yaml --world {}", "study short.yaml --runs 1 -o out --world {}"),
     tuple(f"run {log}_log.yaml --log {{}}" for log in LOGS),
     ("figures gnss -o out --log {}", "figures pylon -o out --log {}"),
@@ -25,7 +36,10 @@ IN_FILES = {  # what stands in a file that names {}
     "scene.yaml": "world: '{}'\ncommands: [{{say: a}}]\n",
     "study.yaml": "study: '{}'\n",
     "other.yaml": "study: short.yaml\nworld: '{}'\n",
-    **{f"log_{log}.yaml": f"world: {log}.yaml\nrecording: {{{{format: {log}, path: '{{}}'}}}}\n" for log in LOGS},
+    **{
+        f"log_{log}.yaml": f"world: {log}.yaml\nrecording: {{{{format: {log}, path: '{{}}'}}}}\n"
+        for log in LOGS
+    },
 }
 ODD = os.fsdecode(b"b\xff\x1b\n")
 PLACES = {  # where nothing can be read nor written, and why
@@ -47,7 +61,9 @@ def place(tmp_path, monkeypatch):
         (folder / f"{log}.yaml").write_text(
             f"name: a\nsystem: {systems.get(log, log)}\nstart: {{x: 0, y: 0, theta: 0}}\n"
         )
-        (folder / f"{log}_log.yaml").write_text(f"world: {log}.yaml\nrecording: {{format: {log}, path: nowhere}}\n")
+        (folder / f"{log}_log.yaml").write_text(
+            f"world: {log}.yaml\nrecording: {{format: {log}, path: nowhere}}\n"
+        )
     (folder / "drive.yaml").write_text("world: gnss.yaml\ndrive: [{v: 1, for: 0.2}]\n")
     (folder / "locked").mkdir()
     (folder / "loop").symlink_to("loop")
@@ -60,7 +76,8 @@ def place(tmp_path, monkeypatch):
 
 @contextmanager
 def as_anybody():
-    """Without root's right to look everywhere, where root runs this: two capabilities of this thread are laid aside."""
+    """Without root's right to look everywhere, where root runs this: two capabilities of this
+    thread are laid aside."""
     if not hasattr(os, "geteuid"):
         pytest.skip("no rights to files here")
     if os.geteuid() != 0:
@@ -85,7 +102,9 @@ def as_anybody():
 def told(*words):
     """The one line that a refusal is told in."""
     how = ekfsim(*words)
-    lines = [line for line in (how.out + how.err).splitlines() if "and the world has none" not in line]
+    lines = [
+        line for line in (how.out + how.err).splitlines() if "and the world has none" not in line
+    ]
     assert (how.status, len(lines)) == (2, 1), (words, how)
     return lines[0]
 
@@ -108,7 +127,10 @@ def test_what_cannot_be_read_is_told(place, commands):
     for source, why in PLACES.items():
         for command in commands:
             line = told(*(word.format(source) for word in command.split()))
-            assert f"{source}: cannot be read: {why}" in line or (not why and source in line), (command, line)
+            assert f"{source}: cannot be read: {why}" in line or (not why and source in line), (
+                command,
+                line,
+            )
 
 
 @pytest.mark.parametrize("name", IN_FILES)
@@ -126,10 +148,17 @@ def test_what_is_there_and_may_not_be_read_is_told_in_a_line(place):
     (place / "mine.yaml").write_text("")
     (place / "mine.yaml").chmod(0)
     for source in ("locked", "mine.yaml"):
-        for words in ("run gnss_log.yaml --log", "figures gnss -o out --log", "study short.yaml --runs 1 -o", "list"):
+        for words in (
+            "run gnss_log.yaml --log",
+            "figures gnss -o out --log",
+            "study short.yaml --runs 1 -o",
+            "list",
+        ):
             assert source in told(*words.split(), source)
     for option in ("--trace", "--csv", "--summary"):
-        assert told("run", "short.yaml", "-q", option, "mine.yaml").startswith("ekfsim: mine.yaml: ")
+        assert told("run", "short.yaml", "-q", option, "mine.yaml").startswith(
+            "ekfsim: mine.yaml: "
+        )
 
 
 def test_list_tells_where_there_is_nothing_to_tell(place):
@@ -144,7 +173,19 @@ def test_names_of_odd_bytes_are_no_obstacle(place):
     odd = f"{ODD}short.yaml"
     for words in (
         ("check", odd, f"{ODD}world.yaml"),
-        ("run", odd, "--world", f"{ODD}world.yaml", "-q", "--trace", f"{ODD}/trace", "--tum", ODD, "--csv", f"{ODD}/c"),
+        (
+            "run",
+            odd,
+            "--world",
+            f"{ODD}world.yaml",
+            "-q",
+            "--trace",
+            f"{ODD}/trace",
+            "--tum",
+            ODD,
+            "--csv",
+            f"{ODD}/c",
+        ),
         ("run", odd, "-q", "--summary", f"{ODD}/summary"),
         ("render", odd, "-o", f"{ODD}/frames", "--every", "9"),
         ("render", odd, "-o", f"{ODD}/film.gif", "--every", "9"),
@@ -157,7 +198,8 @@ def test_names_of_odd_bytes_are_no_obstacle(place):
         how = ekfsim(*words)
         assert how.status == 0, (words, how)
         assert not set("\x1b\udcff") & set(how.out + how.err)
-        assert how.out.count("\\xff") == how.out.count("\\xff\\x1b\\x0a")  # no name goes on in another line
+        # no name goes on in another line
+        assert how.out.count("\\xff") == how.out.count("\\xff\\x1b\\x0a")
         assert "\n\n" not in how.err
 
 
@@ -165,8 +207,13 @@ def test_a_current_folder_that_was_deleted_is_told_as_such(place, monkeypatch):
     (place / "gone").mkdir()
     os.chdir(place / "gone")
     (place / "gone").rmdir()
-    for words in (["check", "a.yaml"], ["run", str(place / "short.yaml"), "-q", "--trace", "t"], ["new", "world.yaml"]):
+    for words in (
+        ["check", "a.yaml"],
+        ["run", str(place / "short.yaml"), "-q", "--trace", "t"],
+        ["new", "world.yaml"],
+    ):
         assert "the current folder was deleted; go to another" in told(*words)
     out = place / "pictures"
-    assert ekfsim("render", place / "short.yaml", "-o", out, "--every", "9").status == 0  # it needs no current folder
+    # it needs no current folder
+    assert ekfsim("render", place / "short.yaml", "-o", out, "--every", "9").status == 0
     assert out.is_dir()

@@ -13,7 +13,7 @@ from contextlib import suppress
 import pytest
 from program import LONG, PATIENCE, ekfsim, ended, lay_out, left_in, process, started, wait_for
 
-from ekfsim.views.png import SIGNATURE
+from ekfsim.views.film.png import SIGNATURE
 
 if sys.platform == "win32":
     pytest.skip("the terminals of this test are POSIX ones", allow_module_level=True)
@@ -99,7 +99,9 @@ def test_help_and_unknown_keys():
 def test_s_saves_a_picture_and_never_over_another(place):
     said = told(b"nsss", "--out", "a/b")
     saved = ["view-0001.png", "view-0001-2.png", "view-0001-3.png"]
-    assert [line for line in said.splitlines() if line.startswith("Saved")] == [f"Saved a/b/{name}" for name in saved]
+    assert [line for line in said.splitlines() if line.startswith("Saved")] == [
+        f"Saved a/b/{name}" for name in saved
+    ]
     assert sorted(left_in(place / "a/b")) == sorted(saved)
     picture = (place / "a/b/view-0001.png").read_bytes()
     assert picture.startswith(SIGNATURE)
@@ -158,7 +160,10 @@ def test_files_where_none_can_be(place):
 def test_a_window_without_a_display():
     played = ekfsim("play", "short.yaml", "--show", "window")
     assert (played.status, played.out) == (2, "")
-    assert played.err == "ekfsim: there is no display to open a window on; --show text draws in the terminal\n"
+    assert (
+        played.err
+        == "ekfsim: there is no display to open a window on; --show text draws in the terminal\n"
+    )
 
 
 def test_auto_without_a_display_draws_characters_without_colours():
@@ -175,7 +180,8 @@ def test_ascii_where_braille_cannot_be_printed():
 
 
 @pytest.mark.parametrize(
-    ("columns", "lines"), [("20", "5"), ("1", "1"), ("0", "0"), ("-3", "x"), ("", ""), ("999999999", "999999999")]
+    ("columns", "lines"),
+    [("20", "5"), ("1", "1"), ("0", "0"), ("-3", "x"), ("", ""), ("999999999", "999999999")],
 )
 def test_any_size_of_the_terminal_is_lived_with(monkeypatch, columns, lines):
     monkeypatch.setenv("COLUMNS", columns)
@@ -184,7 +190,9 @@ def test_any_size_of_the_terminal_is_lived_with(monkeypatch, columns, lines):
     assert shown.count("\n==>") == 1
     assert len(shown) < 1_000_000
     if columns in ("20", "1"):
-        assert max(len(line) for line in shown.splitlines() if PICTURE.search(line) or "…" in line) <= int(columns)
+        assert max(
+            len(line) for line in shown.splitlines() if PICTURE.search(line) or "…" in line
+        ) <= int(columns)
 
 
 def test_a_reader_who_has_seen_enough_is_no_failure(place):
@@ -206,7 +214,8 @@ class Terminal:
         self.shown = ""
         self.running = started(
             *args, stdin=self.its, stdout=self.its, stderr=self.its, start_new_session=True,
-            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0), env={**os.environ, "TERM": "xterm", **environment},
+            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0), env={**os.environ,
+            "TERM": "xterm", **environment},
         )  # fmt: skip
 
     def press(self, keys):
@@ -250,7 +259,9 @@ def test_keys_typed_ahead_in_a_terminal_wait_their_turn():
 
 
 def test_a_small_terminal_without_colours():
-    terminal = Terminal("play", "short.yaml", "--show", "text", columns=20, rows=5, NO_COLOR="1", TERM="dumb")
+    terminal = Terminal(
+        "play", "short.yaml", "--show", "text", columns=20, rows=5, NO_COLOR="1", TERM="dumb"
+    )
     terminal.press(b"nq")
     assert terminal.status() == 0
     assert "\x1b" not in terminal.shown

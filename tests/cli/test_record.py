@@ -27,16 +27,31 @@ def test_a_drive_recorded_and_run_again_is_the_same(place):
     assert ended.out == "log: a gnss log; run the filter on it with --log\n"
     assert left_in(place / "log") == ["about.txt", "gnss.csv", "groundtruth.csv", "wheelspeeds.csv"]
     assert "commands drive.yaml" in (place / "log" / "about.txt").read_text()
-    for args in (("drive.yaml", "--trace", "run"), ("logged.yaml", "--log", "log", "--trace", "again")):
+    for args in (
+        ("drive.yaml", "--trace", "run"),
+        ("logged.yaml", "--log", "log", "--trace", "again"),
+    ):
         assert ekfsim("run", *args, "--quiet").status == 0
     assert posteriors(place / "again") == pytest.approx(posteriors(place / "run"), abs=1e-9)
 
 
 def test_a_log_says_nothing_of_the_faults_nor_of_a_truth_that_the_filter_is_not_told(place):
-    (place / "world.yaml").write_text(LAWN + "belief: {robot: {speedDensity: 0.2}, sensors: {gnss: {sigma: 0.3}}}\n")
-    secret = ("robot.turnDensity=7", "sensors.gnss.sigma=0.7", "faults.leftScale=1.1", "faults.sensors.gnss.xBias=7")
+    (place / "world.yaml").write_text(
+        LAWN + "belief: {robot: {speedDensity: 0.2}, sensors: {gnss: {sigma: 0.3}}}\n"
+    )
+    secret = (
+        "robot.turnDensity=7",
+        "sensors.gnss.sigma=0.7",
+        "faults.leftScale=1.1",
+        "faults.sensors.gnss.xBias=7",
+    )
     set_secretly = [word for text in secret for word in ("--set", text)]
-    assert ekfsim("record", "drive.yaml", "-o", "log", "--set", "belief.start.x=1", *set_secretly).status == 0
+    assert (
+        ekfsim(
+            "record", "drive.yaml", "-o", "log", "--set", "belief.start.x=1", *set_secretly
+        ).status
+        == 0
+    )
     about = (place / "log" / "about.txt").read_text()
     assert "belief.start.x=1" in about
     assert not any(text in about for text in secret)
@@ -48,9 +63,19 @@ def test_a_log_says_nothing_of_the_faults_nor_of_a_truth_that_the_filter_is_not_
     assert faulty["groundtruth.csv"] == sound["groundtruth.csv"]
     told = "robot.speedDensity=0.2", "robot.turnDensity=7", "sensors.gnss.sigma=0.3"
     (place / "world.yaml").write_text(LAWN)
-    assert ekfsim("run", "logged.yaml", "--log", "log", "-q", "--trace", "one", *set_of(told)).status == 0
-    (place / "world.yaml").write_text(LAWN + "belief: {robot: {speedDensity: 0.2}, sensors: {gnss: {sigma: 0.3}}}\n")
-    assert ekfsim("run", "logged.yaml", "--log", "log", "-q", "--trace", "two", *set_of(told[1:2])).status == 0
+    assert (
+        ekfsim("run", "logged.yaml", "--log", "log", "-q", "--trace", "one", *set_of(told)).status
+        == 0
+    )
+    (place / "world.yaml").write_text(
+        LAWN + "belief: {robot: {speedDensity: 0.2}, sensors: {gnss: {sigma: 0.3}}}\n"
+    )
+    assert (
+        ekfsim(
+            "run", "logged.yaml", "--log", "log", "-q", "--trace", "two", *set_of(told[1:2])
+        ).status
+        == 0
+    )
     assert posteriors(place / "one") == posteriors(place / "two")
 
 
@@ -83,14 +108,20 @@ def test_a_log_that_exists_is_refused_without_force(place):
 def test_a_classroom_and_a_log_are_not_recorded(place):
     ekfsim("record", "drive.yaml", "-o", "log")
     (place / "world.yaml").write_text(WORLD)
-    (place / "drive.yaml").write_text("world: world.yaml\ncommands: [move: {distance: 1, angle: 0}]\n")
+    (place / "drive.yaml").write_text(
+        "world: world.yaml\ncommands: [move: {distance: 1, angle: 0}]\n"
+    )
     ended = ekfsim("record", "drive.yaml", "-o", "out")
     assert (ended.status, ended.out) == (2, "")
-    assert ended.err.startswith("ekfsim: drive.yaml: the classroom has no clock and cannot be recorded; runs of ")
+    assert ended.err.startswith(
+        "ekfsim: drive.yaml: the classroom has no clock and cannot be recorded; runs of "
+    )
     (place / "world.yaml").write_text(LAWN)
     ended = ekfsim("record", "logged.yaml", "--log", "log", "-o", "out")
     assert ended.status == 2
-    assert ended.err.endswith("ekfsim: logged.yaml: is a recorded log already; name a simulated drive\n")
+    assert ended.err.endswith(
+        "ekfsim: logged.yaml: is a recorded log already; name a simulated drive\n"
+    )
     assert not (place / "out").exists()
 
 
@@ -103,4 +134,6 @@ def test_a_log_that_is_wrong_is_told_with_its_place(place):
     (place / "log" / "gnss.csv").unlink()
     ended = ekfsim("run", "logged.yaml", "--log", "log")
     assert (ended.status, ended.out) == (2, "")
-    assert ended.err == "ekfsim: log: no file 'gnss*.csv' in it; it would hold the satellite fixes\n"
+    assert (
+        ended.err == "ekfsim: log: no file 'gnss*.csv' in it; it would hold the satellite fixes\n"
+    )

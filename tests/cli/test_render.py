@@ -4,10 +4,22 @@ import os
 import signal
 
 import pytest
-from program import LONG, MEASURED, SHORT, WORLD, ekfsim, ended, lay_out, left_in, process, started, wait_for
+from program import (
+    LONG,
+    MEASURED,
+    SHORT,
+    WORLD,
+    ekfsim,
+    ended,
+    lay_out,
+    left_in,
+    process,
+    started,
+    wait_for,
+)
 
-from ekfsim.views import lettering
-from ekfsim.views.png import SIGNATURE
+from ekfsim.views.film.png import SIGNATURE
+from ekfsim.views.picture import lettering
 
 PUT_IN = ["long.yaml", "short.yaml", "world.yaml"]
 FRAMES = [f"frame-{number:04}.png" for number in range(5)]
@@ -38,14 +50,22 @@ def test_signs_that_no_font_has_are_told(place, monkeypatch):
     drawn = ekfsim("render", "short.yaml", "-o", "frames")
     assert drawn.status == 0
     right = "install one that has them, such as Noto Sans CJK or Noto Emoji"
-    assert drawn.err == f"ekfsim: no font here has 書, 桌, 完: in the picture □ stands for each; {right}\n"
+    assert (
+        drawn.err
+        == f"ekfsim: no font here has 書, 桌, 完: in the picture □ stands for each; {right}\n"
+    )
     lettering._has_glyph.cache_clear()
 
 
 def test_every_n_th_and_the_last(place):
-    assert ekfsim("render", "short.yaml", "-o", "frames", "--every", "3").out == "frames: 3 pictures\n"
+    assert (
+        ekfsim("render", "short.yaml", "-o", "frames", "--every", "3").out == "frames: 3 pictures\n"
+    )
     assert pictures(place / "frames") == [FRAMES[0], FRAMES[3], FRAMES[4]]
-    assert ekfsim("render", "short.yaml", "-o", "one.gif", "--every", "99").out == "one.gif: 2 pictures\n"
+    assert (
+        ekfsim("render", "short.yaml", "-o", "one.gif", "--every", "99").out
+        == "one.gif: 2 pictures\n"
+    )
     assert (place / "one.gif").read_bytes()[:6] == b"GIF89a"
 
 
@@ -72,7 +92,10 @@ def test_a_folder_that_a_link_leads_to_is_filled(place):
 @pytest.mark.parametrize(
     ("out", "why"),
     [
-        ("foreign", "foreign: holds 'thesis.tex', which is no result of ekfsim; choose another folder"),
+        (
+            "foreign",
+            "foreign: holds 'thesis.tex', which is no result of ekfsim; choose another folder",
+        ),
         ("here", "here: cannot be written: Too many levels of symbolic links"),
         (".", ".: this is the current folder; name a new one"),
         ("world.yaml", "world.yaml: '.yaml' is no kind of picture; "),
@@ -136,11 +159,15 @@ def test_the_names_of_files_reach_the_pictures_whatever_they_hold(place):
 def test_memory_does_not_grow_with_the_scenario(place):
     peaks = []
     for times in (10, 6000):
-        (place / "long.yaml").write_text(LONG.replace("20000", str(times)).replace("{sense: {angle: 0}}, ", "say: n, "))
+        (place / "long.yaml").write_text(
+            LONG.replace("20000", str(times)).replace("{sense: {angle: 0}}, ", "say: n, ")
+        )
         (place / "long.yaml").write_text(
             f"world: world.yaml\ncommands: [{{repeat: {{times: {times}, commands: [say: n]}}}}]"
         )
-        drawn = process("render", "long.yaml", "-o", f"{times}.gif", "--every", "1000", program=MEASURED)
+        drawn = process(
+            "render", "long.yaml", "-o", f"{times}.gif", "--every", "1000", program=MEASURED
+        )
         assert drawn.status == 0
         peaks.append(int(drawn.err))
     assert peaks[1] < peaks[0] + 6000  # kB
@@ -187,11 +214,25 @@ def test_files_are_drawn_whatever_backend_of_windows_the_settings_name(place):
         (place / name).write_text(settings)
     drawn = process(keys=DRAWING.encode(), program=EACH)
     assert [int(line) for line in drawn.out.splitlines() if line.isdigit()] == [0, 0, 0, 2, 2, 0, 2]
-    assert drawn.err == 3 * "ekfsim: world.yaml: this is a file; name a folder\n"  # what is asked when all can be drawn
-    for result in ("frames/frame-0000.png", "frames.gif", "again/frame-0000.png", "out/current.png"):
+    # what is asked when all can be drawn
+    assert drawn.err == 3 * "ekfsim: world.yaml: this is a file; name a folder\n"
+    for result in (
+        "frames/frame-0000.png",
+        "frames.gif",
+        "again/frame-0000.png",
+        "out/current.png",
+    ):
         assert (place / result).exists()
 
 
 def test_a_home_that_cannot_be_written_is_no_matter(place):
-    told = process("render", "short.yaml", "-o", "out", HOME="/proc/nowhere", XDG_CONFIG_HOME="", XDG_CACHE_HOME="")
+    told = process(
+        "render",
+        "short.yaml",
+        "-o",
+        "out",
+        HOME="/proc/nowhere",
+        XDG_CONFIG_HOME="",
+        XDG_CACHE_HOME="",
+    )
     assert (told.status, told.err) == (0, "")

@@ -8,7 +8,7 @@ import pytest
 from program import LONG, MEASURED, SHORT, WORLD, ekfsim, lay_out, left_in, process
 
 from ekfsim.filters import FILTERS
-from ekfsim.views.lettering import wrapped
+from ekfsim.views.picture.lettering import wrapped
 
 BREAKS = "\r\x85"  # to YAML the end of a line, as \n
 CONTROLS = sorted({chr(code) for code in [*range(32), *range(127, 160)]} - {*"\t\n"})
@@ -38,7 +38,9 @@ def test_a_run_tells_its_commands_and_one_verdict():
     narrative = told("short.yaml")
     assert narrative.count("==>") == 3
     assert "==>The end.\n" in narrative
-    assert [line for line in narrative.splitlines() if line.startswith("Verdict: ")] == [narrative.splitlines()[-1]]
+    assert [line for line in narrative.splitlines() if line.startswith("Verdict: ")] == [
+        narrative.splitlines()[-1]
+    ]
 
 
 def test_quiet_leaves_the_closing_summary():
@@ -69,7 +71,10 @@ def test_every_option_stands_in_the_first_line(option, value, said):
 
 
 def test_another_seed_and_another_run_are_other_draws():
-    runs = [told("short.yaml", "-q", *more) for more in ([], ["--seed", "1"], ["--run", "1"], ["--run", "1025"])]
+    runs = [
+        told("short.yaml", "-q", *more)
+        for more in ([], ["--seed", "1"], ["--run", "1"], ["--run", "1025"])
+    ]
     assert len(set(runs)) == 4
 
 
@@ -93,14 +98,18 @@ def test_a_gate_of_the_file_is_put_off(place):
 
 
 def test_a_guard_leaves_ambiguous_beams_out(place):
-    (place / "corner.yaml").write_text("world: world.yaml\ncommands: [{sense: {angle: 26}}]")  # past the desk's corner
+    # past the desk's corner
+    (place / "corner.yaml").write_text("world: world.yaml\ncommands: [{sense: {angle: 26}}]")
     assert "This beam is ambiguous" in told("corner.yaml")
     assert "This beam is ambiguous" not in told("corner.yaml", "--guard", "off")
     assert "not used (1 left out by the guard)" in told("corner.yaml", "--guard", "skip")
 
 
 def test_confidence_scales_the_ellipse():
-    sizes = [trace("short.yaml", "--confidence", p)[1]["ellipse"]["major"] for p in (1e-6, 0.5, 0.954, 0.999999)]
+    sizes = [
+        trace("short.yaml", "--confidence", p)[1]["ellipse"]["major"]
+        for p in (1e-6, 0.5, 0.954, 0.999999)
+    ]
     assert sizes == sorted(sizes)
     assert sizes[3] / sizes[1] == pytest.approx(20**0.5 * 0.998, abs=0.02)  # √(ln 10⁻⁶ / ln ½)
 
@@ -123,7 +132,11 @@ def test_a_world_named_on_the_command_line_wins(place):
         *(("--seed", value) for value in ("-1", "1.5", "x", "", "4294967296", "9" * 40)),
         *(("--run", value) for value in ("-1", "1e3", str(2**63), "9" * 40)),
         ("--guard", "perhaps"),
-        *((option, value) for option in ("--trace", "--csv", "--summary", "--tum") for value in ("", "-")),
+        *(
+            (option, value)
+            for option in ("--trace", "--csv", "--summary", "--tum")
+            for value in ("", "-")
+        ),
     ],
 )
 def test_a_value_that_cannot_be_is_refused_by_name(place, option, value):
@@ -137,7 +150,9 @@ def test_a_value_that_cannot_be_is_refused_by_name(place, option, value):
 def test_an_unknown_filter_is_told_with_the_known_ones():
     ended = ekfsim("run", "short.yaml", "--filter", "oracle")
     assert (ended.status, ended.out) == (2, "")
-    assert ended.err.startswith(f"ekfsim: --filter oracle: there is no such filter; known: {', '.join(FILTERS)}")
+    assert ended.err.startswith(
+        f"ekfsim: --filter oracle: there is no such filter; known: {', '.join(FILTERS)}"
+    )
 
 
 @pytest.mark.parametrize(
@@ -145,12 +160,23 @@ def test_an_unknown_filter_is_told_with_the_known_ones():
     [
         (["nowhere.yaml"], "ekfsim: nowhere.yaml: no such file"),
         (["shrot.yaml"], "ekfsim: shrot.yaml: no such file; did you mean 'short.yaml'?"),
-        (["nowhere"], "ekfsim: 'nowhere' is neither a file nor one of the packaged commands; see `ekfsim list`"),
-        (["touur"], "ekfsim: 'touur' is neither a file nor one of the packaged commands; did you mean 'tour'?"),
+        (
+            ["nowhere"],
+            "ekfsim: 'nowhere' is neither a file nor one of the packaged commands; see `ekfsim "
+            "list`",
+        ),
+        (
+            ["touur"],
+            "ekfsim: 'touur' is neither a file nor one of the packaged commands; did you mean "
+            "'tour'?",
+        ),
         (["."], "ekfsim: .: is a folder; name a file in it"),
         (["/dev/null"], "/dev/null:1:1: the file is empty"),
         (["world.yaml"], "world.yaml:1:1: this is a world file: it has no 'commands'"),
-        (["short.yaml", "--world", "short.yaml"], "short.yaml:1:1: this is a commands file; name a world file here"),
+        (
+            ["short.yaml", "--world", "short.yaml"],
+            "short.yaml:1:1: this is a commands file; name a world file here",
+        ),
         (["short.yaml", "--world", "nowhere.yaml"], "ekfsim: nowhere.yaml: no such file"),
         (["short.yaml", "--world", "/dev/null"], "/dev/null:1:1: the file is empty"),
         (["bytes.yaml"], "bytes.yaml:1:1: the byte 0xff is not UTF-8"),
@@ -182,7 +208,9 @@ def test_all_mistakes_of_both_files_come_at_once(place):
 
 def test_the_narrative_holds_no_control_characters(place):
     for char in sorted(set(CONTROLS) - {*BREAKS}):
-        world = WORLD.replace("lab", json.dumps(f"l{char}b")).replace("desk", json.dumps(f"d{char}k"))
+        world = WORLD.replace("lab", json.dumps(f"l{char}b")).replace(
+            "desk", json.dumps(f"d{char}k")
+        )
         (place / "world.yaml").write_text(world)
         (place / "short.yaml").write_text(SHORT.replace("The end.", json.dumps(f"The {char} end.")))
         ended = ekfsim("run", "short.yaml")
@@ -199,10 +227,16 @@ def test_nor_does_another_line_break(place, char):
 
 @pytest.mark.parametrize("sign", ["\u202e", "\u2066", "\u200b", "\ufeff", "\u2060", "\U000e0041"])
 def test_nor_do_signs_that_turn_or_hide_what_stands_around_them(place, sign):
-    (place / "world.yaml").write_text(WORLD.replace("lab", json.dumps(f"l{sign}b")).replace("desk", f"d{sign}k"))
+    (place / "world.yaml").write_text(
+        WORLD.replace("lab", json.dumps(f"l{sign}b")).replace("desk", f"d{sign}k")
+    )
     (place / "short.yaml").write_text(SHORT.replace("The end.", json.dumps(f"gnp.{sign}exe")))
     (place / f"{sign}.yaml").write_text(SHORT)
-    for told in (ekfsim("run", "short.yaml"), ekfsim("run", f"{sign}.yaml"), ekfsim("check", f"no{sign}.yaml")):
+    for told in (
+        ekfsim("run", "short.yaml"),
+        ekfsim("run", f"{sign}.yaml"),
+        ekfsim("check", f"no{sign}.yaml"),
+    ):
         assert sign not in told.out + told.err
     assert sign not in "".join(wrapped([f"gnp.{sign}exe"], 40, 1))
 
@@ -212,7 +246,10 @@ def test_no_line_that_a_file_says_is_taken_for_one_of_ours(place):
     (place / "short.yaml").write_text(SHORT.replace("The end.", json.dumps(said)))
     lines = ekfsim("run", "short.yaml").out.splitlines()
     at = lines.index("==>One.")
-    assert lines[at + 1 : at + 3] == ["   ==>The robot moved: distance=1, angle=0", "   Verdict: lost"]
+    assert lines[at + 1 : at + 3] == [
+        "   ==>The robot moved: distance=1, angle=0",
+        "   Verdict: lost",
+    ]
     assert len([line for line in lines if line.startswith("Verdict:")]) == 1
 
 
@@ -258,8 +295,12 @@ def test_warnings_leave_standard_output_to_the_narrative(place):
 def test_memory_does_not_grow_with_the_run(place):
     peaks = []
     for times in (200, 4000):
-        (place / "long.yaml").write_text(LONG.replace("20000", str(times)).replace("{sense: {angle: 0}}, ", ""))
-        ended = process("run", "long.yaml", "--trace", f"{times}.jsonl", after=">/dev/null", program=MEASURED)
+        (place / "long.yaml").write_text(
+            LONG.replace("20000", str(times)).replace("{sense: {angle: 0}}, ", "")
+        )
+        ended = process(
+            "run", "long.yaml", "--trace", f"{times}.jsonl", after=">/dev/null", program=MEASURED
+        )
         assert ended.status == 0
         assert len((place / f"{times}.jsonl").read_bytes().splitlines()) == times + 1
         peaks.append(int(ended.err))

@@ -24,7 +24,10 @@ def told(*args):
 
 
 def test_the_first_filter_is_narrated_and_all_are_summed_up():
-    alone, several = told("run", "short.yaml", "--filter", "ukf"), told("run", "short.yaml", "--filter", "ukf, ekf")
+    alone, several = (
+        told("run", "short.yaml", "--filter", "ukf"),
+        told("run", "short.yaml", "--filter", "ukf, ekf"),
+    )
     narrative, _, _ = alone.partition("The run is over")
     same, over, table = several.partition("The run is over")
     assert same == narrative.replace("filter ukf,", "filter ukf,ekf,")
@@ -32,11 +35,16 @@ def test_the_first_filter_is_narrated_and_all_are_summed_up():
     lines = table.splitlines()
     assert lines[0] == " after 3 commands; 2 filters side by side (RMSE in m, degrees):"
     assert [line.split()[0] for line in lines[1:5]] == ["filter", "ukf", "ekf", "odometry"]
-    assert lines[1].split() == ["filter", "updates", "position", "heading", "ΣNIS", "99", "%", "band", "last", "NEES",
+    assert lines[1].split() == ["filter", "updates", "position", "heading", "ΣNIS", "99", "%",
+    "band", "last", "NEES",
                                 "verdict"]  # fmt: skip
     assert lines[5] == ""
     for name, line in zip(("ukf", "ekf"), lines[6:], strict=True):
-        verdict = told("run", "short.yaml", "-q", "--filter", name).splitlines()[-1].removeprefix("Verdict: ")
+        verdict = (
+            told("run", "short.yaml", "-q", "--filter", name)
+            .splitlines()[-1]
+            .removeprefix("Verdict: ")
+        )
         assert line == f"{name}: {verdict}"
 
 
@@ -47,7 +55,9 @@ def test_quiet_leaves_the_table():
 
 
 def test_the_table_holds_the_numbers_of_each_filters_summary(place):
-    rows = told("run", "diverge-01-wrong-wall", "-q", "--filter", "ekf,ukf", "--summary", "s.json").splitlines()[2:]
+    rows = told(
+        "run", "diverge-01-wrong-wall", "-q", "--filter", "ekf,ukf", "--summary", "s.json"
+    ).splitlines()[2:]
     for name, row in zip(("ekf", "ukf"), rows, strict=False):
         summary = json.loads((place / f"s.{name}.json").read_text())
         assert summary["filter"] == name
@@ -69,7 +79,9 @@ def test_each_filter_has_files_of_its_own_and_they_are_those_it_has_alone(place)
     for name in ("ekf", "ukf"):
         told("run", "short.yaml", "-q", "--filter", name, *files, "--force")
         for stem, end in (("s", ".json"), ("t", ".jsonl"), ("table", ""), ("tum/estimate", ".tum")):
-            assert (place / f"{stem}.{name}{end}").read_bytes() == (place / f"{stem}{end}").read_bytes()
+            assert (place / f"{stem}.{name}{end}").read_bytes() == (
+                place / f"{stem}{end}"
+            ).read_bytes()
     assert (place / "tum/truth.ekf.tum").read_text().split("\n")[1:] == (
         (place / "tum/truth.ukf.tum").read_text().split("\n")[1:]
     )
@@ -79,7 +91,10 @@ def test_files_of_several_filters_appear_together_or_not_at_all(place):
     (place / "t.ukf.jsonl").write_text("mine")
     ended = ekfsim("run", "short.yaml", "--filter", "ekf,ukf", "--trace", "t.jsonl")
     assert (ended.status, ended.out) == (2, "")
-    assert ended.err == "ekfsim: t.ukf.jsonl: exists already; choose another name, or replace it with --force\n"
+    assert (
+        ended.err
+        == "ekfsim: t.ukf.jsonl: exists already; choose another name, or replace it with --force\n"
+    )
     assert left_in(place) == sorted([*INPUTS, "t.ukf.jsonl"])
 
 
@@ -101,7 +116,10 @@ def test_what_is_no_list_of_filters_is_refused(place, command, filters, line):
 def test_a_result_on_standard_output_is_of_one_filter_only():
     ended = ekfsim("run", "short.yaml", "--filter", "ekf,ukf", "--trace", "/dev/stdout")
     assert (ended.status, ended.out) == (2, "")
-    assert ended.err == "ekfsim: /dev/stdout: holds the result of one filter only; name a file, or one filter\n"
+    assert (
+        ended.err
+        == "ekfsim: /dev/stdout: holds the result of one filter only; name a file, or one filter\n"
+    )
 
 
 @pytest.mark.parametrize("show", ["text", "files"])
@@ -112,9 +130,21 @@ def test_an_interactive_run_shows_all_and_sums_all_up(place, show):
     assert ended.out.count("u ukf") == (5 if show == "text" else 0)
     assert told("run", *args[:3]).rpartition("The run is over")[2] in ended.out
     if show == "files":
-        alone = ekfsim("play", "short.yaml", "--filter", "ekf", "--show", show, "--out", "alone", keys=b"nnnnnq")
+        alone = ekfsim(
+            "play",
+            "short.yaml",
+            "--filter",
+            "ekf",
+            "--show",
+            show,
+            "--out",
+            "alone",
+            keys=b"nnnnnq",
+        )
         assert alone.status == 0
-        assert (place / "out/current.png").read_bytes() != (place / "alone/current.png").read_bytes()
+        assert (place / "out/current.png").read_bytes() != (
+            place / "alone/current.png"
+        ).read_bytes()
 
 
 def test_pictures_tell_which_filters_they_show(place):
@@ -127,4 +157,7 @@ def test_driven_and_recorded_robots_have_several_filters_too():
     lines = told("run", "gnss", "-q", "--filter", "ekf,ukf").splitlines()
     assert [line.split()[0] for line in lines[1:]] == ["filter", "ekf", "ukf", "odometry"]
     assert ekfsim("record", "gnss", "--filter", "ekf,ukf", "-o", "log").status == 0
-    assert told("run", "gnss_log", "-q", "--filter", "ekf,ukf", "--log", "log").splitlines()[2:4] == lines[2:4]
+    assert (
+        told("run", "gnss_log", "-q", "--filter", "ekf,ukf", "--log", "log").splitlines()[2:4]
+        == lines[2:4]
+    )

@@ -12,17 +12,29 @@ from pathlib import Path
 
 import pytest
 import yaml
-from program import COMMAND, SHORT, WORLD, ekfsim, ended, lay_out, left_in, process, started, wait_for
+from program import (
+    COMMAND,
+    SHORT,
+    WORLD,
+    ekfsim,
+    ended,
+    lay_out,
+    left_in,
+    process,
+    started,
+    wait_for,
+)
 
 from ekfsim.errors import RunError, UsageError
-from ekfsim.files.load_study import read_request
+from ekfsim.files.scenes.load_study import read_request
 from ekfsim.filters import FILTERS
 from ekfsim.geometry import backend
 from ekfsim.study import engines, journal
 from ekfsim.study.plan import Plan
-from ekfsim.views import study_folder
+from ekfsim.views.study import folder as study_folder
 
-FOLDER = ["commands.yaml", "coverage.png", "divergence.png", "nees.png", "steps.csv", "study.yaml", "summary.csv",
+FOLDER = ["commands.yaml", "coverage.png", "divergence.png", "nees.png", "steps.csv", "study.yaml",
+    "summary.csv",
           "world.yaml"]  # fmt: skip
 MANY = """\
 world: world.yaml
@@ -53,19 +65,41 @@ def test_a_study_leaves_a_folder_and_says_what_is_to_be_thought_of_it(place):
     assert (told.status, told.err) == (0, "")
     assert left_in(place / "out") == FOLDER
     (row,) = rows("out/summary.csv")
-    assert (row["filter"], row["runs"], row["step"], row["seed"], row["guard"]) == ("ekf", "1500", "3", "0", "warn")
+    assert (row["filter"], row["runs"], row["step"], row["seed"], row["guard"]) == (
+        "ekf",
+        "1500",
+        "3",
+        "0",
+        "warn",
+    )
     lines = told.out.splitlines()
     assert lines[0].startswith("short.yaml: 1500 runs of seed 0, at the last step")
-    assert " ".join(lines[2].split()).startswith("filter position heading > 50 % > 95 % > 99.9 % ellipse cone lost NIS")
+    assert " ".join(lines[2].split()).startswith(
+        "filter position heading > 50 % > 95 % > 99.9 % ellipse cone lost NIS"
+    )
     lean = "" if row["decided"] == "1" else "leans "
     assert lines[5].startswith(f"ekf: {lean}{row['verdict']} at the end")
     cells = lines[3].split()
-    assert [line.partition(" %")[0].strip() for line in lines[6:9]] == [cells[3], cells[6], cells[8]]
+    assert [line.partition(" %")[0].strip() for line in lines[6:9]] == [
+        cells[3],
+        cells[6],
+        cells[8],
+    ]
     played = "ekfsim play short.yaml --seed 0 --run"
     assert lines[9].startswith(f"  NIS is {float(row['nis_mean']):.3g} per number read")
-    assert " lie beyond the χ² 99.9 % quantile at step 2, the most of 2 steps with more than 2 %" in lines[11]
-    assert (row["on_the_way"], row["from_step"], row["to_step"], row["from_t"]) == ("over-confident", "2", "3", "")
-    assert lines[12].startswith(f"  the worst run: {played} {row['worst_run']} --filter ekf  # its last NEES is ")
+    assert (
+        " lie beyond the χ² 99.9 % quantile at step 2, the most of 2 steps with more than 2 %"
+        in lines[11]
+    )
+    assert (row["on_the_way"], row["from_step"], row["to_step"], row["from_t"]) == (
+        "over-confident",
+        "2",
+        "3",
+        "",
+    )
+    assert lines[12].startswith(
+        f"  the worst run: {played} {row['worst_run']} --filter ekf  # its last NEES is "
+    )
     assert lines[13] == f"  a typical run: {played} {row['typical_run']} --filter ekf"
     steps = rows("out/steps.csv")
     assert [step["step"] for step in steps] == ["0", "1", "2", "3"]
@@ -83,18 +117,34 @@ def test_a_first_look_needs_no_folder(place):
 
 
 def test_of_many_rows_the_table_is_enough(place):
-    told = ekfsim("study", "short.yaml", "--runs", 2, "--sweep", "gate=0.5,0.6,0.7,0.8", "--sweep", "guard=off,skip")
+    told = ekfsim(
+        "study",
+        "short.yaml",
+        "--runs",
+        2,
+        "--sweep",
+        "gate=0.5,0.6,0.7,0.8",
+        "--sweep",
+        "guard=off,skip",
+    )
     assert sum("over-c" in line for line in told.out.splitlines()) == told.out.count("\n0.") == 8
     _, first, second = told.out.splitlines()[11:]
     assert (
-        first == "What each verdict rests on, and the worst and a typical run of each row, stand in summary.csv (-o)."
+        first
+        == "What each verdict rests on, and the worst and a typical run of each row, stand in "
+        "summary.csv (-o)."
     )
     assert second.startswith("the worst run: ekfsim play short.yaml --seed 0 --run ")
 
 
 def test_the_same_study_writes_the_same_bytes_wherever_it_runs():
     for out, more in (("one", ()), ("two", ("--workers", 2)), ("three", ())):
-        assert ekfsim("study", "short.yaml", "--runs", 2500, "--filter", "ekf,ukf", *more, "-o", out).status == 0
+        assert (
+            ekfsim(
+                "study", "short.yaml", "--runs", 2500, "--filter", "ekf,ukf", *more, "-o", out
+            ).status
+            == 0
+        )
     assert tables("one") == tables("two") == tables("three")
 
 
@@ -104,14 +154,25 @@ def test_no_table_holds_a_date_or_a_path(place):
         assert ekfsim("study", place / "short.yaml", "--runs", 10, "-o", out).status == 0
     assert tables("a")["summary.csv"] == tables("sub/b")["summary.csv"]
     assert tables("a")["steps.csv"] == tables("sub/b")["steps.csv"]
-    text = b"".join(tables("a")[name] for name in ("summary.csv", "steps.csv", "study.yaml")).decode()
+    text = b"".join(
+        tables("a")[name] for name in ("summary.csv", "steps.csv", "study.yaml")
+    ).decode()
     assert "/" not in text.replace("`ekfsim study study.yaml -o FOLDER` makes", "")
     assert time.strftime("%Y") not in text
 
 
 def test_a_studys_own_file_repeats_it(place):
-    sweep = ("--sweep", "noise.rangeSigmaRatio=1e-2,0.05", "--sweep", "guard=off,skip", "--set", "belief.sigma.x=0.2")
-    told = ekfsim("study", "short.yaml", "--runs", 300, "--seed", 9, "--filter", "ukf,kf", *sweep, "-o", "out")
+    sweep = (
+        "--sweep",
+        "noise.rangeSigmaRatio=1e-2,0.05",
+        "--sweep",
+        "guard=off,skip",
+        "--set",
+        "belief.sigma.x=0.2",
+    )
+    told = ekfsim(
+        "study", "short.yaml", "--runs", 300, "--seed", 9, "--filter", "ukf,kf", *sweep, "-o", "out"
+    )
     assert told.status == 0
     assert yaml.safe_load((place / "out/study.yaml").read_text())["seed"] == 9
     shutil.move("world.yaml", "gone.yaml")  # the folder holds all that it needs
@@ -131,7 +192,9 @@ def test_a_sweep_is_a_grid_with_a_row_for_each_cell_and_filter():
     assert told.status == 0
     found = rows("out/summary.csv")
     keys = [(row["noise.rangeSigmaRatio"], row["gate"], row["filter"]) for row in found]
-    assert keys == [(r, g, f) for r in ("0.01", "0.3") for g in ("off", "0.5") for f in ("ekf", "ukf")]
+    assert keys == [
+        (r, g, f) for r in ("0.01", "0.3") for g in ("off", "0.5") for f in ("ekf", "ukf")
+    ]
     assert float(found[0]["position_rmse"]) < float(found[4]["position_rmse"])
     assert "ekfsim play short.yaml --seed 0 --run " in told.out
     assert "--set noise.rangeSigmaRatio=0.01 --set gate=off" in told.out  # of the worst
@@ -143,7 +206,15 @@ def test_the_worst_run_is_the_one_that_play_shows(place):
     (row,) = rows("out/summary.csv")
     last = []
     for run in range(40):
-        options = ("--run", run, "--set", "noise.rangeSigmaRatio=0.003", "--summary", f"{run}.json", "-q")
+        options = (
+            "--run",
+            run,
+            "--set",
+            "noise.rangeSigmaRatio=0.003",
+            "--summary",
+            f"{run}.json",
+            "-q",
+        )
         assert ekfsim("run", "few.yaml", *options).status == 0
         summary = json.loads((place / f"{run}.json").read_text())
         assert summary["set"] == "noise.rangeSigmaRatio=0.003"
@@ -155,11 +226,26 @@ def test_the_worst_run_is_the_one_that_play_shows(place):
 
 @pytest.mark.parametrize("name", ["mower", "pioneer", "gnss", "pylon"])
 def test_the_other_systems_are_studied_too(place, name):
-    drive = {"mower": "path: circle, radius: 2", "pioneer": "path: square, side: 1", "pylon": "path: square, side: 2"}
+    drive = {
+        "mower": "path: circle, radius: 2",
+        "pioneer": "path: square, side: 1",
+        "pylon": "path: square, side: 2",
+    }
     world = Path(__file__).resolve().parents[2] / "worlds" / f"{name}.yaml"
     way = drive.get(name, "path: circle, radius: 1")
     (place / "drive.yaml").write_text(f"world: {world}\nseed: 3\ndrive: {{{way}}}\n")
-    told = ekfsim("study", "drive.yaml", "--runs", 5, "--sweep", "robot.rate=10,20", "--filter", "ekf,ukf", "-o", "out")
+    told = ekfsim(
+        "study",
+        "drive.yaml",
+        "--runs",
+        5,
+        "--sweep",
+        "robot.rate=10,20",
+        "--filter",
+        "ekf,ukf",
+        "-o",
+        "out",
+    )
     assert (told.status, told.err) == (0, "")
     found = rows("out/summary.csv")
     assert len(found) == 4
@@ -178,35 +264,46 @@ def test_a_recording_is_refused(command):
     ("options", "line"),
     [
         (["--sweep", "noise.rangeSigmaRato=1,2"],
-         "--sweep noise.rangeSigmaRato=1: unknown key 'rangeSigmaRato'; did you mean 'noise.rangeSigmaRatio'?"),
+         "--sweep noise.rangeSigmaRato=1: unknown key 'rangeSigmaRato'; did you mean "
+         "'noise.rangeSigmaRatio'?"),
         (["--sweep", "nose.rangeSigmaRatio=1,2"],
-         "--sweep nose.rangeSigmaRatio=1: unknown key 'nose'; did you mean 'noise.rangeSigmaRatio'?"),
+         "--sweep nose.rangeSigmaRatio=1: unknown key 'nose'; did you mean "
+         "'noise.rangeSigmaRatio'?"),
         (["--sweep", "noise=1"],
          "--sweep noise=1: 'noise' is no single value; write e.g. noise.executionDstSigmaRatio"),
         (["--sweep", "noise.rangeSigmaRatio=0.1,-1"],
          "--sweep noise.rangeSigmaRatio=-1: -1 is negative; write a number of 0 or more"),
         (["--sweep", "noise.rangeSigmaRatio=0.1,much"],
-         "--sweep noise.rangeSigmaRatio=much: 'much' is text where a number belongs; write e.g. 0.01"),
+         "--sweep noise.rangeSigmaRatio=much: 'much' is text where a number belongs; write e.g. "
+         "0.01"),
         (["--sweep", "start.x=0,2.5"],
-         "--sweep start.x=2.5: the robot starts at [2.5, 0], inside the obstacle 'desk' or on its wall; "
+         "--sweep start.x=2.5: the robot starts at [2.5, 0], inside the obstacle 'desk' or on its "
+         "wall; "
          "start it where it can move"),
-        (["--sweep", "guard=jump"], "--sweep guard=jump: 'jump' is not known here; write off, warn or skip"),
-        (["--sweep", "gate=2"], "--sweep gate=2: 2 is not strictly between 0 and 1; write e.g. 0.99"),
+        (["--sweep", "guard=jump"], "--sweep guard=jump: 'jump' is not known here; write off, "
+                                    "warn or skip"),
+        (["--sweep", "gate=2"], "--sweep gate=2: 2 is not strictly between 0 and 1; write e.g. "
+                                "0.99"),
         (["--sweep", "noise.rangeSigmaRatio=0.1,0.10"],
          "--sweep noise.rangeSigmaRatio=0.10: the value stands twice; delete one"),
-        (["--sweep", "noise.rangeSigmaRatio"], "--sweep noise.rangeSigmaRatio: this is no KEY=VALUE,VALUE,…; "
+        (["--sweep", "noise.rangeSigmaRatio"], "--sweep noise.rangeSigmaRatio: this is no "
+                                               "KEY=VALUE,VALUE,…; "
          "write e.g. --sweep noise.rangeSigmaRatio=0.01,0.02,0.05"),
-        (["--set", "gate"], "--set gate: this is no KEY=VALUE; write e.g. --set noise.rangeSigmaRatio=0.02"),
-        (["--gate", "0.9", "--sweep", "gate=0.5"], "--sweep gate=0.5: 'gate' is told already by --gate 0.9; "
+        (["--set", "gate"], "--set gate: this is no KEY=VALUE; write e.g. --set "
+                            "noise.rangeSigmaRatio=0.02"),
+        (["--gate", "0.9", "--sweep", "gate=0.5"],
+         "--sweep gate=0.5: 'gate' is told already by --gate 0.9; "
          "keep one of them"),
         (["--set", "robot.rate=3"], "--set robot.rate=3: the classroom's robot is told by 'noise'; "
          "delete 'robot', or write e.g. system: mower"),
         (["--set", "belief.missing=desk"], "--set belief.missing=desk: 'belief.missing' is a list; "
          "only single values can be set, e.g. noise.rangeSigmaRatio"),
-        (["--set", "start.x.y=3"], "--set start.x.y=3: 'start.x' is one value and holds no 'y'; write start.x"),
+        (["--set", "start.x.y=3"], "--set start.x.y=3: 'start.x' is one value and holds no 'y'; "
+                                   "write start.x"),
         (["--filter", "ekf,ufk"], "--filter ufk: there is no such filter; did you mean 'ukf'?"),
         (["--filter", "ekf,ekf"], "--filter ekf,ekf: 'ekf' stands twice; delete one"),
-        (["--sweep", "noise.rangeSigmaRatio=" + ",".join(map(str, range(5001))), "--filter", "ekf,ukf"],
+        (["--sweep", "noise.rangeSigmaRatio=" + ",".join(map(str, range(5001))), "--filter",
+        "ekf,ukf"],
          "the table would have 10002 rows, more than 10000; sweep fewer values"),
         (["--workers", 2, "--cluster", "tcp://127.0.0.1:9"],
          "--workers: a cluster has its own; leave this out, or --cluster"),
@@ -234,7 +331,12 @@ guard: skip
 
 def test_a_study_file_is_overruled_by_options(place):
     (place / "s.yaml").write_text(STUDY)
-    assert ekfsim("study", "s.yaml", "--runs", 20, "--filter", "ekf", "--guard", "off", "-o", "out").status == 0
+    assert (
+        ekfsim(
+            "study", "s.yaml", "--runs", 20, "--filter", "ekf", "--guard", "off", "-o", "out"
+        ).status
+        == 0
+    )
     found = rows("out/summary.csv")
     assert [(row["noise.rangeSigmaRatio"], row["runs"], row["guard"]) for row in found] == [
         ("0.01", "20", "off"),
@@ -246,23 +348,31 @@ def test_a_study_file_is_overruled_by_options(place):
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [
-        ("runs: 100", "runs: 0", "s.yaml:2:7: runs: 0 is too small; write a whole number of 1 or more"),
+        ("runs: 100", "runs: 0", "s.yaml:2:7: runs: 0 is too small; write a whole number of 1 or "
+                                 "more"),
         ("runs: 100", "run: 100", "s.yaml:2:1: unknown key 'run'; did you mean 'runs'?"),
-        ("[ekf, ukf]", "[ekf, ufk]", f"s.yaml:3:10: filters: 'ufk' is no filter; known: {', '.join(FILTERS)}"),
-        ("0.05]", "[1]]", "s.yaml:5:33: sweep.noise.rangeSigmaRatio[1]: a list stands where a number or a word "
+        ("[ekf, ukf]", "[ekf, ufk]", f"s.yaml:3:10: filters: 'ufk' is no filter; known: "
+                                     f"{', '.join(FILTERS)}"),
+        ("0.05]", "[1]]", "s.yaml:5:33: sweep.noise.rangeSigmaRatio[1]: a list stands where a "
+                          "number or a word "
          "belongs; write e.g. 0.02"),
-        ("[0.01, 0.05]", "0.05", "s.yaml:5:26: sweep.noise.rangeSigmaRatio: 0.05 is a number where a list belongs; "
+        ("[0.01, 0.05]", "0.05", "s.yaml:5:26: sweep.noise.rangeSigmaRatio: 0.05 is a number "
+                                 "where a list belongs; "
          "write e.g. [0.005, 0.01, 0.02]"),
         ("0.05]", "-0.05]", "s.yaml:5:33: sweep.noise.rangeSigmaRatio[1]: -0.05 is negative; "
          "write a number of 0 or more"),
-        ("noise.rangeSigmaRatio", "noise.rangeSigma", "s.yaml:5:3: sweep: unknown key 'rangeSigma'; "
+        ("noise.rangeSigmaRatio", "noise.rangeSigma",
+         "s.yaml:5:3: sweep: unknown key 'rangeSigma'; "
          "did you mean 'noise.rangeSigmaRatio'?"),
-        ("belief.sigma.x: 0.1", "guard: off", "s.yaml:7:1: guard: 'guard' is told already by 'set.guard'; "
+        ("belief.sigma.x: 0.1", "guard: off", "s.yaml:7:1: guard: 'guard' is told already by "
+                                              "'set.guard'; "
          "keep one of them"),
-        ("0.05]", "0.01]", "s.yaml:5:33: sweep.noise.rangeSigmaRatio[1]: 0.01 stands twice; delete one"),
+        ("0.05]", "0.01]", "s.yaml:5:33: sweep.noise.rangeSigmaRatio[1]: 0.01 stands twice; "
+                           "delete one"),
         ("study: short.yaml", "study: shrt.yaml", "s.yaml:1:8: study: shrt.yaml: no such file; "
          "did you mean 'short.yaml'?"),
-        ("guard: skip", "guard: jump", "s.yaml:7:8: guard: 'jump' is not known here; write off, warn or skip"),
+        ("guard: skip", "guard: jump", "s.yaml:7:8: guard: 'jump' is not known here; write off, "
+                                       "warn or skip"),
     ],
 )  # fmt: skip
 def test_a_mistake_in_a_study_file_has_its_place(place, old, new, line):
@@ -278,7 +388,8 @@ def test_a_folder_that_is_there_is_refused_before_anything_runs(place):
     told = ekfsim("study", "many.yaml", "--runs", 10**9, "-o", "out")
     assert (told.status, told.err) == (
         2,
-        "ekfsim: out: the folder is not empty; choose another, or replace what it holds with --force\n",
+        "ekfsim: out: the folder is not empty; choose another, or replace what it holds with "
+        "--force\n",
     )
     told = ekfsim("study", "many.yaml", "--runs", 10**9, "-o", "out", "--force")
     assert told.status == 2
@@ -308,7 +419,12 @@ def whole(tmp_path_factory):
     """What the study is that nothing ended early."""
     folder = lay_out(tmp_path_factory.mktemp("whole"))
     (folder / "many.yaml").write_text(MANY)
-    assert process("study", folder / "many.yaml", "--runs", 20 * 1024, "--workers", 2, "-o", folder / "out").status == 0
+    assert (
+        process(
+            "study", folder / "many.yaml", "--runs", 20 * 1024, "--workers", 2, "-o", folder / "out"
+        ).status
+        == 0
+    )
     return tables(folder / "out")
 
 
@@ -350,7 +466,8 @@ def test_a_killed_study_goes_on_and_leaves_no_worker_behind(place, whole, worker
     refused = process(*BLOCKS)
     assert (refused.status, refused.err) == (
         2,
-        "ekfsim: out.partial: holds what was done of a study that did not end; go on with --resume, "
+        "ekfsim: out.partial: holds what was done of a study that did not end; go on with "
+        "--resume, "
         "or begin anew with --force\n",
     )
     check_resumed(whole, "--workers", 2)
@@ -358,7 +475,10 @@ def test_a_killed_study_goes_on_and_leaves_no_worker_behind(place, whole, worker
 
 def test_an_interrupt_while_workers_begin_is_a_line(place):
     running = started(*BLOCKS, "--workers", 2, start_new_session=True)
-    wait_for(lambda: any(b"spawn_main" in command_of(child) for child in children_of(running.pid)), running)
+    wait_for(
+        lambda: any(b"spawn_main" in command_of(child) for child in children_of(running.pid)),
+        running,
+    )
     os.killpg(running.pid, signal.SIGINT)
     told = ended(running)
     assert (told.status, told.err) == (130, "ekfsim: interrupted\n")
@@ -437,7 +557,9 @@ def test_another_study_is_not_gone_on_with(place, monkeypatch):
         changed.setattr(journal, "PACKAGE", place)  # another program of the same version
         told = ekfsim(*BLOCKS, "--resume")
         assert told.status == 2
-        assert told.err.startswith("ekfsim: out.partial: was begun by a program that was not this one to the letter, ")
+        assert told.err.startswith(
+            "ekfsim: out.partial: was begun by a program that was not this one to the letter, "
+        )
     (place / "world.yaml").write_text(WORLD.replace("0.05", "0.06"))
     assert "the world file was another" in ekfsim(*BLOCKS, "--resume").err
     (place / "many.yaml").write_text(SHORT)
@@ -450,7 +572,11 @@ def test_another_study_is_not_gone_on_with(place, monkeypatch):
 def test_resume_without_a_journal_starts_from_nothing(place):
     told = ekfsim("study", "short.yaml", "--runs", 5, "--resume", "-o", "out")
     assert told.status == 0
-    assert told.err == "ekfsim: out.partial: nothing is kept there to go on with; this is a study from the beginning\n"
+    assert (
+        told.err
+        == "ekfsim: out.partial: nothing is kept there to go on with; this is a study from the "
+        "beginning\n"
+    )
     assert left_in(place / "out") == FOLDER
 
 
@@ -475,7 +601,11 @@ def test_two_at_one_place_are_one_too_many(place):
     kill(running)
     for told in refused:
         assert told.status == 2
-        assert told.err == "ekfsim: out.partial: another study is at work there; wait for it, or choose another name\n"
+        assert (
+            told.err
+            == "ekfsim: out.partial: another study is at work there; wait for it, or choose "
+            "another name\n"
+        )
     assert done.read_bytes().startswith(b'{"journal":')  # not even --force touched it
 
 
@@ -527,5 +657,7 @@ def test_a_fast_study_says_the_same(place):
 
 def test_a_fast_study_without_numba_says_what_to_install(monkeypatch):
     monkeypatch.setattr(backend, "compiles", lambda: False)
-    with pytest.raises(UsageError, match=r"--fast needs Numba; install it with: pip install 'ekfsim\[fast\]'"):
+    with pytest.raises(
+        UsageError, match=r"--fast needs Numba; install it with: pip install 'ekfsim\[fast\]'"
+    ):
         Plan.of(replace(read_request("tour"), fast=True))

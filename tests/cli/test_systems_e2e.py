@@ -1,4 +1,5 @@
-"""The other documents' systems as a user of the program meets them: drives and hand-written logs, from end to end."""
+"""The other documents' systems as a user of the program meets them: drives and hand-written logs,
+from end to end."""
 
 import json
 import math
@@ -26,7 +27,21 @@ STATES = {
     "gnss": ["v", "phi", "x", "y"],
     "pylon": ["xdot", "x", "ydot", "y", "thetadot", "theta", "theta_prev"],
 }
-STEP = {"type", "t", "sensor", "z", "predicted", "innovation", "S", "H", "gain", "nis", "updated", "state", "prior"}
+STEP = {
+    "type",
+    "t",
+    "sensor",
+    "z",
+    "predicted",
+    "innovation",
+    "S",
+    "H",
+    "gain",
+    "nis",
+    "updated",
+    "state",
+    "prior",
+}
 STEP |= {"posterior", "truth", "nees"}
 STAMP = 1_582_766_482 << 32  # of a pylon log: seconds above, microseconds below
 UNIX = 1_248_444_187.156  # s
@@ -34,35 +49,45 @@ LOGS = {
     "gnss": {
         "wheelspeeds.csv": "time,vr,vl\n" + "".join(f"{k / 10:.1f},0.5,0.5\n" for k in range(21)),
         "gnss.csv": "t,x,y\n0.5,0.3,0.1\n1,0.45,-0.1\n1.5,0.8,0.05\n",
-        "groundtruth.csv": "t,x,y,phi\n" + "".join(f"{k / 10:.1f},{k / 20:.2f},0,0\n" for k in range(21)),
+        "groundtruth.csv": "t,x,y,phi\n"
+        + "".join(f"{k / 10:.1f},{k / 20:.2f},0,0\n" for k in range(21)),
     },
     "pylon": {
         "walk.csv": "".join(
-            f"5,{5 - k / 100:.2f},-0.3,{STAMP + 100_000 * k},34.1,-117.7,0,0,0,0.1,0,0,\n" for k in range(20)
+            f"5,{5 - k / 100:.2f},-0.3,{STAMP + 100_000 * k},34.1,-117.7,0,0,0,0.1,0,0,\n"
+            for k in range(20)
         )
     },
     "mrclam": {
-        "Robot1_Odometry.dat": "# t v w\n" + "".join(f"{UNIX + k / 10:.3f} 0.5 0\n" for k in range(21)),
-        "Robot1_Measurement.dat": f"# t barcode r b\n{UNIX + 0.45:.3f} 63 3.8 0.26\n{UNIX + 1:.3f} 63 3.6 0.28\n"
+        "Robot1_Odometry.dat": "# t v w\n"
+        + "".join(f"{UNIX + k / 10:.3f} 0.5 0\n" for k in range(21)),
+        "Robot1_Measurement.dat": f"# t barcode r b\n{UNIX + 0.45:.3f} 63 3.8 "
+        f"0.26\n{UNIX + 1:.3f} 63 3.6 0.28\n"
         f"{UNIX + 1:.3f} 5 1 1\n",
-        "Robot1_Groundtruth.dat": "# t x y o\n" + "".join(f"{UNIX + k / 10:.3f} {k / 20} 0 0\n" for k in range(21)),
+        "Robot1_Groundtruth.dat": "# t x y o\n"
+        + "".join(f"{UNIX + k / 10:.3f} {k / 20} 0 0\n" for k in range(21)),
         "Barcodes.dat": "# subject barcode\n1 5\n6 63\n",
         "Landmark_Groundtruth.dat": "# subject x y sx sy\n6 4 1 0 0\n",
     },
     "ranges": {
-        "odometry.csv": "t,distance,dheading\n" + "".join(f"{k / 10:.1f},0.05,0\n" for k in range(1, 21)),
+        "odometry.csv": "t,distance,dheading\n"
+        + "".join(f"{k / 10:.1f},0.05,0\n" for k in range(1, 21)),
         "ranges.csv": "t,antenna,node,range\n0.5,1,2,4.4\n1,1,3,7.1\n",
         "nodes.csv": "node,x,y\n2,4,1\n3,-6,1\n",
-        "groundtruth.csv": "t,x,y,heading\n" + "".join(f"{k / 10:.1f},{k / 20},0,0\n" for k in range(21)),
+        "groundtruth.csv": "t,x,y,heading\n"
+        + "".join(f"{k / 10:.1f},{k / 20},0,0\n" for k in range(21)),
     },
     "pioneer": {
-        "odometry.csv": "t,left,right\n0,0,0\n" + "".join(f"{k / 10:.1f},0.05,0.05\n" for k in range(1, 21)),
+        "odometry.csv": "t,left,right\n0,0,0\n"
+        + "".join(f"{k / 10:.1f},0.05,0.05\n" for k in range(1, 21)),
         "ultrasonic.csv": "t,beam,range\n0.5,2,1.02\n1,0,1.49\n1,2,0.99\n",
-        "groundtruth.csv": "t,x,y,heading\n" + "".join(f"{k / 10:.1f},{k / 20},0,0\n" for k in range(21)),
+        "groundtruth.csv": "t,x,y,heading\n"
+        + "".join(f"{k / 10:.1f},{k / 20},0,0\n" for k in range(21)),
     },
     "mower": {
         "marker-001-poselog.txt": "".join(
-            f"{k} 0 {k / 100} 0.005 0.005 0 0 0 0 {'0 ' * 9}{(k - 1) / 200} 0 0\n" for k in range(1, 101)
+            f"{k} 0 {k / 100} 0.005 0.005 0 0 0 0 {'0 ' * 9}{(k - 1) / 200} 0 0\n"
+            for k in range(1, 101)
         ),
         "marker-001-003-angles.txt": "0.495 0 0.27 -0.06\n0.995 1 -0.4 -0.06\n",
         "marker-001-map.txt": "0 4 1\n1 4 -1.5\n",
@@ -82,7 +107,8 @@ def place(tmp_path, monkeypatch):
     for name, files in LOGS.items():
         (tmp_path / f"{name}-log").mkdir()
         (tmp_path / f"{name}_log.yaml").write_text(
-            f"world: {SYSTEM_OF[name]}-world.yaml\nrecording: {{format: {name}, path: {name}-log}}\n"
+            f"world: {SYSTEM_OF[name]}-world.yaml\nrecording: {{format: {name}, path: "
+            f"{name}-log}}\n"
         )
         for file, text in files.items():
             (tmp_path / f"{name}-log" / file).write_text(text)
@@ -110,7 +136,18 @@ def lines(path):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_every_output_of_a_run(place, name):
-    out = said("run", f"{name}.yaml", "--trace", "a.jsonl", "--csv", "a.csv", "--tum", "tum", "--summary", "a.json")
+    out = said(
+        "run",
+        f"{name}.yaml",
+        "--trace",
+        "a.jsonl",
+        "--csv",
+        "a.csv",
+        "--tum",
+        "tum",
+        "--summary",
+        "a.json",
+    )
     start, *steps = lines(place / "a.jsonl")
     state = STATES.get(name.removesuffix("_log"), ["x", "y", "theta"])
     assert (start["type"], start["state"], len(start["mean"])) == ("start", state, len(state))
@@ -125,7 +162,10 @@ def test_every_output_of_a_run(place, name):
     for step in readings:
         assert len(step["z"]) == len(step["predicted"]) == len(step["H"]) == len(step["gain"][0])
     assert len((place / "a.csv").read_text().splitlines()) == len(steps) + 2
-    poses = [[*map(float, row.split())] for row in (place / "tum/estimate.tum").read_text().splitlines()[2:]]
+    poses = [
+        [*map(float, row.split())]
+        for row in (place / "tum/estimate.tum").read_text().splitlines()[2:]
+    ]
     assert all(math.hypot(*pose[6:]) == pytest.approx(1) for pose in poses)
     assert all(before[0] < after[0] for before, after in pairwise(poses))
     unknown = "# the log does not tell the truth\n" in (place / "tum/truth.tum").read_text()
@@ -133,8 +173,14 @@ def test_every_output_of_a_run(place, name):
     summary = json.loads((place / "a.json").read_text())
     assert summary["steps"] == len(steps)
     assert summary["updates"] == sum(step["updated"] for step in readings)
-    assert (summary["position"]["rmse"] is None) == (summary["nees"]["last"] is None) == (name == "pylon_log")
-    assert re.search(r"^The run is over after \d+ motion inputs and \d+ readings over [12]", out, re.M)
+    assert (
+        (summary["position"]["rmse"] is None)
+        == (summary["nees"]["last"] is None)
+        == (name == "pylon_log")
+    )
+    assert re.search(
+        r"^The run is over after \d+ motion inputs and \d+ readings over [12]", out, re.M
+    )
     assert "nan" not in out
     assert "odometry alone" not in out
 
@@ -145,7 +191,10 @@ def test_every_filter_and_a_gate(name, filter):
     if filter == "kf-nominal" and name.endswith("_log"):
         told = ekfsim("run", f"{name}.yaml", "--filter", filter)
         assert (told.status, told.out) == (2, "")
-        wrong = "kf-nominal: a recording does not tell the way that was planned, which it is linearised about"
+        wrong = (
+            "kf-nominal: a recording does not tell the way that was planned, which it is "
+            "linearised about"
+        )
         assert told.err.endswith(f"ekfsim: {name}.yaml: {wrong}; take kf or ekf\n")
         return
     out = said("run", f"{name}.yaml", "--filter", filter, "--gate", "0.999")
@@ -153,7 +202,9 @@ def test_every_filter_and_a_gate(name, filter):
     assert out.splitlines()[-1].startswith("Verdict: ")
 
 
-OTHERWISE = {(name, reading) for name in ("mower", "pylon") for reading in ("printed", "coded")} | {("gnss", "coded")}
+OTHERWISE = {(name, reading) for name in ("mower", "pylon") for reading in ("printed", "coded")} | {
+    ("gnss", "coded")
+}
 
 
 @pytest.mark.parametrize("reading", READINGS)
@@ -182,7 +233,9 @@ def test_a_play_goes_forth_and_back(name):
     assert out.count("==>") >= 2
     assert out.count("<==Back at view") == 3
     assert " s: the start in " in out
-    assert ekfsim("play", f"{name}.yaml", "--show", "text", keys=b"999n").out.count("\nVerdict: ") == 1
+    assert (
+        ekfsim("play", f"{name}.yaml", "--show", "text", keys=b"999n").out.count("\nVerdict: ") == 1
+    )
 
 
 def test_times_are_told_since_the_start_and_traced_as_stamped(place):
@@ -200,7 +253,9 @@ def test_times_are_told_since_the_start_and_traced_as_stamped(place):
 
 @pytest.mark.parametrize("name", ["mower", "pioneer_log", "pylon_log", "ranges"])
 def test_pictures_of_a_run(place, name):
-    assert said("render", f"{name}.yaml", "-o", "pictures", "--every", "20").startswith("pictures: ")
+    assert said("render", f"{name}.yaml", "-o", "pictures", "--every", "20").startswith(
+        "pictures: "
+    )
     pictures = sorted((place / "pictures").iterdir())
     assert len({picture.read_bytes() for picture in pictures}) == len(pictures) > 1
     said("play", f"{name}.yaml", "--show", "files", "-o", "shown", keys=b"nns")
@@ -210,14 +265,38 @@ def test_pictures_of_a_run(place, name):
 @pytest.mark.parametrize(
     ("args", "told"),
     [
-        (["gnss_log.yaml", "--log", "pylon-log"], "ekfsim: pylon-log: no file 'wheelspeeds*.csv' in it; "),
-        (["gnss_log.yaml", "--log", "nowhere"], "ekfsim: nowhere: no such folder; name the one that holds "),
-        (["gnss_log.yaml", "--log", "gnss.yaml"], "ekfsim: gnss.yaml: is a file; name the folder that holds "),
-        (["pylon_log.yaml", "--log", "gnss-log"], "ekfsim: gnss-log: several files '*.csv' in it: "),
-        (["pylon_log.yaml", "--log", "gnss-log/gnss.csv"], "gnss-log/gnss.csv:1:1: 3 columns stand in this row; "),
-        (["gnss.yaml", "--log", "gnss-log"], "gnss.yaml:3:8: drive: the file has 'drive', not a recording; "),
-        (["gnss_log.yaml", "--world", "mower-world.yaml"], "gnss_log.yaml:2:21: recording.format: a 'gnss' log is of "),
-        (["gnss.yaml", "--filter", "lkf"], "ekfsim: --filter lkf: there is no such filter; did you mean 'kf'?"),
+        (
+            ["gnss_log.yaml", "--log", "pylon-log"],
+            "ekfsim: pylon-log: no file 'wheelspeeds*.csv' in it; ",
+        ),
+        (
+            ["gnss_log.yaml", "--log", "nowhere"],
+            "ekfsim: nowhere: no such folder; name the one that holds ",
+        ),
+        (
+            ["gnss_log.yaml", "--log", "gnss.yaml"],
+            "ekfsim: gnss.yaml: is a file; name the folder that holds ",
+        ),
+        (
+            ["pylon_log.yaml", "--log", "gnss-log"],
+            "ekfsim: gnss-log: several files '*.csv' in it: ",
+        ),
+        (
+            ["pylon_log.yaml", "--log", "gnss-log/gnss.csv"],
+            "gnss-log/gnss.csv:1:1: 3 columns stand in this row; ",
+        ),
+        (
+            ["gnss.yaml", "--log", "gnss-log"],
+            "gnss.yaml:3:8: drive: the file has 'drive', not a recording; ",
+        ),
+        (
+            ["gnss_log.yaml", "--world", "mower-world.yaml"],
+            "gnss_log.yaml:2:21: recording.format: a 'gnss' log is of ",
+        ),
+        (
+            ["gnss.yaml", "--filter", "lkf"],
+            "ekfsim: --filter lkf: there is no such filter; did you mean 'kf'?",
+        ),
     ],
 )
 def test_a_log_of_another_kind_is_refused_in_a_line(place, args, told):
@@ -238,7 +317,9 @@ def test_a_log_without_readings_says_so(place):
     (place / "gnss-log" / "gnss.csv").write_text("t,x,y\n")
     ended = ekfsim("run", "gnss_log.yaml", "-q")
     assert ended.status == 0
-    assert ended.err == "ekfsim: gnss-log: no reading is left: the filter follows the motion alone\n"
+    assert (
+        ended.err == "ekfsim: gnss-log: no reading is left: the filter follows the motion alone\n"
+    )
     assert "Verdict: no evidence" in ended.out
 
 
@@ -246,7 +327,10 @@ def test_two_robots_in_a_folder_are_not_guessed_between(place):
     (place / "mrclam-log" / "Robot2_Odometry.dat").write_text("")
     ended = ekfsim("run", "mrclam_log.yaml")
     assert (ended.status, ended.out) == (2, "")
-    assert "mrclam_log.yaml:2:35: recording.path: mrclam-log: several files 'Robot*_Odometry.dat' in it" in ended.err
+    assert (
+        "mrclam_log.yaml:2:35: recording.path: mrclam-log: several files 'Robot*_Odometry.dat' in "
+        "it" in ended.err
+    )
 
 
 def test_a_refused_reading_is_told_with_its_reason(place):

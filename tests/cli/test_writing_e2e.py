@@ -8,7 +8,16 @@ from pathlib import Path
 import pytest
 from program import ekfsim, ended, lay_out, left_in, process, started, wait_for
 
-RESULTS = ("--trace", "out/trace.jsonl", "--csv", "out/table.csv", "--summary", "summary.json", "--tum", "tum/of/it")
+RESULTS = (
+    "--trace",
+    "out/trace.jsonl",
+    "--csv",
+    "out/table.csv",
+    "--summary",
+    "summary.json",
+    "--tum",
+    "tum/of/it",
+)
 PUT_IN = ["long.yaml", "short.yaml", "world.yaml"]
 full = pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
 STATUS_OF_OURS = '; exit "${PIPESTATUS[0]}"'
@@ -23,14 +32,17 @@ def place(tmp_path, monkeypatch):
 def half_done(place):
     """A run in the middle of its results."""
     running = started("run", "long.yaml", "-q", *RESULTS)
-    wait_for(lambda: any(file.stat().st_size > 0 for file in (place / "out").glob(".*.partial")), running)
+    wait_for(
+        lambda: any(file.stat().st_size > 0 for file in (place / "out").glob(".*.partial")), running
+    )
     return running
 
 
 @pytest.mark.parametrize(("number", "status"), [("SIGINT", 130), ("SIGTERM", 143), ("SIGHUP", 129)])
 def test_a_run_that_is_ended_leaves_nothing_behind(place, number, status):
     running = half_done(place)
-    for _ in range(3):  # the first counts; who presses Ctrl-C again does not disturb the cleaning up
+    # the first counts; who presses Ctrl-C again does not disturb the cleaning up
+    for _ in range(3):
         running.send_signal(getattr(signal, number))
     how = ended(running)
     assert how.status == status
@@ -42,7 +54,11 @@ def test_a_run_that_is_killed_leaves_no_result(place):
     running = half_done(place)
     running.kill()
     assert ended(running).status == -signal.SIGKILL
-    left = [Path(name).name for name in left_in(place) if (place / name).is_file() and name not in PUT_IN]
+    left = [
+        Path(name).name
+        for name in left_in(place)
+        if (place / name).is_file() and name not in PUT_IN
+    ]
     assert len(left) == 5
     assert all(name.startswith(".") and name.endswith(".partial") for name in left)
 
@@ -50,7 +66,16 @@ def test_a_run_that_is_killed_leaves_no_result(place):
 def test_results_come_whole_and_their_folders_are_made(place):
     assert ekfsim("run", "short.yaml", *RESULTS).status == 0
     assert left_in(place) == [
-        *("long.yaml", "out", "out/table.csv", "out/trace.jsonl", "short.yaml", "summary.json", "tum", "tum/of"),
+        *(
+            "long.yaml",
+            "out",
+            "out/table.csv",
+            "out/trace.jsonl",
+            "short.yaml",
+            "summary.json",
+            "tum",
+            "tum/of",
+        ),
         *("tum/of/it", "tum/of/it/estimate.tum", "tum/of/it/truth.tum", "world.yaml"),
     ]
 
@@ -59,7 +84,10 @@ def test_a_result_that_exists_stays_unless_it_is_to_be_replaced(place):
     (place / "summary.json").write_text("older")
     refused = ekfsim("run", "short.yaml", *RESULTS)
     assert (refused.status, refused.out) == (2, "")
-    assert refused.err == "ekfsim: summary.json: exists already; choose another name, or replace it with --force\n"
+    assert (
+        refused.err
+        == "ekfsim: summary.json: exists already; choose another name, or replace it with --force\n"
+    )
     assert left_in(place) == ["long.yaml", "short.yaml", "summary.json", "world.yaml"]
     assert (place / "summary.json").read_text() == "older"
     assert ekfsim("run", "short.yaml", *RESULTS, "--force").status == 0
@@ -70,13 +98,22 @@ def test_a_result_that_exists_stays_unless_it_is_to_be_replaced(place):
     ("args", "why"),
     [
         (["--trace", "a", "--csv", "a"], "a: named twice; give each result a file of its own"),
-        (["--trace", "a", "--csv", "./new/../a"], "a: named twice; give each result a file of its own"),
+        (
+            ["--trace", "a", "--csv", "./new/../a"],
+            "a: named twice; give each result a file of its own",
+        ),
         (
             ["--trace", "tum/truth.tum", "--tum", "tum"],
             "tum/truth.tum: named twice; give each result a file of its own",
         ),
-        (["--trace", "a", "--csv", "a/b"], "a: is to be a file and a folder; give each result a name of its own"),
-        (["--csv", "a", "--tum", "a"], "a: is to be a file and a folder; give each result a name of its own"),
+        (
+            ["--trace", "a", "--csv", "a/b"],
+            "a: is to be a file and a folder; give each result a name of its own",
+        ),
+        (
+            ["--csv", "a", "--tum", "a"],
+            "a: is to be a file and a folder; give each result a name of its own",
+        ),
         (["--trace", "."], ".: this is a folder; name a file"),
         (["--tum", "world.yaml"], "world.yaml/truth.tum: 'world.yaml' is no folder"),
         (["--csv", "world.yaml/a/b"], "world.yaml/a/b: 'world.yaml' is no folder"),
@@ -99,14 +136,20 @@ def test_where_no_result_can_be_none_is_written(place, args, why):
 def test_the_same_place_under_two_names_is_one(place):
     (place / "link").symlink_to(place)
     refused = ekfsim("run", "short.yaml", "--trace", "link/a", "--csv", place / "a")
-    assert (refused.status, refused.err) == (2, "ekfsim: link/a: named twice; give each result a file of its own\n")
+    assert (refused.status, refused.err) == (
+        2,
+        "ekfsim: link/a: named twice; give each result a file of its own\n",
+    )
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
 def test_a_folder_that_may_not_be_written(place):
     (place / "sealed").mkdir(mode=0o500)
     refused = ekfsim("run", "short.yaml", "--trace", "sealed/a")
-    assert (refused.status, refused.err) == (2, "ekfsim: sealed/a: cannot be written: Permission denied\n")
+    assert (refused.status, refused.err) == (
+        2,
+        "ekfsim: sealed/a: cannot be written: Permission denied\n",
+    )
 
 
 def test_a_result_may_go_where_the_narrative_goes():
@@ -173,7 +216,12 @@ def test_a_reader_who_has_seen_enough_is_no_failure(place, args):
 @pytest.mark.parametrize(("unbuffered", "written"), [("", [4]), ("1", [])])
 def test_the_trace_of_a_run_that_no_one_read_is_whole_or_absent(place, unbuffered, written):
     after = f"| true {STATUS_OF_OURS}"
-    assert process("run", "short.yaml", "--trace", "trace.jsonl", after=after, PYTHONUNBUFFERED=unbuffered).status == 0
+    assert (
+        process(
+            "run", "short.yaml", "--trace", "trace.jsonl", after=after, PYTHONUNBUFFERED=unbuffered
+        ).status
+        == 0
+    )
     assert [len(file.read_text().splitlines()) for file in place.glob("*.jsonl")] == written
 
 

@@ -26,4 +26,8 @@ class Kept(Album):
 
     def line(self, name, label, panel=0):
         """The line of a figure whose label begins so."""
-        return next(line for line in self.drawn[name].axes[panel].lines if str(line.get_label()).startswith(label))
+        return next(
+            line
+            for line in self.drawn[name].axes[panel].lines
+            if str(line.get_label()).startswith(label)
+        )

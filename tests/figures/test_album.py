@@ -20,7 +20,10 @@ def test_every_file_of_an_album_says_what_made_it(tmp_path):
     assert b"made by seed 7" in (tmp_path / "one.pdf").read_bytes()
     assert b"CreationDate" not in (tmp_path / "one.pdf").read_bytes()
     with (tmp_path / "two.csv").open() as file:
-        assert list(csv.reader(file)) == [["what", "how much", "made by"], ["error", "-1.5", "made by seed 7"]]
+        assert list(csv.reader(file)) == [
+            ["what", "how much", "made by"],
+            ["error", "-1.5", "made by seed 7"],
+        ]
     assert "made by seed 7" in (tmp_path / "captions.md").read_text()
 
 

@@ -1,4 +1,5 @@
-"""The figures of document 002: the display, the proofs, a divergence, σ_xθ, and the size of an ellipse."""
+"""The figures of document 002: the display, the proofs, a divergence, σ_xθ, and the size of an
+ellipse."""
 
 import csv
 import re
@@ -7,12 +8,12 @@ import numpy as np
 import pytest
 
 from ekfsim.figures.album import Album
-from ekfsim.figures.classroom import draw_classroom
-from ekfsim.figures.proofs import shipped
+from ekfsim.figures.classroom.document import draw_classroom
+from ekfsim.figures.classroom.proofs import shipped
 from ekfsim.localization import play
-from ekfsim.views import limits
-from ekfsim.views.frames import Frame
-from ekfsim.views.playback import views
+from ekfsim.views.picture import limits
+from ekfsim.views.picture.frames import Frame
+from ekfsim.views.terminal.playback import views
 
 
 class Kept(Album):
@@ -56,7 +57,8 @@ def test_every_proof_gives_what_was_expected(album):
         rows = list(csv.reader(file))[1:]
     assert {row[0] for row in rows} == {
         f"proof-{name}" for name in (
-            "no-noise", "turn-noise", "distance-noise", "heading-bends", "square-twice", "across-wall", "corner",
+            "no-noise", "turn-noise", "distance-noise", "heading-bends", "square-twice",
+            "across-wall", "corner",
             "two-beams", "dead-reckoning", "unsure-start", "coverage",
         )
     }  # fmt: skip
@@ -66,7 +68,8 @@ def test_every_proof_gives_what_was_expected(album):
             assert shares == pytest.approx([95.4, 95.4], abs=2)
         else:
             assert measured == expected
-    assert not any("|" in cell for row in rows for cell in row)  # it would end a cell of the captions
+    # it would end a cell of the captions
+    assert not any("|" in cell for row in rows for cell in row)
 
 
 def test_the_divergence_begins_with_the_beam_that_is_shown(album):
@@ -81,7 +84,11 @@ def test_the_divergence_begins_with_the_beam_that_is_shown(album):
     assert over[0] == step
     assert over[-1] == len(first.get_ydata()) - 1
     assert len(over) == over[-1] - over[0] + 1
-    bounds = {line.get_label(): line.get_ydata()[0] for line in nees.get_lines() if "χ²" in str(line.get_label())}
+    bounds = {
+        line.get_label(): line.get_ydata()[0]
+        for line in nees.get_lines()
+        if "χ²" in str(line.get_label())
+    }
     assert bounds == pytest.approx({"χ² 95 %": 7.815, "χ² 99.9 %": 16.266}, abs=1e-3)
     assert re.search(r"1000 runs 3\d\.\d % end lost", album.captions["divergence"])
 
@@ -97,7 +104,10 @@ def test_theta_shows_the_conditional_ellipses_far_apart_before_the_beam_and_toge
     assert apart[0] == pytest.approx(2 * 1.272, abs=0.005)
     assert apart[1] == pytest.approx(2 * 0.061, abs=0.005)
     close = album.drawn["theta"].axes[1]  # where the robot's own symbol covered them all
-    body, ellipse = (next(patch for patch in close.patches if patch.get_gid() == gid) for gid in ("body", "ellipse"))
+    body, ellipse = (
+        next(patch for patch in close.patches if patch.get_gid() == gid)
+        for gid in ("body", "ellipse")
+    )
     assert np.ptp(body.get_xy(), axis=0).max() < 0.5 * np.ptp(ellipse.get_xy(), axis=0).min()
     assert "the dashed and the dotted ellipse" in " ".join(album.captions["theta"].split())
 

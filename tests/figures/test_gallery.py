@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from ekfsim.consistency import Evidence
-from ekfsim.figures import gallery
 from ekfsim.figures.album import Album
-from ekfsim.figures.proofs import shipped
+from ekfsim.figures.classroom import gallery
+from ekfsim.figures.classroom.proofs import shipped
 from ekfsim.files.packaged import packaged
 from ekfsim.filters.belief import Refused
 from ekfsim.localization import play
@@ -47,13 +47,19 @@ def test_a_row_counts_what_each_run_alone_says(monkeypatch, name):
 
 def test_all_inputs_are_run_with_one_seed_and_stand_in_the_readme(monkeypatch, tmp_path):
     asked = []
-    monkeypatch.setattr(gallery, "row", lambda name, seed: asked.append((name, seed)) or [name, *["-"] * 9])
+    monkeypatch.setattr(
+        gallery, "row", lambda name, seed: asked.append((name, seed)) or [name, *["-"] * 9]
+    )
     gallery.draw_gallery(replace(shipped(DIVERGE[0]), seed=2), Album("gallery", "", tmp_path))
     assert asked == [(name, 2) for name in DIVERGE]
     with (tmp_path / "gallery.csv").open(encoding="utf-8") as file:
         found = list(csv.DictReader(file))
     assert [line["input"] for line in found] == DIVERGE
     assert all("seed 2, runs 0 to 999" in line["made by"] for line in found)
-    told = re.findall(r"^\| (\S+) \|.*\| ([\d.]+) \[([\d.]+), ([\d.]+)\] \|", README.read_text(encoding="utf-8"), re.M)
+    told = re.findall(
+        r"^\| (\S+) \|.*\| ([\d.]+) \[([\d.]+), ([\d.]+)\] \|",
+        README.read_text(encoding="utf-8"),
+        re.M,
+    )
     assert [f"diverge-{name}" for name, *_ in told] == DIVERGE
     assert all(float(low) <= float(share) <= float(high) for _, share, low, high in told)

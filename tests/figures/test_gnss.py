@@ -8,11 +8,11 @@ import pytest
 from kept import Kept
 
 from ekfsim.errors import UsageError
-from ekfsim.figures.gnss import draw_gnss
-from ekfsim.figures.gnss_runs import Fixes
+from ekfsim.figures.gnss.document import draw_gnss
+from ekfsim.figures.gnss.runs import Fixes
 from ekfsim.figures.retold import retold
 from ekfsim.figures.track import rmse
-from ekfsim.files.load import load_scene
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
 from ekfsim.records import Control, Log, Reading
 from ekfsim.systems.drives import Stretch, Stretches
@@ -49,7 +49,8 @@ def logged(tmp_path_factory):
 
 def test_every_figure_has_its_units_and_its_caption(twin):
     assert list(twin.drawn) == NAMES
-    assert [twin.drawn[f"fig{k}"].axes[0].get_ylabel() for k in ("2-heading", "3-rms-x", "5-rms-phi")] == [
+    assert [twin.drawn[f"fig{k}"].axes[0].get_ylabel() for k in ("2-heading", "3-rms-x",
+    "5-rms-phi")] == [
         "heading φ (degrees)", "RMS error of x so far (m)", "RMS error of φ so far (rad)"
     ]  # fmt: skip
     assert all("printed figure" in twin.captions[name] for name in NAMES[:5])
@@ -65,9 +66,12 @@ def test_figure_1_draws_truth_fixes_wheels_and_the_estimate(twin):
     assert high - low == pytest.approx(5.0)
 
 
-@pytest.mark.parametrize(("name", "column"), [("fig3-rms-x", 0), ("fig4-rms-y", 1), ("fig5-rms-phi", 2)])
+@pytest.mark.parametrize(
+    ("name", "column"), [("fig3-rms-x", 0), ("fig4-rms-y", 1), ("fig5-rms-phi", 2)]
+)
 def test_the_rms_errors_are_those_of_all_instants_so_far(twin, name, column):
-    last = {step.entry.t: step for step in play(short())}  # as it stood after the last update of each instant
+    # as it stood after the last update of each instant
+    last = {step.entry.t: step for step in play(short())}
     errors = np.array([step.posterior.mean[[2, 3, 1]] - step.entry.truth for step in last.values()])
     wrapped = np.angle(np.exp(1j * errors[:, column])) if column == 2 else errors[:, column]
     line = twin.line(name, "filter, with dt")
@@ -75,21 +79,28 @@ def test_the_rms_errors_are_those_of_all_instants_so_far(twin, name, column):
     assert line.get_ydata()[300] == pytest.approx(np.sqrt(np.mean(wrapped[:301] ** 2)))
     assert twin.drawn[name].axes[0].get_yscale() == "log"
     others = {str(line.get_label()).partition(":")[0] for line in twin.drawn[name].axes[0].lines}
-    assert others == {"wheels alone", "filter, with dt", "authors' recipe"} | ({"GNSS fixes"} if column < 2 else set())
+    assert others == {"wheels alone", "filter, with dt", "authors' recipe"} | (
+        {"GNSS fixes"} if column < 2 else set()
+    )
 
 
 def test_the_twin_beats_its_fixes_and_the_recipe_spoils_them(twin):
     rows = twin.rows("errors")
     assert float(rows[RIGHT]["of raw GNSS"]) < 1 < 4 < float(rows[RECIPE]["of raw GNSS"])
-    assert float(rows["raw GNSS, at its own instants"]["RMSE position (m)"]) == pytest.approx(0.15 * 2**0.5, rel=0.25)
+    assert float(rows["raw GNSS, at its own instants"]["RMSE position (m)"]) == pytest.approx(
+        0.15 * 2**0.5, rel=0.25
+    )
 
 
 def test_the_coded_reading_is_what_the_figures_show(tmp_path, monkeypatch):
-    monkeypatch.setattr("ekfsim.figures.gnss_runs.RUNS", 2)
+    monkeypatch.setattr("ekfsim.figures.gnss.runs.RUNS", 2)
     coded = drawn(short(reading="coded"), tmp_path)
     assert coded.line("fig1-paths", "estimate").get_label() == "estimate: authors' recipe"
-    assert coded.captions["fig1-paths"].startswith("The estimate is farther from the truth than the fixes")
-    assert coded.rows("errors")[RIGHT]["of raw GNSS"].startswith("0.")  # the right filter is there all the same
+    assert coded.captions["fig1-paths"].startswith(
+        "The estimate is farther from the truth than the fixes"
+    )
+    # the right filter is there all the same
+    assert coded.rows("errors")[RIGHT]["of raw GNSS"].startswith("0.")
 
 
 @LOGGED
@@ -103,7 +114,10 @@ def test_on_the_authors_data_the_filter_beats_the_fixes(logged):
         "the authors' recipe, at the recorded fixes alone": pytest.approx(17.4, abs=0.1),
     }
     assert "9.5 times that of the raw fixes" in logged.captions["fig6-recipe"]
-    assert "of 0.401 rad, the recipe 1.87 m and 0.757 rad: its heading is worse" in logged.captions["fig6-recipe"]
+    assert (
+        "of 0.401 rad, the recipe 1.87 m and 0.757 rad: its heading is worse"
+        in logged.captions["fig6-recipe"]
+    )
     assert float(rows["wheels alone"]["RMSE φ (rad)"]) == pytest.approx(0.4006, abs=1e-4)
 
 
@@ -138,18 +152,27 @@ def test_a_course_is_that_of_fixes_a_second_apart():
 
 def test_what_cannot_be_drawn_is_told(tmp_path):
     entries = [replace(step.entry, truth=None) for step in play(short())]
-    blind = replace(short(), drive=None, log=Log(tuple(entries), next(play(short())).posterior), log_source="lawn")
+    blind = replace(
+        short(),
+        drive=None,
+        log=Log(tuple(entries), next(play(short())).posterior),
+        log_source="lawn",
+    )
     album = drawn(blind, tmp_path)
     assert list(album.drawn) == NAMES[:2]
     assert "this log has none" in album.pages[-1]
     deaf = tuple(entry for entry in entries if not isinstance(entry.given, Reading))
-    with pytest.raises(UsageError, match="lawn: it holds no GNSS fix, and so there is nothing to draw"):
+    with pytest.raises(
+        UsageError, match="lawn: it holds no GNSS fix, and so there is nothing to draw"
+    ):
         drawn(replace(blind, log=Log(deaf, blind.log.first)), tmp_path)
 
 
 def test_the_twins_lesson_is_of_twenty_runs(twin):
     rows = twin.rows("errors-over-runs")
-    right, recipe = (numbers(row["of raw GNSS"]) for name, row in rows.items() if name.startswith("the "))
+    right, recipe = (
+        numbers(row["of raw GNSS"]) for name, row in rows.items() if name.startswith("the ")
+    )
     assert right[2] < 1 < 4 < recipe[1]  # the worst of the one, the best of the other
     assert right[1] <= right[0] <= right[2]
     assert recipe[1] < recipe[2]  # not one run twenty times over

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from ekfsim.figures import mower
 from ekfsim.figures.album import Album
-from ekfsim.figures.mower import WAYS, as_read, draw_mower, filtered, with_ideal_angles
-from ekfsim.figures.mower_pictures import blind_stretches
-from ekfsim.figures.mower_runs import ALONE, Outcome, Way, as_shaken_as_told, outcomes
-from ekfsim.figures.mower_tables import costs, differences
-from ekfsim.files.load import read_scene
+from ekfsim.figures.mower import document as mower
+from ekfsim.figures.mower.document import WAYS, as_read, draw_mower, filtered, with_ideal_angles
+from ekfsim.figures.mower.pictures import blind_stretches
+from ekfsim.figures.mower.runs import ALONE, Outcome, Way, as_shaken_as_told, outcomes
+from ekfsim.figures.mower.tables import costs, differences
 from ekfsim.files.packaged import packaged
+from ekfsim.files.scenes.load import read_scene
 from ekfsim.filters.belief import Gaussian
 from ekfsim.records import Log, Reading
 from ekfsim.scene import Scene
@@ -82,7 +82,12 @@ def line(axes, label):
 
 
 def test_every_figure_and_table_is_there(album):
-    assert list(album.drawn) == ["fig4-paths", "fig5-markers-and-trace", "fig6-errors", "fig7-close-up"]
+    assert list(album.drawn) == [
+        "fig4-paths",
+        "fig5-markers-and-trace",
+        "fig6-errors",
+        "fig7-close-up",
+    ]
     assert sorted(path.name for path in album.folder.iterdir()) == [
         "differences.csv",
         "readings.csv",
@@ -130,7 +135,9 @@ def test_figure_6_has_the_errors_of_the_run(track, album):
 
 
 def test_figure_6_says_why_its_largest_error_is_there(track, album):
-    told = " ".join(next(page for page in album.pages if "position error is largest at" in page).split())
+    told = " ".join(
+        next(page for page in album.pages if "position error is largest at" in page).split()
+    )
     worst = track.t[np.argmax(track.position_error)]
     assert f"largest at {worst:.0f} s" in told
     times = [reading.t for reading in track.readings if reading.t <= worst]
@@ -150,12 +157,15 @@ def test_figure_7_is_where_no_marker_is_seen_with_seconds_along_the_way(track, e
 
 
 def test_table_1_stands_beside_the_print_and_has_its_pattern(album):
-    """Over twenty runs: real angles near the document's, ideal ones much better in position and in heading."""
+    """Over twenty runs: real angles near the document's, ideal ones much better in position and in
+    heading."""
     table = rows(album, "table1-errors")
     printed = [row[1:] for row in table[1::2]]
     assert printed == [["0.352", "0.244", "0.123", "-0.233"], ["0.296", "3.488", "0.171", "1.301"],
                        ["0.088", "2.168", "0.029", "1.695"]]  # fmt: skip
-    (real, _, ideal, _), (_, heading, _, ideal_heading) = ([number(cell) for cell in row[1:]] for row in table[0:4:2])
+    (real, _, ideal, _), (_, heading, _, ideal_heading) = (
+        [number(cell) for cell in row[1:]] for row in table[0:4:2]
+    )
     assert 0.15 < real < 0.5
     assert ideal < 0.65 * real
     assert 1.5 < heading < 4.5
@@ -170,18 +180,24 @@ def number(cell):
 def test_the_readings_cost_what_the_caption_says(album):
     table = {tuple(row[:2]): [number(cell) for cell in row[2:6]] for row in rows(album, "readings")}
     for mower_is in ("as it is", "as told"):
-        right, listing, wrong = (table[mower_is, reading] for reading in ("corrected", "coded", "printed"))
+        right, listing, wrong = (
+            table[mower_is, reading] for reading in ("corrected", "coded", "printed")
+        )
         assert wrong[0] > 3 * right[0]
         assert wrong[2] > 50
         assert listing[1] > 1.1 * right[1]  # the heading suffers in any case
-    assert table["as it is", "coded"][2] < 3 < table["as told", "coded"][2]  # over-confident only where Q is the truth
+    # over-confident only where Q is the truth
+    assert table["as it is", "coded"][2] < 3 < table["as told", "coded"][2]
     assert table["as told", "corrected"][2] < 3.5
-    assert "below the 3 that is right, as long as Q has so much room" in " ".join(album.pages[-1].split())
+    assert "below the 3 that is right, as long as Q has so much room" in " ".join(
+        album.pages[-1].split()
+    )
     assert "above the 3 that is right: over-confident." in " ".join(album.pages[-1].split())
 
 
 def test_many_runs_in_every_way_at_once_are_each_of_them_alone(scene):
-    """Errors at every fifth of a second, NEES, NIS of run 1; readings from the filters that `run` uses."""
+    """Errors at every fifth of a second, NEES, NIS of run 1; readings from the filters that `run`
+    uses."""
     short = cut(scene, 12.0)
     together = outcomes(short, (*WAYS, Way("printed", ideal=True), Way("coded", ideal=True)), 3)
     alone = tuple(simulate(replace(short, run=1)))
@@ -211,10 +227,17 @@ def test_a_mower_as_told_is_shaken_as_the_filter_believes(scene):
 def test_costs_are_told_run_by_run():
     def outcome(*rmse):
         return Outcome(
-            np.array([rmse, rmse]), np.ones((2, len(rmse))), np.full((2, len(rmse)), 3.0), np.ones(len(rmse))
+            np.array([rmse, rmse]),
+            np.ones((2, len(rmse))),
+            np.full((2, len(rmse)), 3.0),
+            np.ones(len(rmse)),
         )
 
-    of = {"corrected": outcome(1.0, 2.0, 4.0), "coded": outcome(1.1, 1.8, 4.8), "printed": outcome(3.0, 8.0, 20.0)}
+    of = {
+        "corrected": outcome(1.0, 2.0, 4.0),
+        "coded": outcome(1.1, 1.8, 4.8),
+        "printed": outcome(3.0, 8.0, 20.0),
+    }
     assert costs(of, "coded") == "7 % more RMSE (−10 to 20 % in single runs, worse in 2 of 3)"
     assert costs(of, "printed") == "4.0 times the RMSE (3.0 to 5.0 in single runs)"
 
@@ -238,13 +261,17 @@ def test_R_is_found_in_the_differences_and_a_bias_with_it(entries, album):
         if isinstance(entry.given, Reading)
     ]
     differences(shifted, album)
-    assert float(rows(album, "differences")[1][1]) == pytest.approx(float(elevation[0]) + 2, abs=2e-3)
+    assert float(rows(album, "differences")[1][1]) == pytest.approx(
+        float(elevation[0]) + 2, abs=2e-3
+    )
 
 
 def test_a_log_is_read_with_the_derivatives_that_are_asked_for(entries):
     signs = {
         reading: {
-            e.given.sensor.elevation_sign for e in as_read(entries[:3000], reading) if isinstance(e.given, Reading)
+            e.given.sensor.elevation_sign
+            for e in as_read(entries[:3000], reading)
+            if isinstance(e.given, Reading)
         }
         for reading in ("printed", "coded", "corrected")
     }
@@ -262,4 +289,6 @@ def test_a_recorded_log_gives_the_figures_of_its_run(scene, entries, album, tmp_
         truth = line(kept.drawn["fig4-paths"].axes[0], "truth").get_xdata()
         assert len(truth) == 3001
         if log is some:
-            assert_allclose(line(kept.drawn["fig4-paths"].axes[0], "estimate").get_xdata(), first.pose[:, 0])
+            assert_allclose(
+                line(kept.drawn["fig4-paths"].axes[0], "estimate").get_xdata(), first.pose[:, 0]
+            )

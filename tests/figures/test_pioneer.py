@@ -9,16 +9,18 @@ import pytest
 from numerics import jacobian
 
 import ekfsim
-from ekfsim.figures import beams, echo, pioneer, pioneer_filters, polar, square
 from ekfsim.figures.album import Album, filled
 from ekfsim.figures.crowd import crowd_of, over_runs, set_down
+from ekfsim.figures.pioneer import beams, echo, polar, square
+from ekfsim.figures.pioneer import document as pioneer
+from ekfsim.figures.pioneer import filters as pioneer_filters
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.ukf import UKF
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.infrared import COLOURS
-from ekfsim.models.laser import Laser
-from ekfsim.models.polar import cartesian, cartesian_jacobian, cartesian_moments
+from ekfsim.models.sensors.infrared import COLOURS
+from ekfsim.models.sensors.laser import Laser
+from ekfsim.models.sensors.polar import cartesian, cartesian_jacobian, cartesian_moments
 from ekfsim.records import Log
 from ekfsim.simulation.bench import gaussian, readings
 from ekfsim.systems.instruments import Infrared, Ultrasonic
@@ -55,7 +57,9 @@ def scene():
 
 def lines(axes):
     """The lines of axes by what the legend calls them."""
-    return {line.get_label(): line for line in axes.get_lines() if not line.get_label().startswith("_")}
+    return {
+        line.get_label(): line for line in axes.get_lines() if not line.get_label().startswith("_")
+    }
 
 
 def rows(album, name):
@@ -68,7 +72,10 @@ def rows(album, name):
 
 def test_the_moments_of_the_polar_reading_are_the_reference_s(scene, album):
     polar.draw_polar(scene, album)
-    table = {row["method"]: [float(value) for value in list(row.values())[1:-1]] for row in rows(album, "moments")}
+    table = {
+        row["method"]: [float(value) for value in list(row.values())[1:-1]]
+        for row in rows(album, "moments")
+    }
     for method, expected in REFERENCE.items():
         assert table[method] == pytest.approx(expected, abs=1e-6)
     assert table["Monte Carlo, 1,000,000 readings"] == pytest.approx(REFERENCE["exact"], abs=1e-3)
@@ -86,7 +93,9 @@ def test_figure_2_shows_both_means_and_the_sigma_points(scene, album):
         assert label in lines(axes)
     points = lines(right)["sigma points (eqs 14, 15)"].get_xydata()
     assert len(points) == 5
-    assert np.hypot(*points.T) == pytest.approx([1, 1 + 0.02 * math.sqrt(3), 1, 1 - 0.02 * math.sqrt(3), 1])
+    assert np.hypot(*points.T) == pytest.approx(
+        [1, 1 + 0.02 * math.sqrt(3), 1, 1 - 0.02 * math.sqrt(3), 1]
+    )
 
 
 def test_cartesian_has_the_jacobian_of_eq_19():
@@ -151,7 +160,8 @@ def test_figure_5_marks_the_flight(scene, album):
     assert np.all(lines(whole)["Hilbert envelope"].get_ydata() >= np.abs(signal) - 1e-9)
     band = next(patch for patch in close.patches if patch.get_label() == "τ ± 2σ by the UKF")
     assert band.get_x() < true < band.get_x() + band.get_width()
-    assert "e^3.6 = 37 times as high" in " ".join(album.pages[0].split())  # αT after the arrival, this echo's α is 1.8
+    # αT after the arrival, this echo's α is 1.8
+    assert "e^3.6 = 37 times as high" in " ".join(album.pages[0].split())
 
 
 def test_the_printed_envelope_is_drawn_where_the_print_is_followed(scene, album):
@@ -189,7 +199,9 @@ def test_figure_7_shows_that_odometry_drifts_and_the_filter_does_not(scene, albu
     square.draw_square(scene, album, "")
     floor, position, heading = album.figures["fig7-square"].axes
     drawn = lines(floor)
-    truth, reckoned, believed = (drawn[name].get_xydata() for name in ("truth", "odometry alone", "EKF"))
+    truth, reckoned, believed = (
+        drawn[name].get_xydata() for name in ("truth", "odometry alone", "EKF")
+    )
     corners = np.array([[1, 1], [3, 1], [3, 3], [1, 3.0]])
     assert np.hypot(*(truth[:, None] - corners).T).min(axis=1) == pytest.approx(0, abs=0.05)
     assert np.hypot(*(reckoned - truth).T).max() > 0.1
@@ -216,7 +228,8 @@ def test_the_lkf_is_lost_after_the_first_corner_unless_it_knows_the_plan(scene, 
         assert over_runs(crowds[name].position).max() < 0.04
         assert crowds[name].lost == 0
         assert 1 < np.mean(crowds[name].nees) < 6
-        np.testing.assert_array_equal(crowds["kf"].reckoned, crowds[name].reckoned)  # driven and read alike
+        # driven and read alike
+        np.testing.assert_array_equal(crowds["kf"].reckoned, crowds[name].reckoned)
     ekf, about_the_plan = (crowds[name].position for name in ("ekf", "kf-nominal"))
     assert np.sqrt(np.mean(about_the_plan**2)) == pytest.approx(np.sqrt(np.mean(ekf**2)), rel=0.05)
 
@@ -225,17 +238,25 @@ def test_the_cautious_ekf_refuses_what_the_ukf_would(scene):
     """A point of its belief looks past the post; the mean does not."""
     post = Walls.of({"post": np.array([[5, -0.2], [5.4, -0.2], [5.4, 0.2], [5, 0.2]])})
     prior, laser = Gaussian(np.zeros(3), np.diag([0.01, 0.01, 0.04])), Laser(post, 0.0, 0.01)
-    for filter, refused in ((EKF(), 0), (pioneer_filters.CautiousEKF(), Refused.GUARD), (UKF(), Refused.NO_WALL)):
+    for filter, refused in (
+        (EKF(), 0),
+        (pioneer_filters.CautiousEKF(), Refused.GUARD),
+        (UKF(), Refused.NO_WALL),
+    ):
         assert filter.update(prior, laser, np.array([5.0]))[1].refused == refused
     sure = Gaussian(np.zeros(3), np.diag([1e-4, 1e-4, 1e-6]))
-    told, plain = (f.update(sure, laser, np.array([5.1]))[0] for f in (pioneer_filters.CautiousEKF(), EKF()))
+    told, plain = (
+        f.update(sure, laser, np.array([5.1]))[0] for f in (pioneer_filters.CautiousEKF(), EKF())
+    )
     np.testing.assert_array_equal(told.mean, plain.mean)
 
 
 def test_a_crowd_is_its_runs(scene, crowds):
     """The last error of run 7, played alone."""
     last = list(ekfsim.play(replace(set_down(scene, 0.02, 2.0), run=7)))[-1]
-    np.testing.assert_allclose((last.posterior.mean - last.entry.truth)[:2], crowds["ekf"].error[-1, 7, :2], atol=1e-12)
+    np.testing.assert_allclose(
+        (last.posterior.mean - last.entry.truth)[:2], crowds["ekf"].error[-1, 7, :2], atol=1e-12
+    )
     assert crowds["ekf"].nees[7] == pytest.approx(float(last.nees.value))
 
 
@@ -244,7 +265,9 @@ def test_the_filters_are_drawn_and_told(scene, album, crowds):
     position, heading = album.figures["fig8-filters"].axes
     assert list(lines(position)) == ["odometry alone", *pioneer_filters.NAMES.values()]
     for name, label in pioneer_filters.NAMES.items():
-        assert lines(position)[label].get_ydata() == pytest.approx(1e3 * over_runs(crowds[name].position))
+        assert lines(position)[label].get_ydata() == pytest.approx(
+            1e3 * over_runs(crowds[name].position)
+        )
     assert [text.get_text() for text in position.get_legend().get_texts()] == list(lines(position))
     assert heading.get_xlabel() == "time (s)"
 
@@ -254,7 +277,11 @@ def test_the_table_tells_every_start_and_filter_with_its_spread(scene, album, cr
     table = rows(album, "filters")
     names = ["odometry alone", *pioneer_filters.NAMES.values(), "cautious EKF"]
     assert [row["filter"] for row in table] == names * 3
-    assert [row["set down to"] for row in table[:: len(names)]] == ["2 cm, 2°", "20 cm, 20°", "30 cm, 30°"]
+    assert [row["set down to"] for row in table[:: len(names)]] == [
+        "2 cm, 2°",
+        "20 cm, 20°",
+        "30 cm, 30°",
+    ]
     assert [row["lost (%)"] for row in table[: len(names)]] == ["–", "100.0", *["0.0"] * 5]
     assert table[1]["95 % of them"] == "[83.9, 100.0]"  # Wilson's, of 20 of 20
     for row in table[: len(names)]:
@@ -268,13 +295,18 @@ def test_the_table_tells_every_start_and_filter_with_its_spread(scene, album, cr
 def test_an_interval_of_a_ratio_holds_the_right_one(crowds):
     """Of runs that err twice as much it is 2; of the same runs in another order it holds 1."""
     crowd = crowds["ekf"]
-    twice, shuffled = replace(crowd, error=2 * crowd.error), replace(crowd, error=crowd.error[:, ::-1])
+    twice, shuffled = (
+        replace(crowd, error=2 * crowd.error),
+        replace(crowd, error=crowd.error[:, ::-1]),
+    )
     low, ratio, high = pioneer_filters._ratio("ukf", "ekf", {"ekf": crowd, "ukf": twice})
     assert (low, ratio, high) == pytest.approx((2, 2, 2))
     low, ratio, high = pioneer_filters._ratio("ukf", "ekf", {"ekf": crowd, "ukf": shuffled})
     assert ratio == pytest.approx(1)
     assert 0.8 < low < 1 < high < 1.25
-    assert "the EKF is better, 2.00 times" in pioneer_filters._compared("ekf", "ukf", {"ekf": crowd, "ukf": twice})
+    assert "the EKF is better, 2.00 times" in pioneer_filters._compared(
+        "ekf", "ukf", {"ekf": crowd, "ukf": twice}
+    )
     assert "no difference that 20 runs can tell" in pioneer_filters._compared(
         "ekf", "ukf", {"ekf": crowd, "ukf": shuffled}
     )
@@ -282,13 +314,18 @@ def test_an_interval_of_a_ratio_holds_the_right_one(crowds):
 
 def test_what_eq_33_s_arctangent_makes_of_the_corners_is_told(scene):
     told, x = " ".join(square.told_of_arctan(scene).split()), math.tan(math.radians(4.5))
-    assert f"the two differ by {80 * math.degrees(x - math.atan(x)):.2f}° over the four corners" in told
+    assert (
+        f"the two differ by {80 * math.degrees(x - math.atan(x)):.2f}° over the four corners"
+        in told
+    )
     assert "`--reading printed` and `coded` change nothing here" in told
 
 
 def recorded(scene, truth=True):
     """The same run as a log."""
-    entries = tuple(entry if truth else replace(entry, truth=None) for entry in ekfsim.simulate(scene))
+    entries = tuple(
+        entry if truth else replace(entry, truth=None) for entry in ekfsim.simulate(scene)
+    )
     return replace(scene, log=Log(entries, ekfsim.first_belief(scene)), drive=None)
 
 
@@ -296,8 +333,12 @@ def test_a_recorded_run_is_filtered_as_the_simulated_one(scene, album):
     square.draw_square(scene, album, "")
     drawn = lines(album.figures["fig7-square"].axes[0])["EKF"].get_xydata()
     square.draw_square(recorded(scene), album, "")
-    np.testing.assert_array_equal(lines(album.figures["fig7-square"].axes[0])["EKF"].get_xydata(), drawn)
-    assert "The square of 2 × 2 m in a room of 4 × 4 m, driven once in 40 s" in " ".join(album.pages[0].split())
+    np.testing.assert_array_equal(
+        lines(album.figures["fig7-square"].axes[0])["EKF"].get_xydata(), drawn
+    )
+    assert "The square of 2 × 2 m in a room of 4 × 4 m, driven once in 40 s" in " ".join(
+        album.pages[0].split()
+    )
     assert "A recorded run of 40 s in a room of 4 × 4 m." in album.pages[1]
     pioneer._tabulate_log(recorded(scene), album)
     error = {row["filter"]: float(row["position RMSE (mm)"]) for row in rows(album, "filters")}

@@ -9,9 +9,9 @@ import pytest
 from kept import Kept
 
 from ekfsim.errors import UsageError
-from ekfsim.figures.pylon import draw_pylon
-from ekfsim.figures.pylon_innovations import Tries
-from ekfsim.figures.pylon_runs import (
+from ekfsim.figures.pylon.document import draw_pylon
+from ekfsim.figures.pylon.innovations import Tries
+from ekfsim.figures.pylon.runs import (
     Runs,
     Told,
     by_the_letter,
@@ -21,17 +21,25 @@ from ekfsim.figures.pylon_runs import (
     timed,
     turned_by_the_yaw_of,
 )
-from ekfsim.figures.pylon_sight import Innovations
+from ekfsim.figures.pylon.sight import Innovations
 from ekfsim.figures.track import rmse
-from ekfsim.files.load import load_scene
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
 from ekfsim.records import Control, Log, Reading
 from ekfsim.systems.drives import Square, Stretch, Stretches
 
-LOG = Path(__file__).resolve().parents[2] / ".." / "shared" / "data" / "pylon" / "2020_2_26__17_21_59_filtered.csv"
+LOG = (
+    Path(__file__).resolve().parents[2]
+    / ".."
+    / "shared"
+    / "data"
+    / "pylon"
+    / "2020_2_26__17_21_59_filtered.csv"
+)
 LOGGED = pytest.mark.skipif(not LOG.is_file(), reason="the recorded logs are not here")
 NAMES = [
-    "fig2-paths", "fig3-yaw", "fig4-tracking", "fig5-ellipses", "fig6-variances", "fig7-variances", "fig8-nis",
+    "fig2-paths", "fig3-yaw", "fig4-tracking", "fig5-ellipses", "fig6-variances", "fig7-variances",
+    "fig8-nis",
     "fig9-what-is-left",
 ]  # fmt: skip
 
@@ -43,7 +51,9 @@ def drawn(scene, folder):
 
 
 def fast(**changed):
-    return replace(load_scene("pylon"), drive=Square(10.0, 2.0, math.radians(90), clockwise=True), **changed)
+    return replace(
+        load_scene("pylon"), drive=Square(10.0, 2.0, math.radians(90), clockwise=True), **changed
+    )
 
 
 def log(reading="corrected"):
@@ -74,15 +84,31 @@ def test_every_figure_has_its_units_and_its_caption(twin):
         ("fig8-nis", "NIS per number read"),
     ):
         assert twin.drawn[name].axes[0].get_ylabel() == label
-    assert all("printed figure" in twin.captions[name] or "Not in the document" in twin.captions[name]
-               for name in NAMES if name != "fig4-tracking")  # fmt: skip
+    assert all(
+        "printed figure" in twin.captions[name] or "Not in the document" in twin.captions[name]
+        for name in NAMES
+        if name != "fig4-tracking"
+    )
     assert "the document says about 0.2 m" in twin.captions["fig4-tracking"]
 
 
 def test_figure_2_draws_the_expected_path_the_gps_and_the_estimate(twin):
     labels = [line.get_label() for line in twin.drawn["fig2-paths"].axes[0].lines]
-    assert labels == ["expected path", "GPS, recorded and not used", "truth", "estimate", "pylon", "start"]
-    assert twin.line("fig2-paths", "expected").get_xydata().tolist() == [[0, 0], [10, 0], [10, -10], [0, -10], [0, 0]]
+    assert labels == [
+        "expected path",
+        "GPS, recorded and not used",
+        "truth",
+        "estimate",
+        "pylon",
+        "start",
+    ]
+    assert twin.line("fig2-paths", "expected").get_xydata().tolist() == [
+        [0, 0],
+        [10, 0],
+        [10, -10],
+        [0, -10],
+        [0, 0],
+    ]
 
 
 def test_figure_4_is_equations_11_and_12(twin):
@@ -102,7 +128,8 @@ def test_no_legend_hides_and_no_axis_cuts_what_the_captions_speak_of(twin):
         figure = twin.drawn[name]
         figure.draw_without_rendering()
         axes = figure.axes[0]
-        assert axes.get_legend().get_window_extent().y1 < axes.get_window_extent().y0  # it stands below
+        # it stands below
+        assert axes.get_legend().get_window_extent().y1 < axes.get_window_extent().y0
     low, high = twin.drawn["fig8-nis"].axes[0].get_ylim()
     for label in ("coded", "corrected"):
         values = twin.line("fig8-nis", label).get_ydata()
@@ -125,11 +152,16 @@ def test_figure_5_says_that_it_draws_the_authors_covariances_100_times_larger(tw
 def test_figures_6_and_7_hold_every_correction_against_every_other(twin):
     told = Told.of(fast(), "corrected")
     every, other = told.track(), told.but(every_other(told.entries)).track()
-    for name, panel, i in (("fig6-variances", 0, 1), ("fig6-variances", 3, 2), ("fig7-variances", 1, 5)):
+    for name, panel, i in (
+        ("fig6-variances", 0, 1),
+        ("fig6-variances", 3, 2),
+        ("fig7-variances", 1, 5),
+    ):
         axes = twin.drawn[name].axes[panel]
         lines = {line.get_label(): line for line in axes.lines}
         for label, track, marker, colour in (
-            ("every correction", every, "^", "#0072B2"), ("every other correction", other, "o", "#CC0000")
+            ("every correction", every, "^", "#0072B2"), ("every other correction", other, "o",
+            "#CC0000")
         ):  # fmt: skip
             assert lines[label].get_ydata() == pytest.approx(track.covariance[1:41, i, i])
             assert (lines[label].get_marker(), lines[label].get_color()) == (marker, colour)
@@ -142,8 +174,12 @@ def test_the_twin_is_consistent_only_where_R_knows_of_the_yaw_error(twin):
     assert float(row(rows, "coded: ")["mean NIS per number"]) > 25
     assert float(row(left, "mean NIS over 40")["measured"]) == pytest.approx(1.05, abs=0.05)
     parts = [float(row(left, f"the part a{part}")["measured"]) for part in ("long", "cross")]
-    assert sum(parts) / 2 == pytest.approx(float(left["mean NIS per number read"]["measured"]), abs=0.011)
-    assert float(row(left, "the same from the median")["measured"].split()[0]) == pytest.approx(7.5, rel=0.25)
+    assert sum(parts) / 2 == pytest.approx(
+        float(left["mean NIS per number read"]["measured"]), abs=0.011
+    )
+    assert float(row(left, "the same from the median")["measured"].split()[0]) == pytest.approx(
+        7.5, rel=0.25
+    )
 
 
 def test_innovations_are_split_along_and_across_the_line_of_sight():
@@ -175,10 +211,14 @@ def test_logs_are_told_otherwise():
     told = Told.of(fast(), "coded")
     constant = list(timed(told.entries, 0.25))
     assert {entry.given.u[3] for entry in constant if isinstance(entry.given, Control)} == {0.25}
-    stamped = [entry.given.u[3] for entry in timed(constant, None) if isinstance(entry.given, Control)]
+    stamped = [
+        entry.given.u[3] for entry in timed(constant, None) if isinstance(entry.given, Control)
+    ]
     assert stamped == pytest.approx(np.full(len(stamped), 0.1))
     read = [entry.given.z for entry in told.entries if isinstance(entry.given, Reading)]
-    turned = [entry.given.z for entry in by_the_letter(told.entries) if isinstance(entry.given, Reading)]
+    turned = [
+        entry.given.z for entry in by_the_letter(told.entries) if isinstance(entry.given, Reading)
+    ]
     assert [np.hypot(*z) for z in turned] == pytest.approx([np.hypot(*z) for z in read])
     assert not np.allclose(turned[0], read[0])
     assert lidar_alone(told)[5] == pytest.approx([5, -5] - read[5])
@@ -186,13 +226,17 @@ def test_logs_are_told_otherwise():
 
 def test_too_short_a_run_is_refused(tmp_path):
     stub = replace(load_scene("pylon"), drive=Stretches((Stretch(1.0, 0.0, 1.0),)))
-    with pytest.raises(UsageError, match=r"pylon\.yaml: 10 readings of the pylon are too few to draw; 30 will do"):
+    with pytest.raises(
+        UsageError, match=r"pylon\.yaml: 10 readings of the pylon are too few to draw; 30 will do"
+    ):
         drawn(stub, tmp_path)
 
 
 def test_a_run_that_stays_away_from_the_corner_has_no_figure_5(tmp_path, monkeypatch):
-    monkeypatch.setattr("ekfsim.figures.pylon_yaw.RUNS", 2)
-    album = drawn(replace(load_scene("pylon"), drive=Stretches((Stretch(1.0, 0.0, 5.0),))), tmp_path)
+    monkeypatch.setattr("ekfsim.figures.pylon.yaw.RUNS", 2)
+    album = drawn(
+        replace(load_scene("pylon"), drive=Stretches((Stretch(1.0, 0.0, 5.0),))), tmp_path
+    )
     assert list(album.drawn) == [name for name in NAMES if name != "fig5-ellipses"]
     assert any("does not come near the south-west corner" in page for page in album.pages)
     assert "nan" not in "".join(album.captions.values())
@@ -201,14 +245,25 @@ def test_a_run_that_stays_away_from_the_corner_has_no_figure_5(tmp_path, monkeyp
 @LOGGED
 def test_on_the_authors_log_the_coded_reading_is_their_filter(logged):
     rows = logged.rows("readings")
-    for start in ("coded: ", "coded, every other", "coded, dt from", "printed: ", "lidar and yaw", "GPS"):
+    for start in (
+        "coded: ",
+        "coded, every other",
+        "coded, dt from",
+        "printed: ",
+        "lidar and yaw",
+        "GPS",
+    ):
         found = row(rows, start)
         assert float(found["path RMSE (m)"]) == pytest.approx(
             float(found["the same of the authors' own program (m)"]), abs=1.1e-6
         )
     coded = row(rows, "coded: ")
-    assert (float(coded["mean (m)"]), float(coded["largest (m)"])) == pytest.approx((0.191488, 1.0976), abs=1e-4)
-    assert logged.line("fig4-tracking", "RMSE").get_ydata()[-1] == pytest.approx(0.230198957, abs=1e-9)
+    assert (float(coded["mean (m)"]), float(coded["largest (m)"])) == pytest.approx(
+        (0.191488, 1.0976), abs=1e-4
+    )
+    assert logged.line("fig4-tracking", "RMSE").get_ydata()[-1] == pytest.approx(
+        0.230198957, abs=1e-9
+    )
     assert float(coded["mean NIS per number"]) == pytest.approx(22, abs=0.5)
     assert float(row(rows, "corrected: ")["mean NIS per number"]) == pytest.approx(3, abs=0.1)
     assert "meet" in logged.captions["fig6-variances"]
@@ -216,7 +271,9 @@ def test_on_the_authors_log_the_coded_reading_is_their_filter(logged):
 
 
 def test_the_numbers_of_the_authors_program_stand_beside_their_own_log_alone(twin):
-    assert not any("authors' own program" in column for column in next(iter(twin.rows("readings").values())))
+    assert not any(
+        "authors' own program" in column for column in next(iter(twin.rows("readings").values()))
+    )
 
 
 @LOGGED
@@ -230,17 +287,21 @@ def test_another_log_is_not_held_against_the_numbers_of_the_published_one(tmp_pa
 def test_the_yaw_filter_halves_no_position_but_the_heading(twin):
     turned, own = twin.rows("yaw-filter").values()
     at, off = ([float(row["RMSE position (m)"].split()[0]) for row in (turned, own)],
-               [float(row["RMSE heading (degrees)"].split()[0]) for row in (turned, own)])  # fmt: skip
+               [float(row["RMSE heading (degrees)"].split()[0]) for row in (turned,
+               own)])  # fmt: skip
     assert at[1] == pytest.approx(at[0], rel=0.02)
     assert off[1] < 0.8 * off[0]
     assert "smaller in 100 of 100 runs" in " ".join("".join(twin.pages).split())
 
 
 def test_read_in_its_own_frame_a_run_is_as_that_of_the_sensor_lidar():
-    """The same noises are drawn for either, in another frame: alike on the whole, not reading by reading."""
+    """The same noises are drawn for either, in another frame: alike on the whole, not reading by
+    reading."""
     told = Told.of(fast(), "corrected")
     turned_back = told.but(in_its_own_frame(told.entries)).track()
-    own = Told.of(replace(fast(), world=load_scene("pylon", world="pylon-lidar").world), "corrected").track()
+    own = Told.of(
+        replace(fast(), world=load_scene("pylon", world="pylon-lidar").world), "corrected"
+    ).track()
     assert rmse(turned_back.position_error) == pytest.approx(rmse(own.position_error), rel=0.1)
     assert rmse(turned_back.heading_error) == pytest.approx(rmse(own.heading_error), rel=0.05)
 
@@ -259,7 +320,8 @@ def test_what_is_left_on_the_authors_log_is_the_range(logged):
     left = logged.rows("what-is-left")
     assert float(row(left, "the part along")["measured"]) > 5
     assert float(row(left, "the part across")["measured"]) < 1
-    assert float(row(left, "σ of a range")["measured"].split()[0]) == pytest.approx(20.3, abs=0.1)  # stated: 7.5 mm
+    # stated: 7.5 mm
+    assert float(row(left, "σ of a range")["measured"].split()[0]) == pytest.approx(20.3, abs=0.1)
     assert float(row(left, "mean NIS, were")["measured"]) < 1.25
 
 

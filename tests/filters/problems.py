@@ -1,4 +1,5 @@
-"""What the filters are tried on: linear problems of any size, a classroom, and a mower among markers."""
+"""What the filters are tried on: linear problems of any size, a classroom, and a mower among
+markers."""
 
 from dataclasses import dataclass, field
 
@@ -10,17 +11,18 @@ from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.landmarks import RangeBearing
-from ekfsim.models.laser import Laser
-from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.protocols import Quantity
+from ekfsim.models.sensors.landmarks import RangeBearing
+from ekfsim.models.sensors.laser import Laser
 
 ROOM = Walls.of({"boundary": np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])})
 
 
 @dataclass
 class Linear:
-    """A linear motion and a linear sensor of any size, with a heading among the readings where `angles` says so."""
+    """A linear motion and a linear sensor of any size, with a heading among the readings where
+    `angles` says so."""
 
     A: np.ndarray
     B: np.ndarray
@@ -36,7 +38,9 @@ class Linear:
 
     @property
     def outputs(self):
-        return tuple(Quantity(f"z{i}", "rad" if i in self.angles else "m") for i in range(len(self.C)))
+        return tuple(
+            Quantity(f"z{i}", "rad" if i in self.angles else "m") for i in range(len(self.C))
+        )
 
     def f(self, x, u):
         return np.matvec(self.A, x) + np.matvec(self.B, u)
@@ -73,7 +77,8 @@ class Linear:
 
 def problem(random, n=3, m=2, k=1):
     return Linear(
-        random.normal(size=(n, n)), random.normal(size=(n, m)), covariance(random, m), covariance(random, n),
+        random.normal(size=(n, n)), random.normal(size=(n, m)), covariance(random, m),
+        covariance(random, n),
         random.normal(size=(k, n)), covariance(random, k) + 0.1 * np.eye(k),
     )  # fmt: skip
 
@@ -82,7 +87,14 @@ def theirs(kind, model, x, P):
     """filterpy's filter of the same problem."""
     n, m, k = len(model.A), model.B.shape[1], len(model.C)
     other = kind(dim_x=n, dim_z=k, dim_u=m)
-    other.x, other.P, other.F, other.B, other.R, other.H = x.copy(), P.copy(), model.A, model.B, model.noise, model.C
+    other.x, other.P, other.F, other.B, other.R, other.H = (
+        x.copy(),
+        P.copy(),
+        model.A,
+        model.B,
+        model.noise,
+        model.C,
+    )
     other.Q = model.B @ model.input_noise @ model.B.T + model.process_noise
     return other
 
@@ -92,7 +104,8 @@ def close(a, b):
 
 
 def begun(name, first, gate=None, headings=(2,), runs=(0,), seed=0):
-    """A filter as a run begins it, whose plan is to stay there. The generator of a run depends on its number alone."""
+    """A filter as a run begins it, whose plan is to stay there. The generator of a run depends on
+    its number alone."""
     generators = lambda: [np.random.default_rng([seed, run]) for run in runs]  # noqa: E731
     plan = lambda: first.mean[None]  # noqa: E731
     return FILTERS[name].begin(Beginning(first, headings, gate, generators, nominal=plan))

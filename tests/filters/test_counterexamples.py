@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scenes import scene
 
-from ekfsim.files.trace import Trace
+from ekfsim.files.results.trace import Trace
 from ekfsim.filters.tuning import Tuning
 from ekfsim.localization import play
 from ekfsim.records import Move, Sense
@@ -21,7 +21,9 @@ COURSE = tuple(c for k in range(6) for c in (Move(0.4, 0.7), Sense(0.5 * k), Sen
 def spoiled(tuning, name="ekf", short=0.0, **otherwise):
     """A drive among the walls of a room, from an unsure start."""
     made = scene(*COURSE, sigma=(0.05, 0.05, 0.03), seed=4, filter=name, **otherwise)
-    return replace(made, tuning=tuning, world=replace(made.world, faults=Faults(short_returns=short)))
+    return replace(
+        made, tuning=tuning, world=replace(made.world, faults=Faults(short_returns=short))
+    )
 
 
 def used(steps):
@@ -60,9 +62,15 @@ def test_trace_and_narrative_hold_the_c_v_that_was_used(tmp_path):
         for step in play(made):
             sink.write(step)
     lines = [json.loads(line) for line in file.read_text().splitlines()]
-    told = [(line["range_variance"], line["range"]) for line in lines if line["type"] == "sense" and line["updated"]]
+    told = [
+        (line["range_variance"], line["range"])
+        for line in lines
+        if line["type"] == "sense" and line["updated"]
+    ]
     assert len(told) > 4
-    assert_allclose([variance for variance, _ in told], [(0.01 * z) ** 2 for _, z in told], rtol=1e-12)
+    assert_allclose(
+        [variance for variance, _ in told], [(0.01 * z) ** 2 for _, z in told], rtol=1e-12
+    )
 
 
 def test_without_an_echo_the_reading_is_refused_as_ever():
@@ -85,16 +93,21 @@ def test_the_cross_covariances_are_dropped_after_every_step(name):
 
 def test_a_filter_that_remembers_more_than_a_gaussian_goes_on_knowing_it():
     kept, dropped = (list(play(spoiled(tuning, "kf-nominal"))) for tuning in (Tuning(), DROPPED))
-    assert [step.posterior.inputs for step in dropped[1:]] == [step.posterior.inputs for step in kept[1:]]
+    assert [step.posterior.inputs for step in dropped[1:]] == [
+        step.posterior.inputs for step in kept[1:]
+    ]
     assert dropped[-1].posterior.inputs == 6
 
 
 def test_what_is_dropped_teaches_the_heading_nothing():
     """One beam square to a wall: ∂h/∂θ = 0, and K_θ = (σ_xθ ∂h/∂x + σ_yθ ∂h/∂y)/S."""
-    made = scene(Move(3.0, 0.0), Sense(np.pi / 2), start=(1.0, 4.0, 0.0), sigma=(0.0, 0.0, 0.1), seed=2)
+    made = scene(
+        Move(3.0, 0.0), Sense(np.pi / 2), start=(1.0, 4.0, 0.0), sigma=(0.0, 0.0, 0.1), seed=2
+    )
     kept, dropped = (list(play(replace(made, tuning=tuning)))[-1] for tuning in (Tuning(), DROPPED))
     assert abs(kept.correction.H[0, 2]) < 0.2 * abs(kept.correction.H[0, 1])
-    before, after, none = (P[2, 2] ** 0.5 for P in (kept.prior.covariance, kept.posterior.covariance,
+    before, after, none = (P[2, 2] ** 0.5 for P in (kept.prior.covariance,
+    kept.posterior.covariance,
                                                     dropped.posterior.covariance))  # fmt: skip
     assert after < 0.3 * before
     assert none > 0.97 * before

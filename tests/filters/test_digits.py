@@ -16,7 +16,7 @@ from ekfsim.filters.conditioning import covariance
 from ekfsim.filters.stretch import stretch
 from ekfsim.geometry.backend import using
 from ekfsim.localization import first_belief
-from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.protocols import Quantity
 from ekfsim.records import Move, Sense
 from ekfsim.world import Noise
@@ -56,14 +56,17 @@ def correlations(random, n):
 
 
 def problem(random, n, k):
-    """A belief in units of all sizes, and sensors from 10¹² times as sharp as it to 10¹² times as dull."""
+    """A belief in units of all sizes, and sensors from 10¹² times as sharp as it to 10¹² times as
+    dull."""
     units = 10.0 ** random.uniform(-6, 6, n)
     P = correlations(random, n) * np.outer(units, units)
     H = random.normal(size=(k, n)) * (random.random((k, n)) < 0.7)  # some see one number alone
     H[~H.any(axis=1), 0] = 1.0
     if random.random() < 0.5:
         H /= units
-    seen = np.sqrt(np.diag(H @ P @ H.T)) * 10.0 ** random.uniform(-12, 12, k if random.random() < 0.5 else 1)
+    seen = np.sqrt(np.diag(H @ P @ H.T)) * 10.0 ** random.uniform(
+        -12, 12, k if random.random() < 0.5 else 1
+    )
     return 0.5 * (P + P.T), H, np.diag(seen**2)
 
 
@@ -105,7 +108,10 @@ def test_an_update_is_right_to_six_digits_however_sharp_the_sensor(n, k):
         prior, sensor, z = Gaussian(np.zeros(n), P), Straight(H, R), np.zeros(k)
         for name in LINEARISED:
             told = []
-            for first in (prior, Gaussian(*(np.tile(each, (2, *[1] * each.ndim)) for each in prior))):
+            for first in (
+                prior,
+                Gaussian(*(np.tile(each, (2, *[1] * each.ndim)) for each in prior)),
+            ):
                 posterior, correction = begun(name, first, headings=()).update(first, sensor, z)
                 told.append((posterior.covariance, correction.K, correction.S))
             (alone, gain, spread), many = told[0], [each[1] for each in told[1]]
@@ -113,13 +119,16 @@ def test_an_update_is_right_to_six_digits_however_sharp_the_sensor(n, k):
                 np.testing.assert_allclose(np.diag(P_told), np.diag(P_new), rtol=1e-6)
                 assert (np.diag(P_told) <= np.diag(P)).all()
                 assert (np.diag(P_told) > 0).all()
-                np.testing.assert_allclose(S_told, S, rtol=1e-6, atol=1e-9 * np.outer(deviation, deviation).max())
+                np.testing.assert_allclose(
+                    S_told, S, rtol=1e-6, atol=1e-9 * np.outer(deviation, deviation).max()
+                )
                 off = np.abs(K_told - K)
                 assert (off <= 1e-6 * (np.abs(K) if k == 1 else np.outer(σ, 1 / deviation))).all()
                 sound(P_told)
 
 
-@pytest.mark.parametrize("seed", [2555, 3128, 4472, 4619, *range(10)])  # the first four had no six digits once
+# the first four had no six digits once
+@pytest.mark.parametrize("seed", [2555, 3128, 4472, 4619, *range(10)])
 def test_an_update_is_right_to_six_digits_where_noises_have_much_in_common(seed):
     random = np.random.default_rng(seed)
     n, k = random.integers(1, 4), random.integers(2, 4)
@@ -133,7 +142,9 @@ def test_an_update_is_right_to_six_digits_where_noises_have_much_in_common(seed)
     S, K, P_new = oracle(P, H, R)
     unit = np.sqrt(np.diag(P))[:, None] / np.sqrt(np.diag(S))
     for first in (Gaussian(np.zeros(n), P), Gaussian(np.zeros((2, n)), np.tile(P, (2, 1, 1)))):
-        posterior, correction = begun("ekf", first, headings=()).update(first, Straight(H, R), np.zeros(k))
+        posterior, correction = begun("ekf", first, headings=()).update(
+            first, Straight(H, R), np.zeros(k)
+        )
         assert np.diagonal(posterior.covariance, axis1=-2, axis2=-1) == pytest.approx(
             np.broadcast_to(np.diag(P_new), first.mean.shape), rel=1e-6
         )
@@ -147,7 +158,9 @@ def test_the_twin_of_many_runs_is_right_to_six_digits(backend):
     P, H, R = (np.stack(each) for each in zip(*problems, strict=True))
     first = Gaussian(np.zeros((MANY, 3)), P)
     with using(backend):
-        posterior, correction = begun("ekf", first).update(first, Straight(H, R), np.zeros((MANY, 1)))
+        posterior, correction = begun("ekf", first).update(
+            first, Straight(H, R), np.zeros((MANY, 1))
+        )
     sound(posterior.covariance)
     for i, each in enumerate(problems):
         S, K, P_new = oracle(*each)
@@ -162,8 +175,15 @@ def test_a_prediction_is_right_to_six_digits(name):
     for n, m in ((2, 1), (3, 2), (4, 2)):
         for _ in range(15):
             units = 10.0 ** random.uniform(-6, 6, n)
-            P, F = correlations(random, n) * np.outer(units, units), random.normal(size=(n, n)) * units[:, None] / units
-            G, M, Q = random.normal(size=(n, m)), np.diag(10.0 ** random.uniform(-12, 12, m)), np.diag(1e-6 * units**2)
+            P, F = (
+                correlations(random, n) * np.outer(units, units),
+                random.normal(size=(n, n)) * units[:, None] / units,
+            )
+            G, M, Q = (
+                random.normal(size=(n, m)),
+                np.diag(10.0 ** random.uniform(-12, 12, m)),
+                np.diag(1e-6 * units**2),
+            )
             with mpmath.workdps(50):
                 F_, P_, G_, M_, Q_ = digits(F, P, G, M, Q)
                 right = floats(F_ * P_ * F_.T + G_ * M_ * G_.T + Q_)
@@ -175,10 +195,17 @@ def test_a_prediction_is_right_to_six_digits(name):
 
 
 def beam_world(sigma, ratio, *angles, **described):
-    """The first belief as unsure as told, in a room without any other noise; beams at these angles."""
+    """The first belief as unsure as told, in a room without any other noise; beams at these
+    angles."""
     return scene(
         *(Sense(math.radians(angle)) for angle in angles),
-        **{"guard": "off", "start": (2.0, 3.0, 0.0), "sigma": sigma, "noise": Noise(0, 0, 0, 0, ratio), **described},
+        **{
+            "guard": "off",
+            "start": (2.0, 3.0, 0.0),
+            "sigma": sigma,
+            "noise": Noise(0, 0, 0, 0, ratio),
+            **described,
+        },
     )
 
 
@@ -195,12 +222,14 @@ def test_one_beam_after_knowing_nothing_leaves_the_doubt_of_the_beam(name, runs)
     assert P[..., 0, 0] == pytest.approx(0.0064)
     r = steps[2].correction.R[..., 0, 0]
     right = 1 / (1 / P[..., 0, 0] + 1 / r)
-    if name != "iekf":  # whose R is that of the prediction, and H that of the end: alike here, but for the second R
+    # whose R is that of the prediction, and H that of the end: alike here, but for the second R
+    if name != "iekf":
         np.testing.assert_allclose(steps[2].posterior.covariance[..., 0, 0], right, rtol=1e-6)
 
 
 def test_a_small_doubt_beside_a_large_one_counts():
-    """σ 0.1 mm along the beam and 10⁶ m across: S = 10⁻⁸ + (10⁻⁵ · 8)², the gain is −10⁻⁸/S, and P_xx falls."""
+    """σ 0.1 mm along the beam and 10⁶ m across: S = 10⁻⁸ + (10⁻⁵ · 8)², the gain is −10⁻⁸/S, and
+    P_xx falls."""
     room = beam_world((0, 0, 0), 1e-5, 0)
     told = replace(room.world.told, sigma=np.array([1e-4, 1e6, 0.0]))
     *_, step = play(replace(room, world=replace(room.world, told=told)))
@@ -229,15 +258,20 @@ def test_a_covariance_stays_one_in_every_world(name, hard):
         for command in (Sense(math.radians(angle)), Move(0.3, math.radians(30)))
     ]
     made = scene(*course, noise=noise, obstacles=(DESK,), guard="off", filter=name)
-    made = replace(made, world=replace(made.world, told=replace(made.world.told, sigma=np.array(sigma))))
+    made = replace(
+        made, world=replace(made.world, told=replace(made.world.told, sigma=np.array(sigma)))
+    )
     for step in play(made, np.arange(256)):
         sound(step.posterior.covariance)
 
 
-@pytest.mark.parametrize(("name", "backend"), [*((name, "numpy") for name in EXACT), ("ekf", BACKENDS[-1])])
+@pytest.mark.parametrize(
+    ("name", "backend"), [*((name, "numpy") for name in EXACT), ("ekf", BACKENDS[-1])]
+)
 @pytest.mark.parametrize("off", [1e-3, 1e-6, 1e-8])
 def test_the_way_back_leaves_a_covariance(name, backend, off):
-    """Where an unsure heading moved the place and moves it back, what is left of σ_xx is rounding, of σ_xθ is not."""
+    """Where an unsure heading moved the place and moves it back, what is left of σ_xx is rounding,
+    of σ_xθ is not."""
     course = (
         Move(1.0, math.pi + off),
         Move(1.0, 0.3),
@@ -247,7 +281,9 @@ def test_the_way_back_leaves_a_covariance(name, backend, off):
         Sense(1.0),
     )
     made = scene(*course, start=(3, 3, 0.7), noise=Noise(0, 0, 0, 0, 0.3), guard="off", filter=name)
-    made = replace(made, world=replace(made.world, told=replace(made.world.told, sigma=np.array([0, 0, 1.0]))))
+    made = replace(
+        made, world=replace(made.world, told=replace(made.world.told, sigma=np.array([0, 0, 1.0])))
+    )
     with using(backend):
         for step in play(made, np.arange(MANY)):
             sound(step.posterior.covariance)
@@ -259,9 +295,12 @@ def test_the_way_back_leaves_a_covariance(name, backend, off):
 
 @pytest.mark.parametrize("runs", [None, np.arange(3)])
 def test_what_a_beam_across_the_way_cannot_see_does_not_move(runs):
-    """Along y, sin and cos of 90° leave σ_x = 10⁻¹⁷ m; a perfect beam along x must not read 10¹⁶ into it."""
+    """Along y, sin and cos of 90° leave σ_x = 10⁻¹⁷ m; a perfect beam along x must not read 10¹⁶
+    into it."""
     course = (Move(0.5, 0.0), Move(0.3, 0.0), Sense(math.radians(-90)), Sense(math.radians(90)))
-    made = scene(*course, start=(3, 2, math.pi / 2), noise=Noise(0.05, 0, 0.05, 0, 0.0), guard="off")
+    made = scene(
+        *course, start=(3, 2, math.pi / 2), noise=Noise(0.05, 0, 0.05, 0, 0.0), guard="off"
+    )
     for step in play(made, runs) if runs is not None else play(made):
         if step.correction is not None:
             assert np.all(step.correction.S == 0)

@@ -25,8 +25,8 @@ from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ekf import EKF
 from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
-from ekfsim.models.laser import Laser
-from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.motions.move_turn import MoveTurn
+from ekfsim.models.sensors.laser import Laser
 from ekfsim.records import Control, Move, Reading, Sense
 
 seeds = st.integers(0, 2**32 - 1)
@@ -72,7 +72,9 @@ def test_an_update_is_that_of_filterpy(k, seed):
 
 
 def classroom(random):
-    prior = Gaussian(random.uniform((1, 1, -3), (9, 7, 3)), 0.01 * covariance(random, 3) + 1e-4 * np.eye(3))
+    prior = Gaussian(
+        random.uniform((1, 1, -3), (9, 7, 3)), 0.01 * covariance(random, 3) + 1e-4 * np.eye(3)
+    )
     room = Walls.of({"boundary": np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])})
     return prior, Laser(room, random.uniform(-3, 3), 0.02), MoveTurn(0.05, 0.1)
 
@@ -84,7 +86,10 @@ def test_the_classroom_is_filtered_as_filterpy_does(seed):
     u = np.array([random.uniform(-0.5, 0.5), random.uniform(-1, 1)])
     other = ExtendedKalmanFilter(dim_x=3, dim_z=1)
     other.x, other.P = belief.mean.copy(), belief.covariance.copy()
-    other.F, other.Q = motion.F(*belief[:1], u), motion.G(*belief[:1], u) @ motion.M(u) @ motion.G(*belief[:1], u).T
+    other.F, other.Q = (
+        motion.F(*belief[:1], u),
+        motion.G(*belief[:1], u) @ motion.M(u) @ motion.G(*belief[:1], u).T,
+    )
     other.predict_x = lambda _: setattr(other, "x", motion.f(other.x, u))
     other.predict()
     belief, _ = EKF().predict(belief, motion, u)
@@ -96,7 +101,9 @@ def test_the_classroom_is_filtered_as_filterpy_does(seed):
     posterior, correction = EKF().update(belief, laser, z)
     assert close(correction.K, other.K)
     assert close(posterior.mean[:2], other.x[:2])
-    assert math.remainder(posterior.mean[2] - other.x[2], 2 * math.pi) == pytest.approx(0, abs=1e-12)
+    assert math.remainder(posterior.mean[2] - other.x[2], 2 * math.pi) == pytest.approx(
+        0, abs=1e-12
+    )
     assert close(posterior.covariance, other.P)
 
 
@@ -130,7 +137,9 @@ def test_a_batch_equals_its_runs(axes, gate):
         one, one_prediction = filter.predict(Gaussian(x[k], P[k]), motion, u[k])
         same(predicted, one, k)
         for name in ("F", "G"):
-            assert getattr(prediction, name)[k] == pytest.approx(getattr(one_prediction, name), abs=1e-12)
+            assert getattr(prediction, name)[k] == pytest.approx(
+                getattr(one_prediction, name), abs=1e-12
+            )
         one, one_correction = filter.update(Gaussian(x[k], P[k]), laser, z[k], skip[k])
         same(updated, one, k)
         for name in ("predicted", "innovation", "R", "S", "H", "K", "nis", "refused"):
@@ -144,12 +153,24 @@ def same(batch, one, k):
     assert batch.covariance[k] == pytest.approx(one.covariance, abs=1e-12)
 
 
-def reading(z, x=(3.0, 4.0, 0.1), P=np.diag([0.01, 0.02, 0.003]), ratio=0.01, gate=None, skip=False, walls=None):  # noqa: B008
-    room = Walls.of({"boundary": np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])} if walls is None else walls)
+def reading(
+    z,
+    x=(3.0, 4.0, 0.1),
+    P=np.diag([0.01, 0.02, 0.003]),  # noqa: B008
+    ratio=0.01,
+    gate=None,
+    skip=False,
+    walls=None,
+):
+    room = Walls.of(
+        {"boundary": np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])} if walls is None else walls
+    )
     prior, laser = Gaussian(np.array(x, float), np.array(P, float)), Laser(room, 0.0, ratio)
     ((posterior, correction), (batch, corrections)) = (
         EKF(gate).update(prior, laser, np.array([z], float), skip),
-        EKF(gate).update(Gaussian(prior.mean[None], prior.covariance[None]), laser, np.array([[z]], float), skip),
+        EKF(gate).update(
+            Gaussian(prior.mean[None], prior.covariance[None]), laser, np.array([[z]], float), skip
+        ),
     )
     same(batch, posterior, 0)
     assert corrections.refused[0] == correction.refused
@@ -232,7 +253,9 @@ def test_where_nothing_is_uncertain_nothing_is_learnt():
 def test_a_certain_belief_ignores_every_reading():
     prior, posterior, correction = reading(5.0, P=np.zeros((3, 3)))
     assert untouched(prior, posterior, correction)
-    assert correction.nis == pytest.approx((5 - 7 / math.cos(0.1)) ** 2 / (0.01 * 7 / math.cos(0.1)) ** 2)
+    assert correction.nis == pytest.approx(
+        (5 - 7 / math.cos(0.1)) ** 2 / (0.01 * 7 / math.cos(0.1)) ** 2
+    )
 
 
 def test_a_perfect_laser_leaves_no_doubt_along_its_beam():
@@ -246,7 +269,9 @@ def test_singular_covariances(alive, seed):
     random = np.random.default_rng(seed)
     P = np.zeros((3, 3))
     on = np.flatnonzero(alive)
-    P[np.ix_(on, on)] = 0.01 * covariance(random, len(on), rank=max(1, len(on) - 1)) if len(on) else 0
+    P[np.ix_(on, on)] = (
+        0.01 * covariance(random, len(on), rank=max(1, len(on) - 1)) if len(on) else 0
+    )
     prior, posterior, correction = reading(7.1, P=P)
     assert definite(posterior.covariance, 1e-9)
     assert (posterior.mean[~np.array(alive)] == prior.mean[~np.array(alive)]).all()
@@ -266,8 +291,15 @@ def test_two_readings_without_noise_of_a_certain_state():
 
 
 def test_an_innovation_that_is_an_angle_is_wrapped_by_its_sensor():
-    model = replace(problem(np.random.default_rng(10)), C=np.array([[0, 0, 1.0]]), noise=np.array([[0.1]]), angles=(0,))
-    posterior, correction = EKF().update(Gaussian(np.array([0, 0, 3.1]), np.eye(3)), model, np.array([-3.1]))
+    model = replace(
+        problem(np.random.default_rng(10)),
+        C=np.array([[0, 0, 1.0]]),
+        noise=np.array([[0.1]]),
+        angles=(0,),
+    )
+    posterior, correction = EKF().update(
+        Gaussian(np.array([0, 0, 3.1]), np.eye(3)), model, np.array([-3.1])
+    )
     assert correction.innovation == pytest.approx(2 * math.pi - 6.2)
     assert -math.pi < posterior.mean[2] <= math.pi
     assert posterior.mean[2] == pytest.approx(3.1 + (2 * math.pi - 6.2) / 1.1 - 2 * math.pi)
@@ -276,7 +308,9 @@ def test_an_innovation_that_is_an_angle_is_wrapped_by_its_sensor():
 @pytest.mark.parametrize("axes", [(), (2,)])
 def test_headings_stay_within_half_a_turn(axes):
     motion, x = MoveTurn(0.1, 0.1), np.broadcast_to([0, 0, 3.0], (*axes, 3))
-    belief, _ = EKF().predict(Gaussian(x, np.zeros((*axes, 3, 3))), motion, np.broadcast_to([1.0, 0.5], (*axes, 2)))
+    belief, _ = EKF().predict(
+        Gaussian(x, np.zeros((*axes, 3, 3))), motion, np.broadcast_to([1.0, 0.5], (*axes, 2))
+    )
     assert belief.mean[..., 2] == pytest.approx(3.5 - 2 * math.pi)
 
 
@@ -337,7 +371,8 @@ def test_every_filter_tells_the_same_story_alone_as_in_a_batch(name):
 
 
 def test_a_perfect_laser_settles_what_it_measures_once_and_for_all():
-    """With a known heading all is linear: two beams tell the place exactly, and S is 0 ever after, not rounding."""
+    """With a known heading all is linear: two beams tell the place exactly, and S is 0 ever after,
+    not rounding."""
     room = Walls.of({"room": np.array([[0, 0], [8, 0], [8, 6], [0, 6.0]])})
     for seed in range(20):
         random = np.random.default_rng(seed)
@@ -349,7 +384,9 @@ def test_a_perfect_laser_settles_what_it_measures_once_and_for_all():
             laser = Laser(room, bearing, 0.0)
             z = laser.h(truth)
             alone, correction = EKF().update(belief, laser, z)
-            batch, batched = EKF().update(Gaussian(belief.mean[None], belief.covariance[None]), laser, z[None])
+            batch, batched = EKF().update(
+                Gaussian(belief.mean[None], belief.covariance[None]), laser, z[None]
+            )
             same(batch, alone, 0)
             settled = n not in (0, 2)
             assert np.isnan(correction.nis) == np.isnan(batched.nis[0]) == settled
@@ -382,7 +419,9 @@ def test_states_and_readings_of_any_size_are_filtered_as_filterpy_does(n, k):
     for seed in range(20):
         model, belief, u, z = random_problem(seed, n, k)
         other = theirs(ExtendedKalmanFilter, model, *belief)
-        other.predict_x = lambda _, other=other, model=model, u=u: setattr(other, "x", model.f(other.x, u))
+        other.predict_x = lambda _, other=other, model=model, u=u: setattr(
+            other, "x", model.f(other.x, u)
+        )
         other.predict()
         belief, _ = LINEAR.predict(belief, model, u)
         assert close(belief.mean, other.x)
@@ -402,13 +441,19 @@ def test_states_and_readings_of_any_size_are_filtered_as_stone_soup_does(n, k):
     for seed in range(5):
         model, belief, _, z = random_problem(seed, n, k)
         W = model.B @ model.input_noise @ model.B.T + model.process_noise
-        transition = LinearGaussianTimeInvariantTransitionModel(transition_matrix=model.A, covariance_matrix=W)
+        transition = LinearGaussianTimeInvariantTransitionModel(
+            transition_matrix=model.A, covariance_matrix=W
+        )
         state = GaussianState(belief.mean[:, None], belief.covariance, timestamp=now)
-        prediction = ExtendedKalmanPredictor(transition).predict(state, timestamp=now + timedelta(seconds=1))
+        prediction = ExtendedKalmanPredictor(transition).predict(
+            state, timestamp=now + timedelta(seconds=1)
+        )
         belief, _ = LINEAR.predict(belief, model, np.zeros(2))
         assert close(belief.mean, np.asarray(prediction.mean)[:, 0])
         assert close(belief.covariance, np.asarray(prediction.covar))
-        updater = ExtendedKalmanUpdater(Matrix(n, np.arange(k), model.noise, matrix_=model.C), use_joseph_cov=True)
+        updater = ExtendedKalmanUpdater(
+            Matrix(n, np.arange(k), model.noise, matrix_=model.C), use_joseph_cov=True
+        )
         updated = updater.update(SingleHypothesis(prediction, Detection(z[:, None], timestamp=now)))
         belief, correction = LINEAR.update(belief, model, z)
         assert close(correction.S, np.asarray(updated.hypothesis.measurement_prediction.covar))

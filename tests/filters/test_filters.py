@@ -10,13 +10,13 @@ from problems import ROOM, begun, classroom, landmark, problem
 from scipy.stats import chi2
 
 from ekfsim.consistency import Evidence, Verdict
-from ekfsim.files.load import load_scene
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian, Particles, Refused
 from ekfsim.localization import play
-from ekfsim.models.laser import Laser
-from ekfsim.models.move_turn import MoveTurn
-from ekfsim.models.wheels import TwoWheels
+from ekfsim.models.motions.move_turn import MoveTurn
+from ekfsim.models.motions.wheels import TwoWheels
+from ekfsim.models.sensors.laser import Laser
 
 EXACT = [name for name in FILTERS if name != "pf"]  # without draws
 STAY = ("kf", "kf-nominal")  # linearised where the run begins: the plan of `begun` is to stay there
@@ -102,7 +102,11 @@ def test_a_batch_equals_its_runs(name, gate, kind):
             same(prediction.G[i], one_prediction.G)
             for attribute in TOLD:
                 same(getattr(correction, attribute)[i], np.asarray(getattr(one, attribute)))
-            for attribute in ("mean", "covariance", *(("states", "weights") if name == "pf" else ())):
+            for attribute in (
+                "mean",
+                "covariance",
+                *(("states", "weights") if name == "pf" else ()),
+            ):
                 same(getattr(batch, attribute)[i], getattr(belief, attribute))
 
 
@@ -127,7 +131,8 @@ def test_any_leading_axes(name, axes):
 
 @pytest.mark.parametrize("name", FILTERS)
 def test_a_covariance_stays_one_over_a_million_steps(name):
-    """1 000 robots take 1 000 steps among landmarks, each seen from near and far; of particles there are fewer."""
+    """1 000 robots take 1 000 steps among landmarks, each seen from near and far; of particles
+    there are fewer."""
     robots = 20 if name == "pf" else 1000
     steps = 1000 if name != "pf" else 100
     random = np.random.default_rng(2)
@@ -152,7 +157,16 @@ def test_a_covariance_stays_one_over_a_million_steps(name):
         assert np.median(np.hypot(*(belief.mean - truth)[:, :2].T)) < 0.05
 
 
-def in_room(name, z, x=(3.0, 4.0, 0.1), P=np.diag([0.01, 0.02, 0.003]), ratio=0.01, gate=None, skip=False, walls=ROOM):  # noqa: B008
+def in_room(
+    name,
+    z,
+    x=(3.0, 4.0, 0.1),
+    P=np.diag([0.01, 0.02, 0.003]),  # noqa: B008
+    ratio=0.01,
+    gate=None,
+    skip=False,
+    walls=ROOM,
+):
     prior, laser = Gaussian(np.array(x, float), np.array(P, float)), Laser(walls, 0.0, ratio)
     return prior, *begun(name, prior, gate).update(prior, laser, np.array([z], float), skip)
 
@@ -186,7 +200,8 @@ def test_nothing_in_view(name):
     assert np.isnan(correction.nis)
     assert np.isnan(correction.S).all()
     assert (correction.K == 0).all()
-    assert in_room(name, np.nan, x=(-3.0, 4.0, 3.0))[2].refused == Refused.NO_ECHO  # the first reason that holds
+    # the first reason that holds
+    assert in_room(name, np.nan, x=(-3.0, 4.0, 3.0))[2].refused == Refused.NO_ECHO
 
 
 @pytest.mark.parametrize("name", FILTERS)
@@ -212,7 +227,9 @@ def test_a_certain_belief_stays_so(name):
     prior, posterior, correction = in_room(name, 7.2, P=np.zeros((3, 3)))
     assert posterior.mean == pytest.approx(prior.mean, abs=1e-15)
     assert (posterior.covariance == 0).all()
-    assert correction.nis == pytest.approx((7.2 - 7 / math.cos(0.1)) ** 2 / (0.07 / math.cos(0.1)) ** 2)
+    assert correction.nis == pytest.approx(
+        (7.2 - 7 / math.cos(0.1)) ** 2 / (0.07 / math.cos(0.1)) ** 2
+    )
     *_, correction = in_room(name, 7.2, P=np.zeros((3, 3)), ratio=0.0, gate=0.5)
     assert correction.refused == Refused.NOT
     assert np.isnan(correction.nis)
@@ -221,14 +238,16 @@ def test_a_certain_belief_stays_so(name):
     assert (belief.covariance == 0).all()
     belief, prediction = begun(name, first).predict(first, MoveTurn(0.1, 0.1), np.array([1.0, 0.3]))
     assert belief.covariance == pytest.approx(
-        prediction.G @ np.diag([0.01, 0.0009]) @ prediction.G.T, abs=0.002 if name == "pf" else 1e-15
+        prediction.G @ np.diag([0.01, 0.0009]) @ prediction.G.T,
+        abs=0.002 if name == "pf" else 1e-15,
     )
 
 
 @pytest.mark.parametrize("rank", [1, 2])
 @pytest.mark.parametrize("name", FILTERS)
 def test_a_singular_covariance(name, rank):
-    """A sensor that sees what is certain learns nothing; what depends on what it sees moves along."""
+    """A sensor that sees what is certain learns nothing; what depends on what it sees moves
+    along."""
     for seed in range(10):
         random = np.random.default_rng(seed)
         P = 1e-3 * covariance(random, 3, rank=rank)
@@ -236,10 +255,13 @@ def test_a_singular_covariance(name, rank):
         assert definite(posterior.covariance, 1e-9)
         moved = posterior.mean - prior.mean
         V = np.linalg.eigh(P)[1][:, : 3 - rank]
-        assert V.T @ moved == pytest.approx(0, abs=1e-5 if name == "pf" else 1e-9)  # a circular mean is no sum
+        # a circular mean is no sum
+        assert V.T @ moved == pytest.approx(0, abs=1e-5 if name == "pf" else 1e-9)
         assert np.isfinite(correction.K).all()
         if name != "iekf":  # whose S is that of the prediction, and H is not
-            np.testing.assert_allclose(correction.H @ P, correction.K.T * correction.S, rtol=1e-6, atol=1e-6)
+            np.testing.assert_allclose(
+                correction.H @ P, correction.K.T * correction.S, rtol=1e-6, atol=1e-6
+            )
 
 
 @pytest.mark.parametrize("name", FILTERS)
@@ -260,10 +282,15 @@ def test_a_heading_at_the_turn_of_the_circle(name, heading):
         results.append((gone, turn.T @ belief.covariance @ turn, correction))
         assert -math.pi < belief.mean[2] <= math.pi
         assert abs(correction.innovation[1]) < 0.3
-    tolerance = 0.1 if name == "pf" else 1e-9  # the root of P turns, and the particles' draws with it
+    # the root of P turns, and the particles' draws with it
+    tolerance = 0.1 if name == "pf" else 1e-9
     if name not in STAY:
-        assert results[0][0] == pytest.approx(results[1][0], abs=tolerance if not name.startswith("ukf") else 2e-3)
-        assert results[0][1] == pytest.approx(results[1][1], abs=tolerance if not name.startswith("ukf") else 2e-3)
+        assert results[0][0] == pytest.approx(
+            results[1][0], abs=tolerance if not name.startswith("ukf") else 2e-3
+        )
+        assert results[0][1] == pytest.approx(
+            results[1][1], abs=tolerance if not name.startswith("ukf") else 2e-3
+        )
 
 
 @pytest.mark.parametrize("name", FILTERS)
@@ -272,7 +299,11 @@ def test_nothing_handed_in_is_changed(name):
     first.mean[2] = 3.1
     filter = begun(name, first)
     belief, _ = filter.predict(first, motion, np.array([0.1, 0.1]))
-    u, z, inside = np.array([0.3, 0.2]), laser.h(first.mean) + 0.01, [belief.mean, belief.covariance]
+    u, z, inside = (
+        np.array([0.3, 0.2]),
+        laser.h(first.mean) + 0.01,
+        [belief.mean, belief.covariance],
+    )
     arrays = [first.mean, first.covariance, u, z, *inside]
     arrays += [belief.states, belief.weights] if isinstance(belief, Particles) else []
     copies = [array.copy() for array in arrays]
@@ -290,14 +321,18 @@ def test_a_tour_of_a_room_ends_consistent(name):
     runs = 24
     random = np.random.default_rng(4)
     truth = np.tile([2.0, 2.0, 0.0], (runs, 1)) + random.normal(size=(runs, 3)) * (0.1, 0.1, 0.05)
-    first = Gaussian(np.tile([2.0, 2.0, 0.0], (runs, 1)), np.tile(np.diag([0.01, 0.01, 0.0025]), (runs, 1, 1)))
+    first = Gaussian(
+        np.tile([2.0, 2.0, 0.0], (runs, 1)), np.tile(np.diag([0.01, 0.01, 0.0025]), (runs, 1, 1))
+    )
     motion, quiet = MoveTurn(0.03, 0.03), MoveTurn(0.0, 0.0)
     filter, belief = begun(name, first, runs=range(runs)), first
     for _ in range(2):
         for d, a in ((3.0, 90), (3.0, 0), (1.0, 90), (3.0, 90), (4.0, 90)):
             u = np.broadcast_to([d, math.radians(a)], (runs, 2))
             truth = quiet.f(truth, u)
-            belief, _ = filter.predict(belief, motion, u * (1 + 0.03 * random.normal(size=(runs, 2))))
+            belief, _ = filter.predict(
+                belief, motion, u * (1 + 0.03 * random.normal(size=(runs, 2)))
+            )
             for bearing in (0.1, 1.6, -1.5):
                 laser = Laser(ROOM, bearing, 0.02)
                 z = laser.h(truth) * (1 + 0.02 * random.normal(size=(runs, 1)))
@@ -311,7 +346,8 @@ def test_a_tour_of_a_room_ends_consistent(name):
 
 @pytest.mark.parametrize("name", FILTERS)
 def test_the_packaged_tour_ends_consistent(name):
-    """kf, which is linearised for the first heading, is lost after the first turn, and says why it may be."""
+    """kf, which is linearised for the first heading, is lost after the first turn, and says why it
+    may be."""
     evidence = Evidence()
     for step in play(replace(load_scene("tour"), filter=name)):
         evidence.add(step)

@@ -11,14 +11,14 @@ from problems import ROOM, classroom, landmark, problem
 from scipy.optimize import least_squares
 from scipy.stats import chi2
 
-from ekfsim.files.load import load_scene
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.iekf import IEKF
 from ekfsim.geometry.walls import Walls
 from ekfsim.localization import first_belief, localize, play
-from ekfsim.models.laser import Laser
 from ekfsim.models.protocols import Quantity
+from ekfsim.models.sensors.laser import Laser
 from ekfsim.simulation import simulate
 
 seeds = st.integers(0, 2**32 - 1)
@@ -50,7 +50,8 @@ class Square:
 
 
 def test_one_number_and_its_square():
-    """Gauss–Newton by hand: xᵢ₊₁ = x⁻ + Kᵢ (z − xᵢ² − 2xᵢ (x⁻ − xᵢ)), and the most probable x is a root of a cubic."""
+    """Gauss–Newton by hand: xᵢ₊₁ = x⁻ + Kᵢ (z − xᵢ² − 2xᵢ (x⁻ − xᵢ)), and the most probable x is a
+    root of a cubic."""
     x0, P, R, z = 2.0, 0.5, 0.01, 6.0
     x = x0
     for n in range(1, 60):
@@ -71,14 +72,17 @@ def test_one_number_and_its_square():
 
 @pytest.mark.parametrize("axes", [(), (1,)])
 def test_no_step_leads_up(axes):
-    """From 0.3 the first step would go to 6.6, far beyond √4: each cap ends no higher than the one before."""
+    """From 0.3 the first step would go to 6.6, far beyond √4: each cap ends no higher than the one
+    before."""
     prior = Gaussian(np.full((*axes, 1), 0.3), np.full((*axes, 1, 1), 25.0))
     J = lambda x: (x - 0.3) ** 2 / 25 + (4 - x * x) ** 2 / 0.01  # noqa: E731
     once = EKF(headings=()).update(prior, Square(), np.full((*axes, 1), 4.0))[0].mean.item()
     assert J(once) > J(0.3)
     costs = [J(0.3)]
     for n in range(1, 40):
-        posterior, correction = IEKF(headings=(), iterations=n).update(prior, Square(), np.full((*axes, 1), 4.0))
+        posterior, correction = IEKF(headings=(), iterations=n).update(
+            prior, Square(), np.full((*axes, 1), 4.0)
+        )
         costs.append(J(posterior.mean.item()))
     assert (np.diff(costs) <= 1e-9).all()
     assert np.all(correction.settled)
@@ -89,11 +93,15 @@ def test_no_step_leads_up(axes):
 def test_it_finds_the_most_probable_place(seed):
     """As scipy's least squares do: (x − x⁻)ᵀ P⁻¹ (x − x⁻) + νᵀ R⁻¹ ν is least."""
     random = np.random.default_rng(seed)
-    prior = Gaussian(np.array([0.0, 0.0, random.uniform(-3, 3)]), 0.01 * covariance(random, 3) + 0.02 * np.eye(3))
+    prior = Gaussian(
+        np.array([0.0, 0.0, random.uniform(-3, 3)]), 0.01 * covariance(random, 3) + 0.02 * np.eye(3)
+    )
     mark = landmark(2.0, 1.5, 0.1, 0.05)
     z = mark.h(random.multivariate_normal(*prior)) + random.normal(size=2) * (0.1, 0.05)
     posterior, correction = IEKF(iterations=50).update(prior, mark, z)
-    root_P, root_R = (np.linalg.inv(np.linalg.cholesky(C)) for C in (prior.covariance, correction.R))
+    root_P, root_R = (
+        np.linalg.inv(np.linalg.cholesky(C)) for C in (prior.covariance, correction.R)
+    )
     best = least_squares(
         lambda x: np.concatenate([root_P @ (x - prior.mean), root_R @ mark.residual(z, mark.h(x))]),
         prior.mean, xtol=1e-14, ftol=1e-14, gtol=1e-14,
@@ -116,7 +124,8 @@ def test_no_iteration_is_the_ekf():
 
 
 def test_no_step_leads_to_where_nothing_would_be_seen():
-    """The reading says 2 m less: where the EKF goes to, the beam passes the post, and no reading would have come."""
+    """The reading says 2 m less: where the EKF goes to, the beam passes the post, and no reading
+    would have come."""
     post = Walls.of({"post": np.array([[5, -0.2], [5.4, -0.2], [5.4, 0.2], [5, 0.2]])})
     P = np.array([[1.0, 0.3, 0], [0.3, 0.2, 0], [0, 0, 1e-4]])
     prior, laser = Gaussian(np.zeros(3), P), Laser(post, 0.0, 0.01)
@@ -140,7 +149,8 @@ def test_what_a_reading_is_judged_by_is_the_prediction():
 
 
 def test_where_the_search_is_cut_off_does_not_matter():
-    """Among walls it cycled, and what its tenth point was decided whether the robot is lost: 28 to 40 % by the cap."""
+    """Among walls it cycled, and what its tenth point was decided whether the robot is lost: 28 to
+    40 % by the cap."""
     scene, runs = load_scene("diverge-01-wrong-wall"), np.arange(256)
     shares = []
     for cap in (8, 50):
@@ -173,14 +183,17 @@ class Counted(Laser):
 
 @pytest.mark.parametrize("most", [8, 50])
 def test_a_bent_valley_is_not_walked_to_its_end(most):
-    """A beam of a millimetre and a belief wider than the room, all of it correlated: many short steps lead down."""
+    """A beam of a millimetre and a belief wider than the room, all of it correlated: many short
+    steps lead down."""
     random = np.random.default_rng(1)
     x = np.column_stack([random.uniform(1, 9, (64, 2)), random.uniform(-np.pi, np.pi, 64)])
     root = random.normal(size=(64, 3, 3))
     P = root @ root.mT
     laser = Counted(ROOM, 0.3, 1e-4)
     laser.looks.clear()
-    _, correction = IEKF(iterations=most).update(Gaussian(x, P), laser, random.uniform(1, 5, (64, 1)))
+    _, correction = IEKF(iterations=most).update(
+        Gaussian(x, P), laser, random.uniform(1, 5, (64, 1))
+    )
     assert len(laser.looks) <= 8 * most + 2
     if most == 8:
         assert not correction.settled.all()

@@ -9,7 +9,7 @@ from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.kf import KF
 from ekfsim.filters.nominal import NominalKF
-from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.motions.move_turn import MoveTurn
 
 PLAN = np.array([[1.0, 1.0, 0.2], [2.0, 1.2, 1.3], [2.3, 2.1, 3.1]])
 FIRST = Gaussian(np.array([1.2, 0.9, 0.1]), np.diag([0.04, 0.02, 0.01]))
@@ -61,7 +61,9 @@ def replace_mean(error):
 
 def test_headings_of_plan_and_estimate_may_lie_on_either_side_of_the_turn():
     plan, u = np.array([[0.0, 0.0, math.pi - 0.01]]), np.array([1.0, 0.0])
-    belief, _ = NominalKF(plan).predict(Gaussian(np.array([0.0, 0.0, -math.pi + 0.01]), FIRST.covariance), MOTION, u)
+    belief, _ = NominalKF(plan).predict(
+        Gaussian(np.array([0.0, 0.0, -math.pi + 0.01]), FIRST.covariance), MOTION, u
+    )
     assert belief.mean == pytest.approx([-1.0, -0.01, -math.pi + 0.01], abs=1e-3)
 
 

@@ -10,10 +10,10 @@ from ekfsim.filters.belief import Gaussian, Particles, Refused
 from ekfsim.filters.pf import PF, systematic
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.laser import Laser
-from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.motions.move_turn import MoveTurn
+from ekfsim.models.motions.wheels import GyroWheels
 from ekfsim.models.protocols import Quantity
-from ekfsim.models.wheels import GyroWheels
+from ekfsim.models.sensors.laser import Laser
 
 POST = Walls.of({"post": np.array([[5, -0.2], [5.4, -0.2], [5.4, 0.2], [5, 0.2]])})
 
@@ -46,7 +46,8 @@ def test_the_same_seed_draws_the_same():
 
 
 def test_a_gaussian_is_drawn_and_stands_for_itself():
-    """The crowd of a first belief tells the belief's own mean and covariance until a reading is used."""
+    """The crowd of a first belief tells the belief's own mean and covariance until a reading is
+    used."""
     P = np.diag([0.04, 0.01, 0.09])
     prior = Gaussian(np.array([3.0, 4.0, 3.1]), P)
     posterior, _ = one(count=20_000).update(prior, Laser(ROOM, 0.0, 0.01), np.array([np.nan]))
@@ -67,9 +68,15 @@ def test_the_noise_of_inputs_and_of_the_process():
     belief, prediction = one(count=50_000).predict(first, motion, u)
     expected = prediction.G @ motion.M(u) @ prediction.G.T + Q
     scale = np.sqrt(np.diag(expected))
-    assert belief.covariance / np.outer(scale, scale) == pytest.approx(expected / np.outer(scale, scale), abs=0.03)
-    assert belief.mean == pytest.approx(motion.f(first.mean, u), abs=5 * scale.max() / math.sqrt(50_000))
-    turned, _ = one().predict(Gaussian(np.array([0.0, 0.0, math.pi]), np.zeros((3, 3))), motion, u * (1, 1, 0, 1))
+    assert belief.covariance / np.outer(scale, scale) == pytest.approx(
+        expected / np.outer(scale, scale), abs=0.03
+    )
+    assert belief.mean == pytest.approx(
+        motion.f(first.mean, u), abs=5 * scale.max() / math.sqrt(50_000)
+    )
+    turned, _ = one().predict(
+        Gaussian(np.array([0.0, 0.0, math.pi]), np.zeros((3, 3))), motion, u * (1, 1, 0, 1)
+    )
     assert np.abs(turned.states[:, 2]).max() <= math.pi
 
 
@@ -106,9 +113,13 @@ class Growing:
 def test_two_numbers_at_once_weigh_by_their_density():
     states, z = np.random.default_rng(2).normal(size=(1000, 3)), np.array([0.1, 0.2])
     prior = crowd(states)
-    posterior, correction = PF((np.random.default_rng(0),), headings=(), count=1000).update(prior, Growing(), z)
+    posterior, correction = PF((np.random.default_rng(0),), headings=(), count=1000).update(
+        prior, Growing(), z
+    )
     R = Growing().linearize(states)[2] + np.cov(states[:, :2].T, ddof=0) * 10 / 1000
-    expected = np.array([multivariate_normal.pdf(z, x[:2], r) for x, r in zip(states, R, strict=True)])
+    expected = np.array(
+        [multivariate_normal.pdf(z, x[:2], r) for x, r in zip(states, R, strict=True)]
+    )
     assert posterior.weights == pytest.approx(expected / expected.sum(), rel=1e-6)
     assert pytest.approx(Growing().linearize(states)[2].mean(axis=0)) == correction.R
 
@@ -119,7 +130,9 @@ def test_a_particle_that_sees_nothing_explains_nothing():
     posterior, correction = filter.update(crowd(states), laser, np.array([5.0]))
     assert posterior.weights[2] == 0
     assert correction.refused == Refused.NOT
-    assert correction.predicted == pytest.approx([(5 + 4.9 / math.cos(0.01) + 5 / math.cos(0.02)) / 3])
+    assert correction.predicted == pytest.approx(
+        [(5 + 4.9 / math.cos(0.01) + 5 / math.cos(0.02)) / 3]
+    )
     assert np.isfinite(correction.nis)
     away = crowd([[0, 0, 3.0], [0, 0, 2.0], [0, 0, -2.0], [0, 0, 3.1]])
     posterior, correction = filter.update(away, laser, np.array([5.0]))
@@ -161,7 +174,9 @@ def test_systematic_resampling():
     assert (times[weights == 0] == 0).all()
     for i in ((0, 5), (1, 7)):
         ends = np.cumsum(weights[i])
-        assert (hit[i] == np.searchsorted(ends / ends[-1], (np.arange(50) + u[i]) / 50, side="right")).all()
+        assert (
+            hit[i] == np.searchsorted(ends / ends[-1], (np.arange(50) + u[i]) / 50, side="right")
+        ).all()
 
 
 def test_drawn_anew_they_keep_mean_and_covariance_and_are_parted():
@@ -176,14 +191,18 @@ def test_drawn_anew_they_keep_mean_and_covariance_and_are_parted():
     mean, P = np.average(states, axis=0, weights=likelihood), np.cov(states.T, aweights=likelihood)
     δ = posterior.mean - mean
     scale = np.sqrt(np.diag(P))
-    assert np.array([*δ[:2], math.remainder(δ[2], 2 * math.pi)]) / scale == pytest.approx(0, abs=0.03)
+    assert np.array([*δ[:2], math.remainder(δ[2], 2 * math.pi)]) / scale == pytest.approx(
+        0, abs=0.03
+    )
     assert (posterior.covariance - P) / np.outer(scale, scale) == pytest.approx(0, abs=0.03)
 
 
 def test_it_holds_two_places_at_once():
     """A corridor seen at right angles from either wall: a Kalman filter would choose the middle."""
     random = np.random.default_rng(4)
-    states = np.concatenate([random.normal((3, 2, 0), 0.05, (250, 3)), random.normal((7, 2, math.pi), 0.05, (250, 3))])
+    states = np.concatenate(
+        [random.normal((3, 2, 0), 0.05, (250, 3)), random.normal((7, 2, math.pi), 0.05, (250, 3))]
+    )
     states[:, 2] = np.arctan2(np.sin(states[:, 2]), np.cos(states[:, 2]))
     filter, belief = one(), crowd(states)
     for _ in range(3):

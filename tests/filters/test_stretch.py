@@ -7,8 +7,8 @@ from numerics import covariance
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.stretch import stretch
-from ekfsim.models.unicycle import Unicycle
-from ekfsim.models.wheels import GyroWheels, TwoWheels
+from ekfsim.models.motions.unicycle import Unicycle
+from ekfsim.models.motions.wheels import GyroWheels, TwoWheels
 
 Q = np.diag([1e-6, 2e-6, 3e-7])
 
@@ -20,12 +20,19 @@ def inputs(random, *axes):
         "two wheels with process noise": (TwoWheels(0.5, 0.002, Q), ways),
         "gyro": (
             GyroWheels(0.5, 0.002, Q, 0.01),
-            np.concatenate([ways, random.normal(size=(*axes, 1)), np.full((*axes, 1), 0.01)], axis=-1),
+            np.concatenate(
+                [ways, random.normal(size=(*axes, 1)), np.full((*axes, 1), 0.01)], axis=-1
+            ),
         ),
         "unicycle": (
             Unicycle(0.02, 0.1),
             np.concatenate(
-                [random.normal(1, 0.1, (*axes, 1)), random.normal(size=(*axes, 1)), np.full((*axes, 1), 0.05)], axis=-1
+                [
+                    random.normal(1, 0.1, (*axes, 1)),
+                    random.normal(size=(*axes, 1)),
+                    np.full((*axes, 1), 0.05),
+                ],
+                axis=-1,
             ),
         ),
     }

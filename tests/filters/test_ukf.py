@@ -8,7 +8,7 @@ from numerics import covariance, definite
 from problems import close, landmark, problem
 from systems_scenes import gnss
 
-from ekfsim.files.load import load_scene
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.conditioning import square_root
@@ -17,9 +17,9 @@ from ekfsim.filters.ukf import UKF
 from ekfsim.filters.unscented import reach
 from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
-from ekfsim.models.laser import Laser
-from ekfsim.models.move_turn import MoveTurn
+from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.protocols import Quantity
+from ekfsim.models.sensors.laser import Laser
 
 
 class Bent:
@@ -61,9 +61,14 @@ def test_it_is_that_of_filterpy(n):
         x, P = random.normal(size=n), 0.1 * covariance(random, n) + 0.01 * np.eye(n)
         u, z = random.normal(size=2), random.normal(size=2)
         for points, chosen in settings(n):
-            filter, other = UKF(headings=(), **chosen), UnscentedKalmanFilter(n, 2, 1.0, model.h, None, points)
+            filter, other = (
+                UKF(headings=(), **chosen),
+                UnscentedKalmanFilter(n, 2, 1.0, model.h, None, points),
+            )
             other.x, other.P, other.R = x.copy(), P.copy(), model.line.noise
-            other.Q = model.line.B @ model.line.input_noise @ model.line.B.T + model.line.process_noise
+            other.Q = (
+                model.line.B @ model.line.input_noise @ model.line.B.T + model.line.process_noise
+            )
             other.predict(fx=lambda x, dt: model.f(x, u))  # noqa: B023
             belief, _ = filter.predict(Gaussian(x, P), model, u)
             assert belief.mean == pytest.approx(other.x, rel=1e-10, abs=1e-10)
@@ -85,7 +90,8 @@ def test_equation_28():
     posterior, c = UKF().update(prior, landmark(), np.array([2.0, 0.1]))
     assert posterior.covariance == pytest.approx(prior.covariance - c.K @ c.S @ c.K.T, abs=1e-12)
     assert pytest.approx((c.H @ prior.covariance).T, abs=1e-12) == c.K @ c.S
-    assert np.linalg.eigvalsh(c.S - c.R - c.H @ prior.covariance @ c.H.T).min() > 0  # what the bend of h adds
+    # what the bend of h adds
+    assert np.linalg.eigvalsh(c.S - c.R - c.H @ prior.covariance @ c.H.T).min() > 0
 
 
 def test_a_wide_prior_knows_that_a_landmark_may_be_on_either_side():
@@ -111,11 +117,15 @@ def test_one_point_without_a_wall_refuses_the_reading():
     assert UKF().update(sure, laser, np.array([5.0]))[1].refused == Refused.NOT
 
 
-@pytest.mark.parametrize("chosen", [{"kappa": -0.5}, {"alpha": 1e-3, "beta": 2.0, "kappa": 0.0}, {"alpha": 0.3}])
+@pytest.mark.parametrize(
+    "chosen", [{"kappa": -0.5}, {"alpha": 1e-3, "beta": 2.0, "kappa": 0.0}, {"alpha": 0.3}]
+)
 def test_negative_weights_keep_a_covariance(chosen):
     filter = UKF(**chosen)
     random = np.random.default_rng(5)
-    belief = Gaussian(np.array([[5.0, 4.0, 0.3]] * 20), np.tile(np.diag([0.04, 0.04, 0.3]), (20, 1, 1)))
+    belief = Gaussian(
+        np.array([[5.0, 4.0, 0.3]] * 20), np.tile(np.diag([0.04, 0.04, 0.3]), (20, 1, 1))
+    )
     for step in range(50):
         belief, _ = filter.predict(belief, MoveTurn(0.1, 0.1), random.uniform(-0.3, 0.3, (20, 2)))
         if step % 5 == 4:
@@ -127,7 +137,10 @@ def test_where_nothing_bends_the_points_do_not_matter():
     random = np.random.default_rng(6)
     model = problem(random, 3, 2, 2)
     prior, z = Gaussian(random.normal(size=3), covariance(random, 3)), random.normal(size=2)
-    results = [UKF(headings=(), alpha=a, kappa=k).update(prior, model, z)[0] for a, k in ((1, 0), (1, 2), (0.3, 0))]
+    results = [
+        UKF(headings=(), alpha=a, kappa=k).update(prior, model, z)[0]
+        for a, k in ((1, 0), (1, 2), (0.3, 0))
+    ]
     for other in results[1:]:
         assert other.mean == pytest.approx(results[0].mean, abs=1e-10)
         assert close(np.round(other.covariance, 10), np.round(results[0].covariance, 10))
@@ -139,19 +152,26 @@ def test_standing_still_forgets_no_doubt_of_the_heading(degrees, heading):
     """Of σ 120° it made 60°, of 180° none: differences of sigma points were wrapped."""
     σ = np.array([0.5, 0.2, math.radians(degrees)])
     P = np.array([[1, 0.3, -0.5], [0.3, 1, 0.4], [-0.5, 0.4, 1]]) * np.outer(σ, σ)
-    belief, prediction = UKF().predict(Gaussian(np.array([1.0, 2.0, heading]), P), MoveTurn(0.1, 0.1), np.zeros(2))
+    belief, prediction = UKF().predict(
+        Gaussian(np.array([1.0, 2.0, heading]), P), MoveTurn(0.1, 0.1), np.zeros(2)
+    )
     assert belief.mean == pytest.approx([1.0, 2.0, heading], abs=1e-12)
     np.testing.assert_allclose(belief.covariance, P, rtol=1e-12)
     np.testing.assert_allclose(prediction.F, np.eye(3), atol=1e-9)
-    turned, _ = UKF().predict(Gaussian(np.array([1.0, 2.0, heading]), P), MoveTurn(0.0, 0.0), np.array([0.0, 2.0]))
-    assert math.remainder(turned.mean[2] - heading - 2.0, 2 * math.pi) == pytest.approx(0, abs=1e-12)
+    turned, _ = UKF().predict(
+        Gaussian(np.array([1.0, 2.0, heading]), P), MoveTurn(0.0, 0.0), np.array([0.0, 2.0])
+    )
+    assert math.remainder(turned.mean[2] - heading - 2.0, 2 * math.pi) == pytest.approx(
+        0, abs=1e-12
+    )
     np.testing.assert_allclose(turned.covariance, P, rtol=1e-12)
 
 
 @pytest.mark.parametrize("degrees", [20, 100, 150, 360])
 @pytest.mark.parametrize("heading", [0.3, 3.1, -3.1])
 def test_a_bearing_is_read_with_a_heading_of_any_doubt(degrees, heading):
-    """The place is known, so all is linear in the heading: the Kalman filter's answer, whatever its σ."""
+    """The place is known, so all is linear in the heading: the Kalman filter's answer, whatever its
+    σ."""
     P = np.diag([0.0, 0.0, math.radians(degrees) ** 2])
     prior, sensor = Gaussian(np.array([0.0, 0.0, heading]), P), landmark(3.0, 1.0)
     z = sensor.h(prior.mean) + np.array([0.02, 0.4])
@@ -165,7 +185,8 @@ def test_a_bearing_is_read_with_a_heading_of_any_doubt(degrees, heading):
 @pytest.mark.parametrize("system", ["gnss", "pioneer"])
 @pytest.mark.parametrize("degrees", [90, 180, 360])
 def test_an_unknown_heading_stays_unknown_until_something_is_read(system, degrees):
-    """The first input in a driven system, before any reading, leaves the deviation of the heading about as it was."""
+    """The first input in a driven system, before any reading, leaves the deviation of the heading
+    about as it was."""
     made = load_scene(system)
     sigma = np.array([0.05, 0.05, math.radians(degrees)])
     told = replace(made.world.told, sigma=sigma)
@@ -180,7 +201,8 @@ def test_an_unknown_heading_stays_unknown_until_something_is_read(system, degree
 @pytest.mark.parametrize("name", ["ukf", "ukf-augmented"])
 @pytest.mark.parametrize("degrees", [90, 135, 180, 270])
 def test_fixes_tell_a_heading_that_nobody_knew(name, degrees):
-    """Points further than half a turn told of the wrong side: of σ 90° and 270° all runs were lost, of 180° a third."""
+    """Points further than half a turn told of the wrong side: of σ 90° and 270° all runs were lost,
+    of 180° a third."""
     made = gnss(filter=name)
     σ = np.array([0.05, 0.05, math.radians(degrees)])
     world = replace(made.world, start_sigma=σ, told=replace(made.world.told, sigma=σ))
@@ -204,10 +226,13 @@ def test_no_point_lies_further_than_a_quarter_of_a_turn(spread):
 
 @pytest.mark.parametrize("degrees", [30, 150, 360])
 def test_a_heading_that_is_measured_anew_is_known_whatever_it_was(degrees):
-    """The cart of document 004 takes its yaw from the input: what it was goes to theta_prev, with all its doubt."""
+    """The cart of document 004 takes its yaw from the input: what it was goes to theta_prev, with
+    all its doubt."""
     cart = load_scene("pylon")
     steps = play(replace(cart, filter="ekf"))
-    motion, u = next((s.entry.given.motion, s.entry.given.u) for s in steps if s.prediction is not None)
+    motion, u = next(
+        (s.entry.given.motion, s.entry.given.u) for s in steps if s.prediction is not None
+    )
     n, (θ, before) = len(cart.world.layout.names), cart.world.layout.headings
     P = 1e-4 * np.eye(n)
     P[θ, θ] = math.radians(degrees) ** 2

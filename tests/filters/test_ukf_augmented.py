@@ -10,13 +10,14 @@ from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ukf import UKF
 from ekfsim.filters.ukf_augmented import AugmentedUKF, augmented
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.laser import Laser
-from ekfsim.models.move_turn import MoveTurn
-from ekfsim.models.yaw import Yaw
+from ekfsim.models.motions.move_turn import MoveTurn
+from ekfsim.models.sensors.laser import Laser
+from ekfsim.models.sensors.yaw import Yaw
 
 
 def by_hand(mean, P, function):
-    """Weighted moments of a function over the sigma points of (x, noise), and its covariance with x; κ = 0."""
+    """Weighted moments of a function over the sigma points of (x, noise), and its covariance with
+    x; κ = 0."""
     n = len(mean)
     arms = math.sqrt(n) * np.linalg.cholesky(P).T
     points = np.concatenate([mean + arms, mean - arms])
@@ -30,13 +31,23 @@ def test_state_and_noise_are_one_set_of_sigma_points(n):
     """Eqs 20 to 28, with X of state and noise, point by point."""
     for seed in range(5):
         random = np.random.default_rng(seed)
-        model, x, P = Bent(random, n), random.normal(size=n), 0.1 * covariance(random, n) + 0.01 * np.eye(n)
+        model, x, P = (
+            Bent(random, n),
+            random.normal(size=n),
+            0.1 * covariance(random, n) + 0.01 * np.eye(n),
+        )
         M, Q, R = model.line.input_noise, model.line.process_noise, model.line.noise
         u, z = random.normal(size=2), random.normal(size=2)
-        model.M, model.Q, model.G = lambda u, M=M: M, lambda u, Q=Q: Q, lambda x, u, m=model: m.line.B
+        model.M, model.Q, model.G = (
+            lambda u, M=M: M,
+            lambda u, Q=Q: Q,
+            lambda x, u, m=model: m.line.B,
+        )
         model.F = lambda x, u, m=model: m.line.A
         one = augmented(x, P, M, Q)
-        mean, P_new, _ = by_hand(*one, lambda X, m=model, u=u: m.f(X[:n], u + X[n : n + 2]) + X[n + 2 :])
+        mean, P_new, _ = by_hand(
+            *one, lambda X, m=model, u=u: m.f(X[:n], u + X[n : n + 2]) + X[n + 2 :]
+        )
         filter = AugmentedUKF(headings=())
         belief, told = filter.predict(Gaussian(x, P), model, u)
         assert belief.mean == pytest.approx(mean, rel=1e-9, abs=1e-9)
@@ -55,9 +66,13 @@ def test_state_and_noise_are_one_set_of_sigma_points(n):
 
 
 def test_the_noise_of_a_turn_bends_the_way():
-    """A robot that knows where it is turns by 0 ± 40° and drives 2 m: on average it comes less far."""
+    """A robot that knows where it is turns by 0 ± 40° and drives 2 m: on average it comes less
+    far."""
     first, u = Gaussian(np.zeros(3), np.zeros((3, 3))), np.array([2.0, 0.0])
-    ahead = {type(filter): filter.predict(first, Twist(), u)[0].mean[0] for filter in (UKF(), AugmentedUKF())}
+    ahead = {
+        type(filter): filter.predict(first, Twist(), u)[0].mean[0]
+        for filter in (UKF(), AugmentedUKF())
+    }
     w = 0.7 * np.random.default_rng(1).normal(size=100_000)
     assert ahead[AugmentedUKF] == pytest.approx(2 * np.cos(w).mean(), rel=0.03)
     assert ahead[UKF] == pytest.approx(2.0)  # which spreads that noise by G
@@ -68,7 +83,9 @@ class Twist:
 
     def f(self, x, u):
         θ = x[..., 2] + u[..., 1]
-        return np.stack([x[..., 0] + u[..., 0] * np.cos(θ), x[..., 1] + u[..., 0] * np.sin(θ), θ], axis=-1)
+        return np.stack(
+            [x[..., 0] + u[..., 0] * np.cos(θ), x[..., 1] + u[..., 0] * np.sin(θ), θ], axis=-1
+        )
 
     def M(self, u):
         return np.diag([0.0, 0.7**2])
@@ -79,7 +96,9 @@ class Twist:
     def G(self, x, u):
         θ, d = x[..., 2] + u[..., 1], u[..., 0]
         c, s, o = np.cos(θ), np.sin(θ), np.ones_like(θ)
-        return np.stack([np.stack([c, -d * s], -1), np.stack([s, d * c], -1), np.stack([0 * o, o], -1)], axis=-2)
+        return np.stack(
+            [np.stack([c, -d * s], -1), np.stack([s, d * c], -1), np.stack([0 * o, o], -1)], axis=-2
+        )
 
     def F(self, x, u):
         return np.eye(3)
@@ -93,7 +112,10 @@ def test_where_noise_is_only_added_it_is_the_ukf():
     random = np.random.default_rng(6)
     model = problem(random, 3, 2, 2)
     prior, z = Gaussian(random.normal(size=3), covariance(random, 3)), random.normal(size=2)
-    a, b = (filter.update(prior, model, z)[0] for filter in (UKF(headings=()), AugmentedUKF(headings=())))
+    a, b = (
+        filter.update(prior, model, z)[0]
+        for filter in (UKF(headings=()), AugmentedUKF(headings=()))
+    )
     assert a.mean == pytest.approx(b.mean, abs=1e-9)
     assert a.covariance == pytest.approx(b.covariance, abs=1e-9)
 
@@ -117,7 +139,8 @@ def test_a_bearing_at_the_turn_of_the_circle():
 
 @pytest.mark.parametrize("degrees", [60, 104, 120, 180, 360])
 def test_an_unknown_heading_stays_unknown_until_it_is_read(degrees):
-    """Standing still without noise leaves P as it is, however wide; a compass then tells the heading."""
+    """Standing still without noise leaves P as it is, however wide; a compass then tells the
+    heading."""
     P = np.diag([0.05, 0.05, math.radians(degrees)]) ** 2
     stood, _ = AugmentedUKF().predict(Gaussian(np.zeros(3), P), MoveTurn(0.1, 0.1), np.zeros(2))
     assert stood.covariance == pytest.approx(P, rel=1e-9, abs=1e-12)

@@ -1,4 +1,5 @@
-"""The fast forms of prediction, update and NEES are those of the readable text: to 1e-12, run by run."""
+"""The fast forms of prediction, update and NEES are those of the readable text: to 1e-12, run by
+run."""
 
 import dataclasses
 
@@ -18,9 +19,9 @@ from ekfsim.geometry.backend import using
 from ekfsim.geometry.lanes import lanes
 from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
-from ekfsim.models.landmarks import BearingOnly, RangeOnly
-from ekfsim.models.laser import Laser
-from ekfsim.models.wheels import GyroWheels
+from ekfsim.models.motions.wheels import GyroWheels
+from ekfsim.models.sensors.landmarks import BearingOnly, RangeOnly
+from ekfsim.models.sensors.laser import Laser
 
 RUNS = 200
 NEAR = {"rtol": 1e-12, "atol": 1e-12}
@@ -74,14 +75,20 @@ def test_what_it_does_not_know_is_left_to_the_matrices(name, random):
 
 
 def sensors():
-    return Laser(ROOM, 0.4, 0.02), Laser(ROOM, 0.4, 1e-7), RangeOnly(2.0, 3.0, 0.1), BearingOnly(2.0, 3.0, 0.02)
+    return (
+        Laser(ROOM, 0.4, 0.02),
+        Laser(ROOM, 0.4, 1e-7),
+        RangeOnly(2.0, 3.0, 0.1),
+        BearingOnly(2.0, 3.0, 0.02),
+    )
 
 
 @backends
 @pytest.mark.parametrize("number", range(4))
 @pytest.mark.parametrize("gate", [None, 0.5])
 def test_an_update_is_that_of_the_matrices(name, number, gate, random):
-    """Readings that are nan, certain beliefs and skipped runs among the others, and a laser sharper than any belief."""
+    """Readings that are nan, certain beliefs and skipped runs among the others, and a laser sharper
+    than any belief."""
     (x, P), sensor = classroom(random, (RUNS,))[0], sensors()[number]
     x[::17] += [20.0, 0.0, 0.0]  # beyond the room: some beams meet nothing
     P[::7] = 0.0
@@ -90,7 +97,8 @@ def test_an_update_is_that_of_the_matrices(name, number, gate, random):
     z[::5] = np.nan
     skip = random.random(RUNS) < 0.3
     h, H, R = sensor.linearize(x)
-    aside = np.cross(H[2::7, 0], random.normal(size=(len(H[2::7]), 3)))  # what the sensor does not see
+    # what the sensor does not see
+    aside = np.cross(H[2::7, 0], random.normal(size=(len(H[2::7]), 3)))
     P[2::7] = aside[:, :, None] * aside[:, None, :]  # H P Hᵀ is what rounding leaves of 0
     prior, reading = Gaussian(x, P), Linearized(z, h, sensor.residual(z, h), H, R)
     belief, correction = corrected(prior, reading, skip, gate, (2,))
@@ -102,7 +110,9 @@ def test_an_update_is_that_of_the_matrices(name, number, gate, random):
     for part in ("predicted", "innovation", "R", "S", "H", "K", "nis", "refused"):
         expected = getattr(correction, part)
         scale = max(1.0, float(np.nanmax(np.abs(expected), initial=0.0)))
-        np.testing.assert_allclose(getattr(told, part), expected, rtol=1e-11, atol=1e-12 * scale, err_msg=part)
+        np.testing.assert_allclose(
+            getattr(told, part), expected, rtol=1e-11, atol=1e-12 * scale, err_msg=part
+        )
     assert len(set(told.refused.tolist())) > 2
     assert definite(fast.covariance)
 
@@ -163,7 +173,9 @@ def test_the_nees_of_many_runs_is_that_of_each(name, random):
 
 
 @backends
-@pytest.mark.parametrize(("made", "reasons"), [(rich(), 3), (unbounded(), 3), (rich(gate=None, guard="skip"), 3)])
+@pytest.mark.parametrize(
+    ("made", "reasons"), [(rich(), 3), (unbounded(), 3), (rich(gate=None, guard="skip"), 3)]
+)
 def test_a_run_of_a_study_is_that_run_alone(name, made, reasons):
     runs, met = np.arange(900, 1024), set()
     some = [0, 1, 60, 123]
@@ -172,8 +184,12 @@ def test_a_run_of_a_study_is_that_run_alone(name, made, reasons):
         for i, step in enumerate(play(made, runs)):
             for k, one in zip(some, (steps[i] for steps in alone), strict=True):
                 np.testing.assert_allclose(step.entry.truth[k], one.entry.truth, **NEAR)
-                np.testing.assert_allclose(step.posterior.mean[k], one.posterior.mean, rtol=1e-12, atol=1e-11)
-                np.testing.assert_allclose(step.posterior.covariance[k], one.posterior.covariance, **NEAR)
+                np.testing.assert_allclose(
+                    step.posterior.mean[k], one.posterior.mean, rtol=1e-12, atol=1e-11
+                )
+                np.testing.assert_allclose(
+                    step.posterior.covariance[k], one.posterior.covariance, **NEAR
+                )
                 assert step.nees.dof[k] == one.nees.dof
                 if one.correction:
                     assert step.correction.refused[k] == one.correction.refused

@@ -47,16 +47,25 @@ def test_points_and_weights_are_those_of_filterpy(n):
         ours = weights(n, kappa=kappa)
         assert ours.mean == pytest.approx(theirs.Wm)
         assert ours.covariance == pytest.approx(theirs.Wc)
-        assert sigma_points(x, square_root(P), ours.spread) == pytest.approx(theirs.sigma_points(x, P), abs=1e-12)
+        assert sigma_points(x, square_root(P), ours.spread) == pytest.approx(
+            theirs.sigma_points(x, P), abs=1e-12
+        )
         for alpha, beta in ((1e-1, 2.0), (0.5, 1.0)):
-            theirs, ours = MerweScaledSigmaPoints(n, alpha, beta, kappa), weights(n, alpha, beta, kappa)
+            theirs, ours = (
+                MerweScaledSigmaPoints(n, alpha, beta, kappa),
+                weights(n, alpha, beta, kappa),
+            )
             assert ours.mean == pytest.approx(theirs.Wm)
             assert ours.covariance == pytest.approx(theirs.Wc)
-            assert sigma_points(x, square_root(P), ours.spread) == pytest.approx(theirs.sigma_points(x, P), abs=1e-12)
+            assert sigma_points(x, square_root(P), ours.spread) == pytest.approx(
+                theirs.sigma_points(x, P), abs=1e-12
+            )
 
 
 def test_weights_that_reach_nowhere():
-    with pytest.raises(ValueError, match=r"alpha² \(n \+ kappa\) must be positive, not -1: alpha=1, n=2, kappa=-3"):
+    with pytest.raises(
+        ValueError, match=r"alpha² \(n \+ kappa\) must be positive, not -1: alpha=1, n=2, kappa=-3"
+    ):
         weights(2, kappa=-3.0)
 
 
@@ -86,7 +95,10 @@ def test_a_mean_of_directions_is_a_direction():
         assert -math.pi < mean[0] <= math.pi
     many = np.array([[3.1], [-3.1], [-3.1]])
     assert weighted_mean(many, np.array([-1e6 + 1, 5e5, 5e5]), (0,))[0] == pytest.approx(
-        math.atan2((-1e6 + 1) * math.sin(3.1) - 1e6 * math.sin(3.1), (-1e6 + 1) * math.cos(3.1) + 1e6 * math.cos(3.1)),
+        math.atan2(
+            (-1e6 + 1) * math.sin(3.1) - 1e6 * math.sin(3.1),
+            (-1e6 + 1) * math.cos(3.1) + 1e6 * math.cos(3.1),
+        ),
         abs=1e-6,
     )
 

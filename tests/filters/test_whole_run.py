@@ -1,7 +1,8 @@
-"""A whole linear run as one Gaussian of its start and all its noises, conditioned on all readings at once.
+"""A whole linear run as one Gaussian of its start and all its noises, conditioned on all readings
+at once.
 
-It shares no recursion with the filters: one matrix, one solve. What a filter believes after each reading must be what
-this says of the state then.
+It shares no recursion with the filters: one matrix, one solve. What a filter believes after each
+reading must be what this says of the state then.
 """
 
 import numpy as np
@@ -17,10 +18,12 @@ STEPS = 12
 
 
 def conditioned_at_once(model, first, U, Z):
-    """Mean (n,) and covariance (n, n) of the state after the last of the readings Z : (t, k), U : (t, m) before each.
+    """Mean (n,) and covariance (n, n) of the state after the last of the readings Z : (t, k), U :
+    (t, m) before each.
 
-    With s = (x₀, w₁ … w_t), wᵢ the noise that step i adds, each state is xᵢ = cᵢ + Tᵢ s and each reading
-    zᵢ = C xᵢ + vᵢ, so that (s, z) is one Gaussian, and E[x_t | z] = c_t + T_t Σ Hᵀ (H Σ Hᵀ + R)⁻¹ (z − H s̄).
+    With s = (x₀, w₁ … w_t), wᵢ the noise that step i adds, each state is xᵢ = cᵢ + Tᵢ s and each
+    reading zᵢ = C xᵢ + vᵢ, so that (s, z) is one Gaussian, and E[x_t | z] = c_t + T_t Σ Hᵀ (H Σ Hᵀ
+    + R)⁻¹ (z − H s̄).
     """
     n, t = len(model.A), len(Z)
     W = model.B @ model.input_noise @ model.B.T + model.process_noise
@@ -57,4 +60,6 @@ def test_a_filter_believes_what_all_readings_at_once_say(name, n, m, k, seed):
         mean, P = conditioned_at_once(model, first, U[:t], Z[:t])
         size = np.sqrt(np.diagonal(P))
         assert np.abs(belief.mean - mean).max() <= 1e-9 * max(1.0, np.abs(mean).max())
-        assert (np.abs(belief.covariance - P) <= 1e-9 * (np.outer(size, size) + np.abs(P).max())).all()
+        assert (
+            np.abs(belief.covariance - P) <= 1e-9 * (np.outer(size, size) + np.abs(P).max())
+        ).all()

@@ -10,7 +10,9 @@ from ekfsim.geometry.angles import wrap
 
 angle = st.floats(-1e6, 1e6)
 inside = st.floats(-math.pi, math.pi, exclude_min=True)
-WAYS = [lambda a: float(wrap(np.array(a)))] + ([angles.wrap_one] if hasattr(angles, "wrap_one") else [])
+WAYS = [lambda a: float(wrap(np.array(a)))] + (
+    [angles.wrap_one] if hasattr(angles, "wrap_one") else []
+)
 
 
 @pytest.mark.parametrize("wrapped", WAYS)

@@ -18,7 +18,10 @@ def close_beams(seed, spread, turn, lone=0):
     random = np.random.default_rng(seed)
     origin = random.uniform(5, 95, 2) + spread * random.normal(size=(BEAMS, 2))
     heading = random.uniform(-np.pi, np.pi) + turn * random.normal(size=BEAMS)
-    origin[:lone], heading[:lone] = random.uniform(0, 100, (lone, 2)), random.uniform(-np.pi, np.pi, lone)
+    origin[:lone], heading[:lone] = (
+        random.uniform(0, 100, (lone, 2)),
+        random.uniform(-np.pi, np.pi, lone),
+    )
     return origin, heading
 
 
@@ -59,7 +62,8 @@ def test_close_beams_are_a_bundle_and_others_are_none():
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-7, 1e-12])
 def test_a_corner_before_a_bundle_is_met_as_by_each_beam(gap):
-    """Two pillars with a gap between them, a wall behind, and beams at the gap from half a metre to both sides."""
+    """Two pillars with a gap between them, a wall behind, and beams at the gap from half a metre to
+    both sides."""
     pillars = {
         "left": np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]),
         "right": np.array([[1 + gap, 0], [2, 0], [2, 1], [1 + gap, 1.0]]),

@@ -7,7 +7,14 @@ from hypothesis import strategies as st
 from numerics import covariance
 from scipy.stats import chi2, norm
 
-from ekfsim.geometry.ellipse import conditioned, cone_factor, cone_halfwidth, ellipse, outline, radius_factor
+from ekfsim.geometry.ellipse import (
+    conditioned,
+    cone_factor,
+    cone_halfwidth,
+    ellipse,
+    outline,
+    radius_factor,
+)
 
 K = math.sqrt(-2 * math.log(0.046))
 spread = st.floats(1e-3, 100)
@@ -79,7 +86,9 @@ def test_no_width_is_no_radius():
     assert cone_halfwidth(-1e-30, 0.954) == 0  # rounding
 
 
-@pytest.mark.parametrize("P", [-1e-15 * np.eye(2), np.array([[-1.83e-15, 1.79e-15], [1.79e-15, -1.75e-15]])])
+@pytest.mark.parametrize(
+    "P", [-1e-15 * np.eye(2), np.array([[-1.83e-15, 1.79e-15], [1.79e-15, -1.75e-15]])]
+)
 def test_a_negative_rounding_error_is_no_radius(P):
     for drawn in (ellipse(P, 0.954), ellipse(P[None], 0.954)):
         assert 0 <= drawn.minor <= drawn.major < 1e-7
@@ -108,7 +117,9 @@ def test_the_outline_lies_where_the_error_squared_is_k_squared():
     assert points[0] == pytest.approx(points[-1])
     e = points - center
     assert np.vecdot(e, np.linalg.solve(P, e.T).T) == pytest.approx(radius_factor(0.954) ** 2)
-    assert np.abs(e @ [math.cos(2.1), math.sin(2.1)]).max() == pytest.approx(float(ellipse(P, 0.954).major), rel=1e-2)
+    assert np.abs(e @ [math.cos(2.1), math.sin(2.1)]).max() == pytest.approx(
+        float(ellipse(P, 0.954).major), rel=1e-2
+    )
 
 
 def test_conditioned_is_what_is_left_when_the_heading_is_known():

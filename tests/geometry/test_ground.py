@@ -12,8 +12,15 @@ ROOM = np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])
 DESK = np.array([[4, 3], [5, 3], [5, 4], [4, 4.0]])
 CROSSING = np.array([[9, 2], [12, 2], [12, 3], [9, 3.0]])  # the room's own wall runs through it
 OVERLAPPING = np.array([[4.5, 3.5], [6, 3.5], [6, 5], [4.5, 5.0]])  # lies over a corner of the desk
-SHELF = np.array([[0, 6], [0, 7], [0.4, 7], [0.4, 6.0]])  # touches the room's wall, and turns the other way round
-RINGS = {BOUNDARY: ROOM, "desk": DESK, "crossing": CROSSING, "overlapping": OVERLAPPING, "shelf": SHELF}
+# touches the room's wall, and turns the other way round
+SHELF = np.array([[0, 6], [0, 7], [0.4, 7], [0.4, 6.0]])
+RINGS = {
+    BOUNDARY: ROOM,
+    "desk": DESK,
+    "crossing": CROSSING,
+    "overlapping": OVERLAPPING,
+    "shelf": SHELF,
+}
 PLACES = {
     "room": RINGS,
     "no boundary": {name: ring for name, ring in RINGS.items() if name != BOUNDARY},
@@ -26,9 +33,15 @@ PLACES = {
 def free(rings, points):
     """Whether Shapely has points (…, 2) in the room and in no obstacle."""
     x, y = points[..., 0], points[..., 1]
-    inside = [shapely.contains_xy(shapely.Polygon(ring), x, y) for name, ring in rings.items() if name != BOUNDARY]
+    inside = [
+        shapely.contains_xy(shapely.Polygon(ring), x, y)
+        for name, ring in rings.items()
+        if name != BOUNDARY
+    ]
     indoors = (
-        shapely.contains_xy(shapely.Polygon(rings[BOUNDARY]), x, y) if BOUNDARY in rings else np.full(x.shape, True)
+        shapely.contains_xy(shapely.Polygon(rings[BOUNDARY]), x, y)
+        if BOUNDARY in rings
+        else np.full(x.shape, True)
     )
     return indoors & ~np.any([*inside, np.zeros(x.shape, bool)], axis=0)
 
@@ -47,11 +60,15 @@ def test_it_is_free_where_shapely_says_so(name):
     assert (Walls.of(rings).ground.free(points) == free(rings, points)).all()
 
 
-@pytest.mark.parametrize("name", ["room", "no boundary", "far away", "empty", "in a room", "a tangle"])
+@pytest.mark.parametrize(
+    "name", ["room", "no boundary", "far away", "empty", "in a room", "a tangle"]
+)
 def test_one_robot_is_told_the_same_as_many(name):
     ground = Walls.of(PLACES[name]).ground
     places = thrown(PLACES[name], 100)
-    for place, ways in zip(places, thrown(PLACES[name], 600, seed=2).reshape(-1, 6, 2) - places[:, None], strict=True):
+    for place, ways in zip(
+        places, thrown(PLACES[name], 600, seed=2).reshape(-1, 6, 2) - places[:, None], strict=True
+    ):
         assert ground.reach_of_each(*place.tolist(), ways.tolist()) == pytest.approx(
             ground.reach(place, ways), abs=1e-12
         )
@@ -66,7 +83,9 @@ def test_a_way_is_cut_back_to_the_last_place_where_a_robot_can_stand(name):
     share = Walls.of(rings).ground.reach(place, way)
     steps = np.linspace(0, 1, 1001)
     along = free(rings, place[:, None] + steps[:, None] * way[:, None])
-    last = np.where(along.any(axis=1), steps[along.shape[1] - 1 - along[:, ::-1].argmax(axis=1)], 0.0)
+    last = np.where(
+        along.any(axis=1), steps[along.shape[1] - 1 - along[:, ::-1].argmax(axis=1)], 0.0
+    )
     assert ((share == 1) == free(rings, ends)).all()
     assert (share - last <= 1e-3 + 1e-12).all()
     assert (last - share <= CLEARANCE / np.linalg.norm(way, axis=1) + 1e-12).all()
@@ -84,7 +103,12 @@ def test_a_gap_narrower_than_the_clearance_is_stood_in_its_middle():
 
 def test_a_way_along_an_edge_or_through_a_corner_ends_in_the_open():
     walls = Walls.of({BOUNDARY: ROOM, "desk": DESK})
-    for place, end in (((2, 3), (4.5, 3)), ((2, 4), (4.5, 4)), ((3, 2), (4.5, 3.5)), ((4, 1), (4, 3.5))):
+    for place, end in (
+        ((2, 3), (4.5, 3)),
+        ((2, 4), (4.5, 4)),
+        ((3, 2), (4.5, 3.5)),
+        ((4, 1), (4, 3.5)),
+    ):
         place, way = np.array(place, float), np.subtract(end, place)
         share = float(walls.ground.reach(place, way))
         assert share > 0.5
@@ -93,5 +117,9 @@ def test_a_way_along_an_edge_or_through_a_corner_ends_in_the_open():
 
 def test_no_number_is_no_place():
     ground = Walls.of({BOUNDARY: ROOM}).ground
-    assert ground.free(np.array([[np.nan, 1.0], [1.0, 1.0], [np.inf, 1.0]])).tolist() == [False, True, False]
+    assert ground.free(np.array([[np.nan, 1.0], [1.0, 1.0], [np.inf, 1.0]])).tolist() == [
+        False,
+        True,
+        False,
+    ]
     assert ground.reach(np.array([np.nan, 1.0]), np.ones((1, 2))).tolist() == [0.0]

@@ -22,7 +22,9 @@ def test_the_distance_is_shapelys(points, ring):
 
 @given(some.lists(places, min_size=1, max_size=20), some.sampled_from([KITE, BENT]))
 def test_any_other_outline_is_held_against_its_edges(points, ring):
-    np.testing.assert_array_equal(path_error(np.array(points), ring), distance(np.array(points), ring))
+    np.testing.assert_array_equal(
+        path_error(np.array(points), ring), distance(np.array(points), ring)
+    )
 
 
 @given(some.lists(places, min_size=1, max_size=20), some.integers(0, 3), some.booleans())
@@ -33,12 +35,22 @@ def test_a_rectangle_is_held_against_its_lines_as_the_document_has_it(points, fi
         return min(np.hypot(x - cx, y - cy) for cx in (0, 10) for cy in (-10, 0))
 
     ring = np.roll(SQUARE[::-1] if backwards else SQUARE, first, axis=0)
-    np.testing.assert_allclose(path_error(np.array(points), ring), [eq_11(*point) for point in points], atol=1e-14)
+    np.testing.assert_allclose(
+        path_error(np.array(points), ring), [eq_11(*point) for point in points], atol=1e-14
+    )
 
 
 @pytest.mark.parametrize(
     ("point", "error"),
-    [((5, 1), 1), ((5, -1), 1), ((5, -5), 5), ((-3, 4), 5), ((13, -14), 5), ((9.5, 3), 0.5), ((0, 0), 0)],
+    [
+        ((5, 1), 1),
+        ((5, -1), 1),
+        ((5, -5), 5),
+        ((-3, 4), 5),
+        ((13, -14), 5),
+        ((9.5, 3), 0.5),
+        ((0, 0), 0),
+    ],
 )
 def test_points_about_the_square(point, error):
     assert float(path_error(np.array(point, float), SQUARE)) == pytest.approx(error)

@@ -4,7 +4,18 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from wall_worlds import DESK, ROOM, WORLDS, assert_all_ways_agree, beams, by_shapely, one_by_one, stars, tangle, town
+from wall_worlds import (
+    DESK,
+    ROOM,
+    WORLDS,
+    assert_all_ways_agree,
+    beams,
+    by_shapely,
+    one_by_one,
+    stars,
+    tangle,
+    town,
+)
 
 from ekfsim.geometry.meeting import REACH
 from ekfsim.geometry.walls import Walls
@@ -29,15 +40,20 @@ def test_scale_and_place_of_the_world_do_not_matter(size, shift):
     origin, heading = beams(300, seed=3)
     origin = origin / 100 * size + shift * size
     ranges = assert_all_ways_agree(walls, origin, heading, max(1.0, size * shift))
-    np.testing.assert_allclose(ranges, by_shapely(walls, origin, heading, 5 * size), atol=1e-9 * max(1, size * shift))
+    np.testing.assert_allclose(
+        ranges, by_shapely(walls, origin, heading, 5 * size), atol=1e-9 * max(1, size * shift)
+    )
 
 
 @pytest.mark.parametrize("distance", [1e3, 1e9, 1e13, 1e16])
 def test_from_afar_too_all_ways_agree(distance):
-    """From 1e13 m a coordinate's last place is finer than a wall; from 1e16 m it is coarser than many a cell."""
+    """From 1e13 m a coordinate's last place is finer than a wall; from 1e16 m it is coarser than
+    many a cell."""
     random = np.random.default_rng(2)
     bearing = random.uniform(-np.pi, np.pi, 200)
-    origin = random.uniform(0, 100, (200, 2)) + distance * np.stack([np.cos(bearing), np.sin(bearing)], -1)
+    origin = random.uniform(0, 100, (200, 2)) + distance * np.stack(
+        [np.cos(bearing), np.sin(bearing)], -1
+    )
     ranges = assert_all_ways_agree(Walls.of(stars(800, 3)), origin, bearing + np.pi, distance)
     assert np.isfinite(ranges).any()
 
@@ -54,10 +70,13 @@ def test_any_world_is_cast_alike_by_all_ways(count, seed, world):
 @given(st.integers(0, 10**6), st.integers(1, 12))
 @settings(max_examples=40, deadline=None)
 def test_a_lattice_full_of_ties_is_cast_alike_by_all_ways(seed, count):
-    """Squares that share corners and edges; origins on them; beams along them, through corners, by fours of a turn."""
+    """Squares that share corners and edges; origins on them; beams along them, through corners, by
+    fours of a turn."""
     random = np.random.default_rng(seed)
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
-    walls = Walls.of({str(i): square * random.integers(1, 4) + random.integers(0, 6, 2) for i in range(count)})
+    walls = Walls.of(
+        {str(i): square * random.integers(1, 4) + random.integers(0, 6, 2) for i in range(count)}
+    )
     origin = random.integers(-4, 20, (120, 2)) / 2
     heading = random.integers(-8, 9, 120) * np.pi / 4
     assert_all_ways_agree(walls, origin, heading)
@@ -215,12 +234,16 @@ def test_origins_and_headings_broadcast(origin, heading, shape):
     assert hit.range.shape == hit.wall.shape == shape
     assert hit.range.dtype == np.float64
     assert hit.wall.dtype == np.int64
-    np.testing.assert_allclose(hit.range, np.broadcast_to(SCENE.cast(np.ones(2), h).range, shape), rtol=1e-12)
+    np.testing.assert_allclose(
+        hit.range, np.broadcast_to(SCENE.cast(np.ones(2), h).range, shape), rtol=1e-12
+    )
 
 
 def test_edges_are_numbered_as_in_the_file():
     doubled = np.array([[0, 0], [4, 0], [4, 0], [4, 4], [0, 4], [0, 0.0]])
-    walls = Walls.of({"room": doubled, "point": np.ones((1, 2)), "nothing": np.empty((0, 2)), "desk": DESK})
+    walls = Walls.of(
+        {"room": doubled, "point": np.ones((1, 2)), "nothing": np.empty((0, 2)), "desk": DESK}
+    )
     assert walls.edge.tolist() == [0, 2, 3, 4, 0, 1, 2, 3]
     assert walls.polygon.tolist() == [0] * 4 + [3] * 4
     assert walls.name(3) == ("room", 4)
@@ -238,7 +261,8 @@ def test_normals_point_to_the_left():
 
 @given(st.floats(-np.pi, np.pi), st.floats(-1e4, 1e4))
 def test_edges_on_one_straight_line_share_its_number(angle, shift):
-    """A comb: its teeth end on one line, its gaps on another; the long side is cut in two by a point."""
+    """A comb: its teeth end on one line, its gaps on another; the long side is cut in two by a
+    point."""
     comb = np.array([[0, 0], [3, 0], [6, 0], [6, 2], [4, 2], [4, 1], [2, 1], [2, 2], [0, 2.0]])
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     walls = Walls.of({"comb": comb @ turn.T + shift, "again": comb @ turn.T + shift})
@@ -277,7 +301,11 @@ def test_a_town_in_a_wide_plain_is_no_crowd_in_one_cell():
     grid = Walls.of(town("houses", 5, 10.0)).grid
 
     def fullest(grid):
-        return max(len(cell) if isinstance(cell, list) else fullest(cell) for cell in grid.lists if cell is not None)
+        return max(
+            len(cell) if isinstance(cell, list) else fullest(cell)
+            for cell in grid.lists
+            if cell is not None
+        )
 
     assert fullest(grid) <= 64
 

@@ -1,4 +1,5 @@
-"""What is particular to each way of following many beams; that all find the same is told in test_walls.py."""
+"""What is particular to each way of following many beams; that all find the same is told in
+test_walls.py."""
 
 import subprocess
 import sys
@@ -6,7 +7,17 @@ import sys
 import numpy as np
 import pytest
 from backends import BACKENDS
-from wall_worlds import DESK, ROOM, WORLDS, assert_same, beams, by_brute_force, near_beams, stars, town
+from wall_worlds import (
+    DESK,
+    ROOM,
+    WORLDS,
+    assert_same,
+    beams,
+    by_brute_force,
+    near_beams,
+    stars,
+    town,
+)
 
 from ekfsim.geometry import backend
 from ekfsim.geometry.backend import using
@@ -16,7 +27,9 @@ from ekfsim.geometry.cells import BORDER, PLAIN
 from ekfsim.geometry.fan import fan
 from ekfsim.geometry.walls import BLOCK, Walls
 
-needs_numba = pytest.mark.skipif("numba" not in BACKENDS, reason="numba, the extra `fast`, is not installed")
+needs_numba = pytest.mark.skipif(
+    "numba" not in BACKENDS, reason="numba, the extra `fast`, is not installed"
+)
 
 
 @pytest.mark.parametrize("name", WORLDS)
@@ -63,7 +76,11 @@ def test_a_beam_in_a_batch_has_the_hit_that_it_has_alone(name):
             np.testing.assert_allclose(part.range, hit.range[some], rtol=1e-12, atol=1e-9)
             np.testing.assert_array_equal(part.wall, hit.wall[some])
     known = np.delete(np.arange(len(heading)), [7, BLOCK + 1])
-    assert_same((hit.range[known], hit.wall[known]), by_brute_force(walls, origin[known], heading[known]), 1e13)
+    assert_same(
+        (hit.range[known], hit.wall[known]),
+        by_brute_force(walls, origin[known], heading[known]),
+        1e13,
+    )
     assert (hit.wall[[7, BLOCK + 1]] == -1).all()
     assert np.isnan(hit.range[[7, BLOCK + 1]]).all()
 
@@ -82,9 +99,12 @@ SCANS = {
 
 
 @pytest.mark.parametrize("name", SCANS)
-@pytest.mark.parametrize("place", [(5.0, 4.0), (3.0, 2.5), (2.0, 2.0), (4.0, 2.7), (0.0, 0.0), (-3.0, 1.0), (5.0, 2.0)])
+@pytest.mark.parametrize(
+    "place", [(5.0, 4.0), (3.0, 2.5), (2.0, 2.0), (4.0, 2.7), (0.0, 0.0), (-3.0, 1.0), (5.0, 2.0)]
+)
 def test_a_scan_however_its_beams_are_spaced(name, place):
-    """From the open, from inside the desk, from a corner, from a wall, from outside, from a wall's line."""
+    """From the open, from inside the desk, from a corner, from a wall, from outside, from a wall's
+    line."""
     walls = Walls.of({"room": ROOM, "desk": DESK, **stars(8, 4, side=10.0)})
     heading = SCANS[name]
     x, y, dx, dy, span = near_beams(walls, np.tile(place, (len(heading), 1)), heading)
@@ -126,10 +146,13 @@ def test_numpy_is_used_unless_numba_is_asked_for():
     program = """
 import sys, numpy as np
 from ekfsim.geometry.walls import Walls
-Walls.of({"room": np.array([[0, 0], [9, 0], [9, 9], [0, 9.0]])}).cast(np.ones((500, 2)), np.linspace(0, 6, 500))
+Walls.of({"room": np.array([[0, 0], [9, 0], [9, 9], [0, 9.0]])}).cast(np.ones((500, 2)), \
+np.linspace(0, 6, 500))
 print("numba" in sys.modules)
 """
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
     assert done.stdout == "False\n"
     assert backend.used() == "numpy"
 
@@ -138,7 +161,9 @@ def test_a_backend_that_does_not_exist_or_is_not_installed(monkeypatch):
     with pytest.raises(ValueError, match="'fortran' is no backend; there are numpy and numba"):
         backend.use("fortran")
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(ModuleNotFoundError, match="numba is not installed; it comes with ekfsim's extra `fast`"):
+    with pytest.raises(
+        ModuleNotFoundError, match="numba is not installed; it comes with ekfsim's extra `fast`"
+    ):
         backend.use("numba")
     assert backend.used() == "numpy"
 

@@ -1,4 +1,5 @@
-"""Worlds of walls, beams to follow in them, and the ways of following them held against each other."""
+"""Worlds of walls, beams to follow in them, and the ways of following them held against each
+other."""
 
 import math
 
@@ -48,12 +49,14 @@ def town(kind, seed, width):
     streets = {
         "houses": {name: 500 + ring * width / 100 for name, ring in stars(400, seed).items()},
         "lattice": {
-            f"{i} {j}": 500 + width * (np.array([[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1.0]]) / 16)
+            f"{i} {j}": 500
+            + width * (np.array([[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1.0]]) / 16)
             for i in range(16)
             for j in range(16)
         },
         "fan": {
-            str(i): 500 + width * np.array([[0, 0], *random.uniform(0.2, 1, (2, 2))]) for i in range(150)
+            str(i): 500 + width * np.array([[0, 0], *random.uniform(0.2, 1, (2, 2))])
+            for i in range(150)
         },  # all through one point: no cell parts them
     }
     return {**plain, **long, **streets[kind]}
@@ -94,7 +97,8 @@ def one_by_one(walls, origin, heading):
 
 
 def assert_all_ways_agree(walls, origin, heading, scale=1.0):
-    """Each beam twice, so that there are enough for a batch; and the first few places once more with a scan."""
+    """Each beam twice, so that there are enough for a batch; and the first few places once more
+    with a scan."""
     ranges, _ = expected = by_brute_force(walls, origin, heading)
     assert_same(one_by_one(walls, origin, heading), expected, scale)
     for name in BACKENDS:
@@ -125,7 +129,14 @@ def assert_same(found, expected, scale, but=()):
 
 
 def near_beams(walls, origin, heading):
-    """x, y, dx, dy and the coordinates' size of those from where rounding is small against a cell."""
+    """x, y, dx, dy and the coordinates' size of those from where rounding is small against a
+    cell."""
     near = np.abs(origin).sum(-1) < walls.grid.horizon
     x, y = origin[near].T
-    return x, y, np.cos(heading[near]), np.sin(heading[near]), walls.grid.size + np.abs(x) + np.abs(y)
+    return (
+        x,
+        y,
+        np.cos(heading[near]),
+        np.sin(heading[near]),
+        walls.grid.size + np.abs(x) + np.abs(y),
+    )

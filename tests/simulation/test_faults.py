@@ -1,4 +1,5 @@
-"""Truth and told are two things: a run is drawn from the truth and its faults, the filter has its own numbers."""
+"""Truth and told are two things: a run is drawn from the truth and its faults, the filter has its
+own numbers."""
 
 import math
 from dataclasses import replace
@@ -59,7 +60,8 @@ def test_a_filter_is_told_another_robot_and_the_run_stays_as_it_is(name):
 
 @EVERY
 def test_a_true_robot_of_other_numbers_moves_the_run_and_not_the_filter(name):
-    """The spread of input and truth over 300 runs grows threefold; what the filter is told stays."""
+    """The spread of input and truth over 300 runs grows threefold; what the filter is told
+    stays."""
     played = telling(of_system(name, STRAIGHT), SYSTEMS[name].robot, ())
     played = replace(played, world=replace(played.world, instruments=()))
     shaken = replace(played, world=replace(played.world, robot=louder(played.world.robot, 3.0)))
@@ -67,8 +69,13 @@ def test_a_true_robot_of_other_numbers_moves_the_run_and_not_the_filter(name):
     for one, other in zip(controls(before)[:1], controls(after)[:1], strict=True):
         assert type(one.given.motion) is type(other.given.motion)
         for of_motion in (lambda motion, u: motion.M(u), lambda motion, u: motion.Q(u)):
-            np.testing.assert_array_equal(*(of_motion(e.given.motion, one.given.u[0]) for e in (one, other)))
-    spreads = [np.std([e.given.u for e in controls(entries)], axis=1).mean(axis=0) for entries in (before, after)]
+            np.testing.assert_array_equal(
+                *(of_motion(e.given.motion, one.given.u[0]) for e in (one, other))
+            )
+    spreads = [
+        np.std([e.given.u for e in controls(entries)], axis=1).mean(axis=0)
+        for entries in (before, after)
+    ]
     noisy = spreads[0] > 1e-9
     assert noisy.any()
     assert_allclose(spreads[1][noisy] / spreads[0][noisy], 3, rtol=0.02)
@@ -87,7 +94,9 @@ def test_a_filter_is_told_another_R(kind):
     assert ours
     for one, other in zip(ours, theirs, strict=True):
         assert one.z.tolist() == other.z.tolist()
-        assert math.sqrt(other.sensor.linearize(x)[2][0, 0]) > 1.4 * math.sqrt(one.sensor.linearize(x)[2][0, 0])
+        assert math.sqrt(other.sensor.linearize(x)[2][0, 0]) > 1.4 * math.sqrt(
+            one.sensor.linearize(x)[2][0, 0]
+        )
 
 
 @pytest.mark.parametrize("kind", INSTRUMENTS.values(), ids=list(INSTRUMENTS))
@@ -109,8 +118,12 @@ def test_a_bias_of_a_sensor_is_in_its_readings_alone(kind):
                 assert_allclose(e, turned(bias, yaw), atol=1e-12)
             else:
                 assert_allclose(e, bias, atol=1e-12)
-            assert other.given.sensor.linearize(other.truth if kind is not Pylon else state(other))[2].tolist() == (
-                one.given.sensor.linearize(one.truth if kind is not Pylon else state(one))[2].tolist()
+            assert other.given.sensor.linearize(other.truth if kind is not Pylon else state(other))[
+                2
+            ].tolist() == (
+                one.given.sensor.linearize(one.truth if kind is not Pylon else state(one))[
+                    2
+                ].tolist()
             )
         elif isinstance(one.given, Control):
             assert one.given.u.tolist() == other.given.u.tolist()
@@ -127,10 +140,12 @@ def turned(v, angle):
 
 
 FAULTS = [
-    ("mower", "left_scale", 0, "scale"), ("mower", "right_scale", 1, "scale"), ("mower", "gyro_bias", 2, "bias"),
+    ("mower", "left_scale", 0, "scale"), ("mower", "right_scale", 1, "scale"), ("mower",
+    "gyro_bias", 2, "bias"),
     ("pioneer", "left_scale", 0, "scale"), ("pioneer", "right_scale", 1, "scale"),
     ("gnss", "left_scale", 0, "scale"), ("gnss", "right_scale", 1, "scale"),
-    ("pylon", "forward_bias", 0, "bias"), ("pylon", "lateral_bias", 1, "bias"), ("pylon", "yaw_bias", 2, "bias"),
+    ("pylon", "forward_bias", 0, "bias"), ("pylon", "lateral_bias", 1, "bias"), ("pylon",
+    "yaw_bias", 2, "bias"),
     ("landmarks", "distance_scale", 0, "scale"), ("landmarks", "turn_scale", 1, "scale"),
     ("ranges", "distance_scale", 0, "scale"), ("ranges", "turn_scale", 1, "scale"),
 ]  # fmt: skip
@@ -138,14 +153,20 @@ FAULTS = [
 
 def test_every_fault_of_a_robot_is_tried():
     tried = [(system, fault, entry) for system, fault, entry, _ in FAULTS]
-    assert tried == [(name, *fault) for name, system in SYSTEMS.items() for fault in system.robot.faults.items()]
+    assert tried == [
+        (name, *fault) for name, system in SYSTEMS.items() for fault in system.robot.faults.items()
+    ]
 
 
 @pytest.mark.parametrize(("name", "fault", "entry", "kind"), FAULTS)
 def test_a_fault_of_the_robot_is_in_its_input_alone(name, fault, entry, kind):
-    """A scale multiplies what is right and leaves its noise; a bias comes on top. The truth goes its way."""
+    """A scale multiplies what is right and leaves its noise; a bias comes on top. The truth goes
+    its way."""
     played = of_system(name, STRAIGHT, seed=2)
-    sound, faulty = list(simulate(played)), list(simulate(wrong(played, **{fault: 1.5 if kind == "scale" else 0.25})))
+    sound, faulty = (
+        list(simulate(played)),
+        list(simulate(wrong(played, **{fault: 1.5 if kind == "scale" else 0.25}))),
+    )
     quiet = replace(played, world=replace(played.world, robot=silent(played.world.robot)))
     right = [e.given.u for e in controls(simulate(quiet))]
     for one, other, ideal in zip(controls(sound), controls(faulty), right, strict=True):
@@ -153,7 +174,8 @@ def test_a_fault_of_the_robot_is_in_its_input_alone(name, fault, entry, kind):
         e = other.given.u - one.given.u
         if kind == "bias":
             assert e[entry] == pytest.approx(0.25)
-        elif name != "gnss" and name != "mower":  # there the truth is disturbed, and the driver steers back
+        # there the truth is disturbed, and the driver steers back
+        elif name != "gnss" and name != "mower":
             assert e[entry] == pytest.approx(0.5 * ideal[entry], rel=1e-9, abs=1e-12)
         assert e[entry] != 0
         assert np.delete(e, entry) == pytest.approx(0)
@@ -168,16 +190,20 @@ def silent(robot):
 def louder(robot, times):
     """A robot with all its noises so many times as large."""
     spreads = ("sigma", "ratio", "floor", "density")
-    return replace(robot, **{key: times * value for key, value in vars(robot).items() if key.endswith(spreads)})
+    return replace(
+        robot, **{key: times * value for key, value in vars(robot).items() if key.endswith(spreads)}
+    )
 
 
 def test_outliers_come_as_often_and_as_large_as_said():
     played = scene(STEADY, (Gnss(rate=100, sigma=0.2),), STILL)
     noisy = wrong(played, sensors={"gnss": SensorFaults(outliers=0.2, outlier_size=50)})
-    sound, struck = (np.array([r.z - played.world.start[:2] for r in given(simulate(s, np.arange(8)), Reading)])
+    sound, struck = (np.array([r.z - played.world.start[:2] for r in given(simulate(s,
+    np.arange(8)), Reading)])
                      for s in (played, noisy))  # fmt: skip
     same = (sound == struck).all(axis=-1)
-    assert np.mean(~same) == pytest.approx(0.2, abs=0.01)  # of 16 000 readings: three standard deviations
+    # of 16 000 readings: three standard deviations
+    assert np.mean(~same) == pytest.approx(0.2, abs=0.01)
     assert_allclose(struck[~same], 50 * sound[~same], rtol=1e-9, atol=1e-12)
     assert np.std(sound[same]) == pytest.approx(0.2, rel=0.02)
     alone = [r.z for r in given(simulate(replace(noisy, run=7)), Reading)]
@@ -187,15 +213,22 @@ def test_outliers_come_as_often_and_as_large_as_said():
 @pytest.mark.parametrize("at_once", [100_000, 7])
 @pytest.mark.parametrize("delay", [0.3, 0.025])
 def test_a_delayed_reading_is_of_what_was_there(delay, at_once, monkeypatch):
-    """Between two ticks on the straight line between their poses, before the start at it; whatever lies in a block."""
+    """Between two ticks on the straight line between their poses, before the start at it; whatever
+    lies in a block."""
     monkeypatch.setattr("ekfsim.simulation.driven.AT_ONCE", at_once)
     robot = Mower(rate=20, wheel_sigma=0.0, position_sigma=0.02, heading_sigma=0.1)
-    markers = Markers(rate=10, azimuth_sigma=0, elevation_sigma=0, farthest=50, views=((-math.pi, math.pi),))
+    markers = Markers(
+        rate=10, azimuth_sigma=0, elevation_sigma=0, farthest=50, views=((-math.pi, math.pi),)
+    )
     played = scene(robot, (markers, Gnss(rate=20, sigma=0)), CIRCLE, start=(0.5, -0.4, 3.0))
-    late = wrong(played, sensors={"markers": SensorFaults(delay=delay), "gnss": SensorFaults(delay=2 * delay)})
+    late = wrong(
+        played,
+        sensors={"markers": SensorFaults(delay=delay), "gnss": SensorFaults(delay=2 * delay)},
+    )
     entries = list(simulate(late, np.arange(3)))
     t = np.array([e.t for e in entries if not isinstance(e.given, Reading)])
-    truth = np.array([e.truth for e in entries if not isinstance(e.given, Reading)])  # (T + 1, 3, 3)
+    # (T + 1, 3, 3)
+    truth = np.array([e.truth for e in entries if not isinstance(e.given, Reading)])
     headings = np.unwrap(truth[..., 2], axis=0)
     for entry in entries:
         if isinstance(entry.given, Reading):
@@ -210,7 +243,9 @@ def test_a_delayed_reading_is_of_what_was_there(delay, at_once, monkeypatch):
 def test_ranges_are_corrected_as_the_filter_s_side_is_told():
     played = scene(STEADY, (Ranges(scale=1.2, bias=0.3),), STILL)
     told = telling(played, None, (Ranges(scale=1.0, bias=0.1),))
-    for one, other in zip(given(simulate(played), Reading), given(simulate(told), Reading), strict=True):
+    for one, other in zip(
+        given(simulate(played), Reading), given(simulate(told), Reading), strict=True
+    ):
         assert other.z == pytest.approx(1.2 * one.z + 0.2)
 
 
@@ -224,7 +259,8 @@ def test_a_wall_of_another_colour_than_the_filter_is_told():
 
 
 def test_by_gyro_or_by_wheels_on_one_and_the_same_drive():
-    """Eq. 20 in place of the gyro: the same truth and the same ways, and no bias of the gyro gets in."""
+    """Eq. 20 in place of the gyro: the same truth and the same ways, and no bias of the gyro gets
+    in."""
     played = scene(Mower(), (), STRAIGHT, seed=4)
     by_wheels = telling(played, Mower(odometry="midpoint"))
     both = replace(played, world=replace(played.world, robot=Mower(odometry="midpoint")))
@@ -233,7 +269,9 @@ def test_by_gyro_or_by_wheels_on_one_and_the_same_drive():
         for one, other in zip(gyro, controls(simulate(scene_of_wheels)), strict=True):
             assert one.truth.tolist() == other.truth.tolist()
             assert one.given.u[:2].tolist() == other.given.u[:2].tolist()
-            assert other.given.motion.f(np.zeros(3), np.array([0.0, 1.41, 9.0, 1.0]))[2] == pytest.approx(1.0)
+            assert other.given.motion.f(np.zeros(3), np.array([0.0, 1.41, 9.0, 1.0]))[
+                2
+            ] == pytest.approx(1.0)
 
 
 def test_noise_of_the_gyro():

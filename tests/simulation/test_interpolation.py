@@ -8,12 +8,12 @@ import pytest
 from recordings import speeds
 
 from ekfsim.figures.track import Track, rmse
-from ekfsim.files.load import load_scene
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.listing import ListingEKF
 from ekfsim.localization import filter_of, play
 from ekfsim.models.layout import SPEED_POSE
-from ekfsim.models.position import Position
-from ekfsim.models.yaw import Yaw
+from ekfsim.models.sensors.position import Position
+from ekfsim.models.sensors.yaw import Yaw
 from ekfsim.records import Control, Entry, Reading
 from ekfsim.simulation.interpolation import stretched
 
@@ -35,24 +35,34 @@ def test_each_motion_input_is_followed_by_a_fix_stretched_over_the_rows_by_numbe
     made = list(stretched(log))
     assert [entry.index for entry in made] == list(range(81))
     assert [type(entry.given) for entry in made] == [type(None)] + [Control, Reading] * 40
-    assert [entry.given.u.tolist() for entry in controls(made)] == [entry.given.u.tolist() for entry in controls(log)]
+    assert [entry.given.u.tolist() for entry in controls(made)] == [
+        entry.given.u.tolist() for entry in controls(log)
+    ]
     z = np.array([entry.given.z for entry in readings(log)])
     for axis in (0, 1):
-        wanted = np.interp(np.linspace(0, len(z) - 1, 41), np.arange(len(z)), z[:, axis])[1:]  # row 0 is the start
+        # row 0 is the start
+        wanted = np.interp(np.linspace(0, len(z) - 1, 41), np.arange(len(z)), z[:, axis])[1:]
         assert [entry.given.z[axis] for entry in readings(made)] == pytest.approx(wanted, abs=1e-12)
     assert {entry.given.name for entry in readings(made)} == {"gnss"}
 
 
 def test_no_stamp_of_a_fix_counts():
     log = speeds(40, 7).log.entries
-    late = [replace(entry, t=entry.t + 0.03) if isinstance(entry.given, Reading) else entry for entry in log]
-    one, other = ([entry.given.z for entry in readings(stretched(entries))] for entries in (log, late))
+    late = [
+        replace(entry, t=entry.t + 0.03) if isinstance(entry.given, Reading) else entry
+        for entry in log
+    ]
+    one, other = (
+        [entry.given.z for entry in readings(stretched(entries))] for entries in (log, late)
+    )
     assert np.array_equal(one, other)
 
 
 def test_of_several_runs_each_has_its_own_fixes():
     log = [
-        Entry(e.index, Reading(FIX, np.stack([e.given.z, -e.given.z])), t=e.t) if isinstance(e.given, Reading) else e
+        Entry(e.index, Reading(FIX, np.stack([e.given.z, -e.given.z])), t=e.t)
+        if isinstance(e.given, Reading)
+        else e
         for e in speeds(20, 5).log.entries
     ]
     z = np.array([entry.given.z for entry in readings(stretched(log))])
@@ -68,7 +78,8 @@ def test_readings_of_other_instruments_stay_where_they_are():
     assert [entry.index for entry in made] == list(range(len(made)))
     assert [entry.given for entry in made if entry.given is north] == [north]
     fixes = [
-        [e.given.z.tolist() for e in readings(stretched(entries)) if e.given.name == "gnss"] for entries in (log, seen)
+        [e.given.z.tolist() for e in readings(stretched(entries)) if e.given.name == "gnss"]
+        for entries in (log, seen)
     ]
     assert fixes[0] == fixes[1]
     assert len(fixes[0]) == 12
@@ -76,11 +87,18 @@ def test_readings_of_other_instruments_stay_where_they_are():
 
 @pytest.mark.parametrize("fixes", ["0.003,1,2\n0.011,3,4", "-5,1,2\n70,3,4", "0.01,1,2\n0.01,3,4"])
 def test_a_log_has_all_its_fixes_whatever_their_stamps_and_no_row_cut_in_two(tmp_path, fixes):
-    (tmp_path / "wheelspeeds-1.csv").write_text("time,vr,vl\n0,0,0\n0.005,1,1\n0.01,1,1\n0.01,1,2\n0.02,1,1\n")
+    (tmp_path / "wheelspeeds-1.csv").write_text(
+        "time,vr,vl\n0,0,0\n0.005,1,1\n0.01,1,1\n0.01,1,2\n0.02,1,1\n"
+    )
     (tmp_path / "gnss-1.csv").write_text(f"t,x,y\n{fixes}\n")
     made = list(stretched(load_scene("gnss_log", log=tmp_path, reading="coded").log.entries))
     assert [entry.given.u[2] for entry in controls(made)] == pytest.approx([0.005, 0.005, 0, 0.01])
-    assert [entry.given.z.tolist() for entry in readings(made)] == [[1.5, 2.5], [2, 3], [2.5, 3.5], [3, 4]]
+    assert [entry.given.z.tolist() for entry in readings(made)] == [
+        [1.5, 2.5],
+        [2, 3],
+        [2.5, 3.5],
+        [3, 4],
+    ]
 
 
 def test_without_a_fix_there_is_nothing_to_interpolate():
@@ -101,14 +119,17 @@ def test_the_coded_reading_corrects_at_every_row_by_the_state_before_the_predict
 
 @LOGGED
 def test_the_coded_reading_equals_an_independent_rewrite_of_the_authors_program():
-    """On the first 26 s of their data. Over the whole run they have 1.5006, 1.3674, 2.0302 m and 0.7549 rad."""
+    """On the first 26 s of their data. Over the whole run they have 1.5006, 1.3674, 2.0302 m and
+    0.7549 rad."""
     wheels, fixes, truth = (
         np.genfromtxt(LOG / f"{name}-1.csv", delimiter=",", skip_header=1)
         for name in ("wheelspeeds", "gnss", "groundtruth")
     )
     rows, given = len(wheels), len(fixes)
     place = np.linspace(0, given - 1, rows)
-    fix = np.column_stack([np.interp(place, np.arange(given), fixes[:, column]) for column in (1, 2)])
+    fix = np.column_stack(
+        [np.interp(place, np.arange(given), fixes[:, column]) for column in (1, 2)]
+    )
     H, identity = np.eye(4)[2:], np.eye(4)
     X, P, states = np.array([0.0, truth[0, 3], *truth[0, 1:3]]), np.eye(4), []
     for i in range(rows):
@@ -125,4 +146,6 @@ def test_the_coded_reading_equals_an_independent_rewrite_of_the_authors_program(
     assert track.pose[:, :2] == pytest.approx(np.array(states)[:, 2:], abs=1e-8)
     off = np.array(states)[:, 2:] - truth[:, 1:3]
     assert np.sqrt(np.mean(off**2, axis=0)) == pytest.approx([1.4495, 1.1881], abs=1e-4)
-    assert rmse(track.position_error) == pytest.approx(np.sqrt(np.mean(np.sum(off**2, axis=1))), abs=1e-9)
+    assert rmse(track.position_error) == pytest.approx(
+        np.sqrt(np.mean(np.sum(off**2, axis=1))), abs=1e-9
+    )

@@ -1,4 +1,5 @@
-"""The nominal trajectory is that of a robot without noise, and as long as the motion inputs are many."""
+"""The nominal trajectory is that of a robot without noise, and as long as the motion inputs are
+many."""
 
 import math
 from dataclasses import replace
@@ -9,7 +10,7 @@ from scenes import SILENT, scene
 
 from ekfsim.errors import UsageError
 from ekfsim.figures.crowd import crowd_of
-from ekfsim.files.load import load_scene
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import filter_of, play
 from ekfsim.records import Control, Kidnap, Log, Move, Repeat, Say, Sense
 from ekfsim.simulation import simulate
@@ -43,7 +44,9 @@ def test_it_has_a_state_for_each_motion_input_and_begins_where_the_filter_does(n
 def test_a_robot_that_nothing_disturbs_is_on_it():
     planned = driven("pioneer")
     world = replace(planned.world, start_sigma=np.zeros(3))
-    truth = np.array([e.truth for e in simulate(replace(planned, world=world)) if not hasattr(e.given, "z")])
+    truth = np.array(
+        [e.truth for e in simulate(replace(planned, world=world)) if not hasattr(e.given, "z")]
+    )
     np.testing.assert_allclose(nominal_trajectory(planned), truth, atol=1e-9)
 
 
@@ -51,7 +54,8 @@ def test_the_rest_of_the_state_is_that_of_the_plan():
     v = nominal_trajectory(driven("gnss"))[:, 0]
     assert v[1:200] == pytest.approx(0.6)
     trajectory = nominal_trajectory(driven("pylon"))
-    np.testing.assert_allclose(trajectory[1:, 6], trajectory[:-1, 5], atol=1e-12)  # the heading before
+    # the heading before
+    np.testing.assert_allclose(trajectory[1:, 6], trajectory[:-1, 5], atol=1e-12)
 
 
 def test_it_begins_where_the_filter_believes_that_it_does():
@@ -62,25 +66,37 @@ def test_it_begins_where_the_filter_believes_that_it_does():
 
 
 def test_a_commanded_robot_is_planned_by_its_moves():
-    commands = (Move(1.0, 0.5), Sense(0.3), Kidnap(5.0, 5.0, 0.0), Repeat(2, (Say("on"), Move(-0.5, 9.0))))
+    commands = (
+        Move(1.0, 0.5),
+        Sense(0.3),
+        Kidnap(5.0, 5.0, 0.0),
+        Repeat(2, (Say("on"), Move(-0.5, 9.0))),
+    )
     planned = scene(*commands, noise=SILENT)
     trajectory = nominal_trajectory(planned)
-    steps = [step.entry.truth for step in play(replace(scene(*commands[:2], commands[3], noise=SILENT)))]
+    steps = [
+        step.entry.truth for step in play(replace(scene(*commands[:2], commands[3], noise=SILENT)))
+    ]
     np.testing.assert_allclose(trajectory, [steps[0], steps[1], steps[4], steps[6]], atol=1e-12)
 
 
 def test_speeds_that_no_driver_holds_are_a_plan_too():
-    planned = replace(driven("ranges"), drive=Stretches((Stretch(1.0, 0.3, 2.0), Stretch(0.5, 0.0, 1.0))))
+    planned = replace(
+        driven("ranges"), drive=Stretches((Stretch(1.0, 0.3, 2.0), Stretch(0.5, 0.0, 1.0)))
+    )
     assert len(nominal_trajectory(planned)) == 31
 
 
 def test_from_an_unsure_start_it_does_better_than_the_ekf_on_the_pioneer_s_square():
-    """60 runs of a robot that is set down to 20 cm and 20°: what the EKF linearises about is wrong, the plan is not."""
+    """60 runs of a robot that is set down to 20 cm and 20°: what the EKF linearises about is wrong,
+    the plan is not."""
     found = load_scene("pioneer")
     sigma = np.array([0.2, 0.2, math.radians(20)])
     world = replace(found.world, start_sigma=sigma, told=replace(found.world.told, sigma=sigma))
     error = {
-        name: math.sqrt(np.mean(crowd_of(replace(found, world=world, filter=name), 60).position ** 2))
+        name: math.sqrt(
+            np.mean(crowd_of(replace(found, world=world, filter=name), 60).position ** 2)
+        )
         for name in ("kf", "kf-nominal", "ekf")
     }
     assert error["kf-nominal"] < 0.05 < 1 < error["kf"]
@@ -89,6 +105,11 @@ def test_from_an_unsure_start_it_does_better_than_the_ekf_on_the_pioneer_s_squar
 
 def test_a_recording_tells_no_plan():
     made = driven("pioneer")
-    logged = replace(made, drive=None, log=Log(tuple(simulate(made)), None), commands_source="my.yaml")
-    with pytest.raises(UsageError, match=r"^my.yaml: kf-nominal: a recording does not tell the way that was planned"):
+    logged = replace(
+        made, drive=None, log=Log(tuple(simulate(made)), None), commands_source="my.yaml"
+    )
+    with pytest.raises(
+        UsageError,
+        match=r"^my.yaml: kf-nominal: a recording does not tell the way that was planned",
+    ):
         filter_of(logged)

@@ -6,12 +6,16 @@ from ekfsim.study.results import Result
 from ekfsim.study.tally import AtSteps, Bin, Extreme, OfRuns, Tally
 
 
-def counted(above=(500,), ellipse=(954,), lost_from=None, runs=1000, ellipse_runs=None, times=None, **more):
-    """A result of so many runs a step. nis : the mean of so many readings; beyond : runs beyond the 99.9 % quantile"""
+def counted(
+    above=(500,), ellipse=(954,), lost_from=None, runs=1000, ellipse_runs=None, times=None, **more
+):
+    """A result of so many runs a step. nis : the mean of so many readings; beyond : runs beyond the
+    99.9 % quantile"""
     k = len(above)
     full, none = np.full(k, runs), np.zeros(k, np.int64)
     at = AtSteps(
-        judged=np.array(more.get("judged", full)), impossible=none, above_50=np.array(above), above_95=full // 20,
+        judged=np.array(more.get("judged", full)), impossible=none, above_50=np.array(above),
+        above_95=full // 20,
         above_999=np.array(more.get("beyond", full // 1000)), in_ellipse=np.array(ellipse),
         ellipse_runs=full if ellipse_runs is None else np.array(ellipse_runs),
         in_cone=full, cone_runs=full, nees_runs=full, nees_dof=3 * full, nees_sum=3.0 * full,

@@ -7,7 +7,7 @@ import pytest
 from scenes import rich
 from systems_scenes import SCENES
 
-from ekfsim.files.load import load_scene
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters import FILTERS
 from ekfsim.localization import play
 from ekfsim.study.block import run_block
@@ -33,11 +33,15 @@ def agree(alone, batch, k, within):
         np.testing.assert_allclose(many.posterior.covariance[k], one.posterior.covariance, **same)
         assert bool(many.nees.impossible[k]) == bool(one.nees.impossible)
         assert int(np.broadcast_to(many.nees.dof, SOME.shape)[k]) == int(one.nees.dof)
-        np.testing.assert_allclose(many.nees.value[k], one.nees.value, rtol=1e3 * within, atol=1e3 * within)
+        np.testing.assert_allclose(
+            many.nees.value[k], one.nees.value, rtol=1e3 * within, atol=1e3 * within
+        )
 
 
 @pytest.mark.parametrize("name", FILTERS)
-@pytest.mark.parametrize("made", ["tour", "rich", "pioneer", "gnss", *(scene.__name__ for scene in SCENES)])
+@pytest.mark.parametrize(
+    "made", ["tour", "rich", "pioneer", "gnss", *(scene.__name__ for scene in SCENES)]
+)
 def test_a_run_alone_is_its_row_of_the_batch(made, name):
     if made == "rich":
         scene = rich()
@@ -48,13 +52,16 @@ def test_a_run_alone_is_its_row_of_the_batch(made, name):
         scene = replace(next(scene for scene in SCENES if scene.__name__ == made)(), drive=SHORT)
     scene = replace(scene, filter=name)
     batch = ends(play(scene, SOME))
-    within = 1e-6 if made == "rich" else 1e-12  # kidnapped by 8 m, rounding errors grow as the linear algebra has them
+    # kidnapped by 8 m, rounding errors grow as the linear algebra has them
+    within = 1e-6 if made == "rich" else 1e-12
     for k, run in enumerate(SOME.tolist()):
         agree(ends(play(replace(scene, run=run))), batch, k, within)
 
 
 @pytest.mark.parametrize("name", ["ekf", "ukf"])
-@pytest.mark.parametrize("made", ["tour", "diverge-01-wrong-wall", "diverge-03c-slip", "diverge-11-short-returns"])
+@pytest.mark.parametrize(
+    "made", ["tour", "diverge-01-wrong-wall", "diverge-03c-slip", "diverge-11-short-returns"]
+)
 def test_the_worst_run_of_a_packaged_scene_is_as_bad_when_it_is_played(made, name):
     """A lost filter magnifies rounding errors; not so much that another story were told."""
     scene = replace(load_scene(made), filter=name)

@@ -21,14 +21,19 @@ WORLD = Path(__file__).resolve().parents[2] / "worlds" / "furnished-room.yaml"
 COMMANDS = f"""\
 world: {WORLD}
 commands:
-  - repeat: {{times: 40, commands: [{{sense: {{angle: 40}}}}, {{move: {{distance: 0.5, angle: 100}}}}]}}
+  - repeat: {{times: 40, commands: [{{sense: {{angle: 40}}}}, {{move: {{distance: 0.5, angle: \
+100}}}}]}}
 """
 
 
 @contextmanager
 def running(*command, **how):
     """A process that is gone when the block ends."""
-    quiet = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    quiet = {
+        "stdin": subprocess.DEVNULL,
+        "stdout": subprocess.DEVNULL,
+        "stderr": subprocess.DEVNULL,
+    }
     process = subprocess.Popen([*map(str, command)], **{**quiet, **how})
     try:
         yield process
@@ -67,8 +72,18 @@ class Cluster:
         until(lambda: self.file.exists() and self.file.read_text().endswith("}"), "no scheduler")
         self.address = json.loads(self.file.read_text())["address"]
         dask = (sys.executable, "-m", "distributed.cli.dask_worker", self.address)
-        options = (*where, "--no-nanny", "--nthreads", 1, "--death-timeout", 30, "--local-directory", self.folder)
-        for _ in range(2):  # the last that began is the first to end: workers before their scheduler
+        options = (
+            *where,
+            "--no-nanny",
+            "--nthreads",
+            1,
+            "--death-timeout",
+            30,
+            "--local-directory",
+            self.folder,
+        )
+        # the last that began is the first to end: workers before their scheduler
+        for _ in range(2):
             self.workers.append(self.stack.enter_context(running(*dask, *options, env=environment)))
         return self
 
@@ -120,7 +135,9 @@ def test_a_worker_that_dies_changes_nothing(place):
     in_this_process("serial")
     with Cluster(place) as cluster:
         cluster.ready()
-        with running(*study("clustered", "--cluster", cluster.address), stderr=subprocess.PIPE) as process:
+        with running(
+            *study("clustered", "--cluster", cluster.address), stderr=subprocess.PIPE
+        ) as process:
             until(lambda: done("clustered") >= 4, "nothing was done")
             assert process.poll() is None
             cluster.workers[1].kill()
@@ -131,14 +148,18 @@ def test_a_worker_that_dies_changes_nothing(place):
 def test_a_scheduler_that_dies_leaves_what_was_done(place):
     with Cluster(place) as cluster:
         cluster.ready()
-        with running(*study("out", "--cluster", cluster.address), stderr=subprocess.PIPE) as process:
+        with running(
+            *study("out", "--cluster", cluster.address), stderr=subprocess.PIPE
+        ) as process:
             until(lambda: done("out") >= 4, "nothing was done")
             cluster.scheduler.kill()
             status, lines = ended(process)
     assert status == 1
     (line,) = lines
     assert line.startswith(f"ekfsim: the scheduler at {cluster.address} is gone; ")
-    assert line.endswith(f" of {2 * BLOCKS} blocks are kept in out.partial, --resume goes on with the rest")
+    assert line.endswith(
+        f" of {2 * BLOCKS} blocks are kept in out.partial, --resume goes on with the rest"
+    )
     assert done("out") >= 4
     in_this_process("out", "--resume")
     in_this_process("serial")
@@ -146,15 +167,23 @@ def test_a_scheduler_that_dies_leaves_what_was_done(place):
 
 
 def test_a_scheduler_that_is_not_there_is_told_in_a_line(place):
-    with running(*study("out", "--cluster", "tcp://127.0.0.1:9"), stderr=subprocess.PIPE) as process:
+    with running(
+        *study("out", "--cluster", "tcp://127.0.0.1:9"), stderr=subprocess.PIPE
+    ) as process:
         assert ended(process) == (
             1,
-            ["ekfsim: no scheduler at tcp://127.0.0.1:9: Connection refused; start one with `dask scheduler`"],
+            [
+                "ekfsim: no scheduler at tcp://127.0.0.1:9: Connection refused; start one with "
+                "`dask scheduler`"
+            ],
         )
     with running(*study("out", "--cluster", "nowhere"), stderr=subprocess.PIPE) as process:
         assert ended(process) == (
             2,
-            ["ekfsim: --cluster nowhere: is no address of a scheduler; write e.g. tcp://127.0.0.1:8786"],
+            [
+                "ekfsim: --cluster nowhere: is no address of a scheduler; write e.g. "
+                "tcp://127.0.0.1:8786"
+            ],
         )
     assert not (place / "out.partial").exists()
 
@@ -165,12 +194,17 @@ def test_what_answers_and_is_no_scheduler_is_told_in_a_line(place):
         with running(*study("out", "--cluster", address), stderr=subprocess.PIPE) as process:
             wire, _ = server.accept()
             wire.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
-            assert ended(process) == (1, [f"ekfsim: no scheduler at {address}: something else answers there"])
+            assert ended(process) == (
+                1,
+                [f"ekfsim: no scheduler at {address}: something else answers there"],
+            )
             wire.close()
     assert not (place / "out.partial").exists()
 
 
 def test_a_worker_of_another_version_is_told_in_a_line(place):
     told = "from ekfsim.study.engines import do_packed; do_packed(b'', 0, 1, '0.0.1')"
-    failed = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=False)
+    failed = subprocess.run(
+        [sys.executable, "-c", told], capture_output=True, text=True, check=False
+    )
     assert "install the same version there" in failed.stderr

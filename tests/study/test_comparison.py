@@ -31,7 +31,11 @@ def last(played, runs):
     *_, step = play(played, np.arange(runs))
     e, measured = error(step.posterior, step.entry.truth), nees(step.posterior, step.entry.truth)
     bound = np.array([quantile(LOST, int(dof)) for dof in measured.dof])
-    return np.hypot(e[:, 0], e[:, 1]), np.abs(e[:, 2]), measured.impossible | (measured.value > bound)
+    return (
+        np.hypot(e[:, 0], e[:, 1]),
+        np.abs(e[:, 2]),
+        measured.impossible | (measured.value > bound),
+    )
 
 
 def test_the_pairs_are_the_runs_of_either_setting():
@@ -45,7 +49,10 @@ def test_the_pairs_are_the_runs_of_either_setting():
     mean = np.mean(other - one)
     assert_allclose(d, [np.mean(one), np.mean(other), mean, mean - half, mean + half], rtol=1e-9)
     assert of_means(found.heading).value == pytest.approx(np.mean(θ_other - θ_one))
-    assert (found.position.b_less, found.position.a_less) == (np.sum(other < one), np.sum(other > one))
+    assert (found.position.b_less, found.position.a_less) == (
+        np.sum(other < one),
+        np.sum(other > one),
+    )
     for side, played in ((found.a, a), (found.b, b)):
         assert repr(side.plain()) == repr(run_block(played, 0, 300).plain())
     assert sum(found.a_errors.values()) == sum(found.b_errors.values()) == 300
@@ -72,29 +79,39 @@ def test_a_setting_that_changes_nothing_differs_in_nothing():
 
 
 def test_the_interval_of_a_paired_difference_holds_it_95_times_in_100():
-    """Many tables are drawn with known shares, correlated as runs on the same draws are, and rare as losses are."""
+    """Many tables are drawn with known shares, correlated as runs on the same draws are, and rare
+    as losses are."""
     rng = np.random.default_rng(11)
     for p in ([0.05, 0.01, 0.04, 0.90], [0.002, 0.001, 0.006, 0.991], [0.5, 0.2, 0.1, 0.2]):
         true = p[2] - p[1]
-        for runs, most in ((300, 1.0), (10_000, 0.965)):  # of few runs with few losses it holds more
+        # of few runs with few losses it holds more
+        for runs, most in ((300, 1.0), (10_000, 0.965)):
             tables = rng.multinomial(runs, p, size=2000).tolist()
-            held = [d.low <= true <= d.high for d in (of_shares(Shared(*table)) for table in tables)]
+            held = [
+                d.low <= true <= d.high for d in (of_shares(Shared(*table)) for table in tables)
+            ]
             assert 0.94 <= np.mean(held) <= most
 
 
 def test_the_interval_is_newcombes():
-    """The first line of his table of examples (Statistics in Medicine 17, 1998, 2635): 0.0569 to 0.3404."""
+    """The first line of his table of examples (Statistics in Medicine 17, 1998, 2635): 0.0569 to
+    0.3404."""
     assert of_shares(Shared(36, 2, 12, 0))[2:] == pytest.approx((0.2, 0.0569, 0.3404), abs=5e-5)
 
 
 def test_the_correlation_is_corrected_for_continuity():
-    assert correlation(Shared(30, 3, 5, 12)) == pytest.approx((360 - 15 - 25) / math.sqrt(33 * 17 * 35 * 15))
-    assert correlation(Shared(3, 30, 12, 5)) == pytest.approx((15 - 360) / math.sqrt(33 * 17 * 15 * 35))
+    assert correlation(Shared(30, 3, 5, 12)) == pytest.approx(
+        (360 - 15 - 25) / math.sqrt(33 * 17 * 35 * 15)
+    )
+    assert correlation(Shared(3, 30, 12, 5)) == pytest.approx(
+        (15 - 360) / math.sqrt(33 * 17 * 15 * 35)
+    )
     assert correlation(Shared(3, 2, 2, 3)) == 0.0
 
 
 @pytest.mark.parametrize(
-    "table", [(0, 0, 0, 50), (50, 0, 0, 0), (0, 0, 50, 0), (0, 50, 0, 0), (3, 0, 0, 47), (0, 1, 0, 0)]
+    "table",
+    [(0, 0, 0, 50), (50, 0, 0, 0), (0, 0, 50, 0), (0, 50, 0, 0), (3, 0, 0, 47), (0, 1, 0, 0)],
 )
 def test_shares_of_0_and_1_have_intervals_too(table):
     d = of_shares(Shared(*table))

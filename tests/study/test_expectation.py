@@ -37,25 +37,44 @@ def kept(expect, found):
 
 
 LEVELS = [
-    *(("silent", 39, 0, True), ("silent", 20, 19, True), ("silent", 40, 0, False), ("silent", 20, 20, False)),
+    *(
+        ("silent", 39, 0, True),
+        ("silent", 20, 19, True),
+        ("silent", 40, 0, False),
+        ("silent", 20, 20, False),
+    ),
     *(("high", 40, 60, True), ("high", 39, 0, False), ("high", 0, 40, False)),
     *(("low", 60, 40, True), ("low", 0, 39, False), ("low", 40, 0, False)),
 ]
 
 
 @pytest.mark.parametrize(("level", "above", "below", "expected"), LEVELS)
-def test_nis_is_silent_below_40_percent_outside_and_high_or_low_from_there_on(level, above, below, expected):
+def test_nis_is_silent_below_40_percent_outside_and_high_or_low_from_there_on(
+    level, above, below, expected
+):
     assert kept(Expect(nis=level), Found(nis_above=above, nis_below=below)) is expected
 
 
 @pytest.mark.parametrize(
     ("level", "above", "below", "expected"),
     [
-        *(("silent", 19, 0, True), ("silent", 10, 9, True), ("silent", 20, 0, False), ("silent", 10, 10, False)),
-        *(("high", 20, 80, True), ("high", 19, 0, False), ("low", 80, 20, True), ("low", 0, 19, False)),
+        *(
+            ("silent", 19, 0, True),
+            ("silent", 10, 9, True),
+            ("silent", 20, 0, False),
+            ("silent", 10, 10, False),
+        ),
+        *(
+            ("high", 20, 80, True),
+            ("high", 19, 0, False),
+            ("low", 80, 20, True),
+            ("low", 0, 19, False),
+        ),
     ],
 )
-def test_nees_is_silent_below_20_percent_outside_and_high_or_low_from_there_on(level, above, below, expected):
+def test_nees_is_silent_below_20_percent_outside_and_high_or_low_from_there_on(
+    level, above, below, expected
+):
     assert kept(Expect(nees=level), Found(nees_above=above, nees_below=below)) is expected
 
 

@@ -1,7 +1,9 @@
-"""Honest statistics: a filter that is told the truth about its noise is as sure as it may be, and no surer.
+"""Honest statistics: a filter that is told the truth about its noise is as sure as it may be, and
+no surer.
 
-The bounds are two-sided at 1 in 100 000 for each number that is looked at; there are a few hundred of them. Each test
-has a twin in which the filter is told a wrong noise, and which the same bounds find out.
+The bounds are two-sided at 1 in 100 000 for each number that is looked at; there are a few hundred
+of them. Each test has a twin in which the filter is told a wrong noise, and which the same bounds
+find out.
 """
 
 import math
@@ -15,15 +17,15 @@ from scenes import NOISE, scene
 from scipy.stats import binom, chi2, norm
 
 from ekfsim.consistency import inside_cone, inside_ellipse, nees
-from ekfsim.files.load import read_scene
 from ekfsim.files.packaged import packaged
+from ekfsim.files.scenes.load import read_scene
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.kf import KF
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import cone_factor
 from ekfsim.models.noise import independent
-from ekfsim.models.position import Position
 from ekfsim.models.protocols import Quantity
+from ekfsim.models.sensors.position import Position
 from ekfsim.records import Move, Sense
 from ekfsim.simulation import simulate
 from ekfsim.study.block import run_block
@@ -67,7 +69,8 @@ class Seen:
 
 @cache
 def seen(told: float = 1.0) -> tuple[Seen, ...]:
-    """The linear filter on a linear world; `told` : how large it believes σ of the motion to be, as a share of it."""
+    """The linear filter on a linear world; `told` : how large it believes σ of the motion to be, as
+    a share of it."""
     draw, motion, sensor = np.random.default_rng(20), Drift(told), Position(0.1, 0.15)
     mean = np.array([1.0, 2.0, 0.1])
     truth = draw.multivariate_normal(mean, FIRST, RUNS)
@@ -109,7 +112,8 @@ CONE = 2 * norm.cdf(cone_factor(0.954)) - 1
 
 @pytest.mark.parametrize("step", range(STEPS))
 def test_a_linear_filter_is_as_sure_as_it_may_be(step):
-    """Coverage of the 95.4 % ellipse and of the cone, mean NEES (3 degrees of freedom) and mean NIS (2)."""
+    """Coverage of the 95.4 % ellipse and of the cone, mean NEES (3 degrees of freedom) and mean NIS
+    (2)."""
     found = seen()[step]
     assert honest(found.inside, 0.954)
     assert honest(found.held, CONE)
@@ -129,7 +133,8 @@ def test_five_percent_of_sigma_too_few_or_too_many_are_found_out(told):
 
 @cache
 def drawn() -> Array:
-    """Every noise of two moves and two senses, in units of the σ that it is said to have : (RUNS, 10)"""
+    """Every noise of two moves and two senses, in units of the σ that it is said to have : (RUNS,
+    10)"""
     course = (Move(2.0, -0.5), Sense(0.3), Move(-1.5, 0.6), Sense(-0.2))
     entries = list(simulate(scene(*course, start=(4, 4, 0.2), seed=8), np.arange(RUNS)))
     columns = []
@@ -137,7 +142,9 @@ def drawn() -> Array:
         asked, was, now = entry.command, before.truth, entry.truth
         if isinstance(asked, Move):
             way = now[:, :2] - was[:, :2]
-            driven = way @ np.array([1, 0]) * np.cos(was[:, 2]) + way @ np.array([0, 1]) * np.sin(was[:, 2])
+            driven = way @ np.array([1, 0]) * np.cos(was[:, 2]) + way @ np.array([0, 1]) * np.sin(
+                was[:, 2]
+            )
             turned = now[:, 2] - was[:, 2]
             d, a = entry.given.u.T
             columns += [
@@ -200,7 +207,8 @@ def test_a_filter_that_knows_its_noise_is_consistent_in_an_empty_room(name, filt
     assert verdict.at_end.word is Word.CONSISTENT
     assert verdict.at_end.decided
     assert verdict.on_the_way.nis.value == pytest.approx(1.0, abs=0.1)
-    beyond = [at.above_999.value for at in verdict.on_the_way.steps]  # the vague start is a little curved
+    # the vague start is a little curved
+    beyond = [at.above_999.value for at in verdict.on_the_way.steps]
     assert beyond == [] if name == "diverge-00-control" else max(beyond, default=0.0) < 0.03
 
 

@@ -12,7 +12,9 @@ from ekfsim.study.results import Mean, Share
 from ekfsim.study.tally import Bin
 
 
-@pytest.mark.parametrize(("runs", "of"), [(0, 10), (1, 10), (5, 10), (10, 10), (3, 1000), (997, 1000), (1, 1)])
+@pytest.mark.parametrize(
+    ("runs", "of"), [(0, 10), (1, 10), (5, 10), (10, 10), (3, 1000), (997, 1000), (1, 1)]
+)
 def test_the_interval_is_wilsons(runs, of):
     share = Share(runs, of)
     wanted = stats.binomtest(runs, of).proportion_ci(0.95, method="wilson")
@@ -29,7 +31,9 @@ def test_of_no_runs_there_is_no_share():
 def test_a_mean_has_the_band_of_chi_square():
     mean = Mean.of(3100.0, 3000, 1000)
     assert mean.value == 3.1
-    assert (mean.low, mean.high) == pytest.approx(tuple(stats.chi2.ppf([0.025, 0.975], 3000) / 1000))
+    assert (mean.low, mean.high) == pytest.approx(
+        tuple(stats.chi2.ppf([0.025, 0.975], 3000) / 1000)
+    )
     millions = Mean.of(4.5e7, 45_000_000, 45_000_000)
     assert (millions.low, millions.high) == pytest.approx(
         tuple(1 + np.array([-1, 1]) * stats.norm.ppf(0.975) * math.sqrt(2 / 4.5e7)), rel=1e-6
@@ -50,7 +54,9 @@ def test_errors_are_roots_of_mean_squares():
 
 
 def test_the_typical_run_is_the_first_of_those_in_the_middle():
-    made = counted(runs=10, above=(5,), ellipse=(9,), spread={-3: Bin(4, 2), 5: Bin(1, 9), 40: Bin(5, 0)})
+    made = counted(
+        runs=10, above=(5,), ellipse=(9,), spread={-3: Bin(4, 2), 5: Bin(1, 9), 40: Bin(5, 0)}
+    )
     assert made.typical == 9
     mostly_impossible = {0: Bin(4, 0), IMPOSSIBLE: Bin(6, 3)}
     assert counted(runs=10, above=(5,), ellipse=(9,), spread=mostly_impossible).typical == 3

@@ -64,7 +64,9 @@ def test_a_tally_counts_what_each_run_alone_says(name):
         assert at["judged"] == len(known) + at["impossible"]
         for field, probability in (("above_50", 0.5), ("above_95", 0.95), ("above_999", 0.999)):
             assert at[field] == sum(above(step, probability) for step in steps)
-        held = [inside_ellipse(pose, truth, 0.954) for pose, truth in zip(poses, truths, strict=True)]
+        held = [
+            inside_ellipse(pose, truth, 0.954) for pose, truth in zip(poses, truths, strict=True)
+        ]
         blocks = [
             squared_error(pose.mean[:2] - truth[:2], pose.covariance[:2, :2])
             for pose, truth in zip(poses, truths, strict=True)
@@ -73,12 +75,16 @@ def test_a_tally_counts_what_each_run_alone_says(name):
         assert at["ellipse_runs"] == sum(drawn)
         assert at["in_ellipse"] == sum(bool(h) for h, d in zip(held, drawn, strict=True) if d)
         unsure = [pose.covariance[2, 2] > 1e-24 for pose in poses]
-        cones = [bool(inside_cone(pose, truth, 0.954)) for pose, truth in zip(poses, truths, strict=True)]
+        cones = [
+            bool(inside_cone(pose, truth, 0.954)) for pose, truth in zip(poses, truths, strict=True)
+        ]
         assert at["cone_runs"] == sum(u or not c for u, c in zip(unsure, cones, strict=True))
         assert at["in_cone"] == sum(c for u, c in zip(unsure, cones, strict=True) if u)
         assert at["nees_runs"] == len(known)
         assert at["nees_dof"] == sum(int(step.nees.dof) for step in known)
-        assert at["nees_sum"] == pytest.approx(sum(float(step.nees.value) for step in known), rel=1e-6)
+        assert at["nees_sum"] == pytest.approx(
+            sum(float(step.nees.value) for step in known), rel=1e-6
+        )
         square = sum(math.dist(p.mean[:2], t[:2]) ** 2 for p, t in zip(poses, truths, strict=True))
         assert at["position_square"] == pytest.approx(square, rel=1e-9, abs=1e-15)
     lost = [index_of(ends, evidence) for ends, evidence in runs if evidence.lost_from is not None]
@@ -87,7 +93,8 @@ def test_a_tally_counts_what_each_run_alone_says(name):
 
 
 def index_of(ends, evidence):
-    """The instant from which on a run is lost: with a clock, whatever a reading in the middle of one says."""
+    """The instant from which on a run is lost: with a clock, whatever a reading in the middle of
+    one says."""
     since = None
     for n, step in enumerate(ends):
         since = (n if since is None else since) if above(step, 0.999) else None
@@ -103,17 +110,26 @@ def check_sums(tally, evidences):
     bands = [stats.chi2.ppf([0.025, 0.975], max(evidence.nis_dof, 1)) for evidence in evidences]
     judged = [evidence.nis_dof > 0 for evidence in evidences]
     assert of.nis_runs == sum(judged)
-    sums = [(e.nis_sum, low, high) for e, (low, high), j in zip(evidences, bands, judged, strict=True) if j]
+    sums = [
+        (e.nis_sum, low, high)
+        for e, (low, high), j in zip(evidences, bands, judged, strict=True)
+        if j
+    ]
     assert of.nis_above == sum(total > high for total, _, high in sums)
     assert of.nis_below == sum(total < low for total, low, _ in sums)
     last = [evidence.last_nees for evidence in evidences]
     assert of.nees_above == sum(
-        bool(nees.impossible) or (nees.dof > 0 and float(nees.value) > stats.chi2.ppf(0.975, nees.dof)) for nees in last
+        bool(nees.impossible)
+        or (nees.dof > 0 and float(nees.value) > stats.chi2.ppf(0.975, nees.dof))
+        for nees in last
     )
     assert of.nees_below == sum(
-        not nees.impossible and nees.dof > 0 and float(nees.value) < stats.chi2.ppf(0.025, nees.dof) for nees in last
+        not nees.impossible and nees.dof > 0 and float(nees.value) < stats.chi2.ppf(0.025, nees.dof)
+        for nees in last
     )
-    ranked = [(bool(nees.impossible), 0.0 if nees.impossible else float(nees.value)) for nees in last]
+    ranked = [
+        (bool(nees.impossible), 0.0 if nees.impossible else float(nees.value)) for nees in last
+    ]
     assert tally.worst.run == ranked.index(max(ranked))
     assert sum(held.runs for held in tally.spread.values()) == tally.runs
     for key, held in tally.spread.items():
@@ -175,7 +191,9 @@ def test_of_long_runs_a_thousand_steps_are_told_and_the_last(monkeypatch):
 
 def test_an_impossible_run_is_the_worst_and_the_lowest_of_equals(monkeypatch):
     made = scene(Move(1.0, 0.0), Move(2.0, 0.0), sigma=(0.1, 0.1, 0.1))
-    wrong = replace(made, world=replace(made.world, told=replace(made.world.told, sigma=np.zeros(3))))
+    wrong = replace(
+        made, world=replace(made.world, told=replace(made.world.told, sigma=np.zeros(3)))
+    )
     tally = run_block(wrong, 5, 10)
     assert tally.worst == (True, 0.0, 5)
     assert set(tally.spread) == {IMPOSSIBLE}

@@ -13,7 +13,8 @@ START = np.array([1.0, 2.0, 0.5])
 
 @pytest.mark.parametrize("dt", [0.01, 0.1, 0.07])
 @pytest.mark.parametrize(
-    "drive", [Square(), Square(3.0, clockwise=True, laps=2), Circle(), Circle(laps=2, clockwise=True)]
+    "drive",
+    [Square(), Square(3.0, clockwise=True, laps=2), Circle(), Circle(laps=2, clockwise=True)],
 )
 def test_squares_and_circles_close(drive, dt):
     poses = drive.course(dt).poses(START, dt)
@@ -37,7 +38,8 @@ def test_no_side_is_driven_faster_than_asked():
 
 
 def test_a_circle_is_round():
-    """Chords of the mid-point rule are as long as arcs, so its circle is wider by radius · turn²/24: by 0.05 mm."""
+    """Chords of the mid-point rule are as long as arcs, so its circle is wider by radius ·
+    turn²/24: by 0.05 mm."""
     poses = Circle(radius=2.0, speed=0.5).course(0.1).poses(np.zeros(3), 0.1)
     assert_allclose(np.hypot(poses[:, 0], poses[:, 1] - 2.0), 2.0, rtol=0, atol=1.1e-4)
 
@@ -56,7 +58,8 @@ def test_no_tick_is_lost_where_stretches_are_no_whole_number_of_ticks():
 
 @pytest.mark.parametrize("clockwise", [False, True])
 def test_the_spiral_fills_its_field_in_its_time(clockwise):
-    """549 s at 100 Hz in 75 × 50 m: begun along the longer side, then 4 m further in with every round."""
+    """549 s at 100 Hz in 75 × 50 m: begun along the longer side, then 4 m further in with every
+    round."""
     course = Spiral(clockwise=clockwise).course(0.01)
     poses = course.poses(np.zeros(3), 0.01)
     assert len(course.speed) == 54_900
@@ -67,4 +70,6 @@ def test_the_spiral_fills_its_field_in_its_time(clockwise):
     assert outwards[0] == pytest.approx(1.0, abs=0.01)
     assert outwards[-1] == pytest.approx(0.2, abs=0.01)
     assert np.all(np.diff(outwards[::1000]) < 0)
-    assert (poses[-1, 2] - poses[0, 2]) * (-1 if clockwise else 1) == pytest.approx(2 * math.pi * 5, abs=0.2)
+    assert (poses[-1, 2] - poses[0, 2]) * (-1 if clockwise else 1) == pytest.approx(
+        2 * math.pi * 5, abs=0.2
+    )

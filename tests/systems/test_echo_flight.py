@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numerics import definite
 
-from ekfsim.models.echo import envelope
+from ekfsim.models.sensors.echo import envelope
 from ekfsim.simulation.bench import echoes, heard, sigma_of
 from ekfsim.systems.echo import (
     SOUND,
@@ -86,7 +86,10 @@ def test_a_batch_equals_its_runs():
         x_one, P_one = estimate_echo(measured[i], sigma[i], PAIR)
         np.testing.assert_allclose(x_one, x[i], rtol=1e-9)
         np.testing.assert_allclose(P_one, P[i], rtol=1e-6)
-        assert threshold_crossing(measured[i], sigma[i], PAIR) == threshold_crossing(measured, sigma, PAIR)[i]
+        assert (
+            threshold_crossing(measured[i], sigma[i], PAIR)
+            == threshold_crossing(measured, sigma, PAIR)[i]
+        )
 
 
 @pytest.mark.parametrize("snr", [10, 20, 30])
@@ -143,7 +146,8 @@ def test_the_bound_is_that_of_the_information_about_tau():
     """Against central differences of the envelope, in other units."""
     echo, sigma = at(4e-3), 0.05
     steps = np.diag(1e-5 * np.array([1, 1e-4, 1e-4, 1]))
-    slopes = np.stack([(envelopes(echo + s) - envelopes(echo - s)) / 2e-5 for s in steps])  # per V, 0.1 ms, 0.1 ms, 1
+    # per V, 0.1 ms, 0.1 ms, 1
+    slopes = np.stack([(envelopes(echo + s) - envelopes(echo - s)) / 2e-5 for s in steps])
     known = np.diag([0, 0, (1e-4 / (0.1 * PAIR.rise)) ** 2, 1 / (0.1 * PAIR.power) ** 2])
     expected = math.sqrt(np.linalg.inv(slopes @ slopes.T / (2 * sigma**2) + known)[1, 1]) * 1e-4
     assert flight_bound(echo, sigma, PAIR) == pytest.approx(expected, rel=1e-3)

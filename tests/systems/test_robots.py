@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from ekfsim.files.load import load_scene
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.geometry.angles import wrap
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.document import READINGS
@@ -18,18 +18,26 @@ ROBOTS = {name: system.robot for name, system in SYSTEMS.items()} | {
 }
 EVERY = pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)
 SPEED, TURN = 0.8, -0.7  # m/s, rad/s
-AT_THE_NEW_HEADING = Pioneer, GnssMower  # their documents go the whole way at the heading after the turn
+# their documents go the whole way at the heading after the turn
+AT_THE_NEW_HEADING = Pioneer, GnssMower
 
 
 def ticks(robot, many=200):
-    """A winding way by the mid-point rule: poses (many + 1, 3), and the ticks between them as one."""
+    """A winding way by the mid-point rule: poses (many + 1, 3), and the ticks between them as
+    one."""
     dt, k = 1 / robot.rate, np.arange(many + 1)
     distance, turn = SPEED * dt * (1 + 0.5 * np.sin(k / 9)), TURN * dt * np.cos(k / 17)
     heading = 3.0 + np.concatenate([[0.0], np.cumsum(turn[:-1])])
-    steps = distance[:, None] * np.stack([np.cos(heading + turn / 2), np.sin(heading + turn / 2)], axis=-1)
-    place = np.array([5.0, -2.0]) + np.concatenate([np.zeros((1, 2)), np.cumsum(steps[:-1], axis=0)])
+    steps = distance[:, None] * np.stack(
+        [np.cos(heading + turn / 2), np.sin(heading + turn / 2)], axis=-1
+    )
+    place = np.array([5.0, -2.0]) + np.concatenate(
+        [np.zeros((1, 2)), np.cumsum(steps[:-1], axis=0)]
+    )
     poses = np.column_stack([place, wrap(heading)])
-    return poses, Tick(poses[:-1], poses[1:], distance[:-1], turn[:-1], steps[:-1] / dt, steps[1:] / dt, dt)
+    return poses, Tick(
+        poses[:-1], poses[1:], distance[:-1], turn[:-1], steps[:-1] / dt, steps[1:] / dt, dt
+    )
 
 
 def followed(robot, tick, poses):
@@ -51,7 +59,8 @@ def test_ideal_inputs_lead_along_the_true_way(robot):
     pose = robot.layout.pose(followed(robot, tick, poses))
     assert_allclose(wrap(pose[:, 2] - poses[:, 2]), 0, rtol=0, atol=1e-9)
     if isinstance(robot, AT_THE_NEW_HEADING) and getattr(robot, "odometry", "arctan") == "arctan":
-        aside = np.cumsum(tick.distance * np.abs(tick.turn) / 2)  # half a turn times the way, tick by tick
+        # half a turn times the way, tick by tick
+        aside = np.cumsum(tick.distance * np.abs(tick.turn) / 2)
         assert np.all(np.hypot(*(pose - poses)[1:, :2].T) <= aside + 1e-9)
     else:
         assert_allclose(pose[:, :2], poses[:, :2], rtol=0, atol=1e-9)
@@ -60,7 +69,8 @@ def test_ideal_inputs_lead_along_the_true_way(robot):
 @pytest.mark.parametrize("reading", READINGS)
 @pytest.mark.parametrize("name", ["mower", "pioneer", "gnss", "pylon", "landmarks", "ranges"])
 def test_a_world_knows_in_which_readings_it_follows_other_equations(name, reading):
-    """What motion and sensors say of a pose; the mower's code differs in its filter (see localization)."""
+    """What motion and sensors say of a pose; the mower's code differs in its filter (see
+    localization)."""
     world, random = load_scene(name).world, np.random.default_rng(1)
     x = random.uniform(-2, 2, len(world.layout.names))
     said = []
@@ -68,7 +78,9 @@ def test_a_world_knows_in_which_readings_it_follows_other_equations(name, readin
         motion = world.robot.motion(followed)
         u = 0.3 * np.ones(len(motion.inputs))
         sensors = [target.sensor for _, target in world.targets(followed)]
-        said.append([*motion.linearize(x, u), *(part for sensor in sensors for part in sensor.linearize(x))])
+        said.append(
+            [*motion.linearize(x, u), *(part for sensor in sensors for part in sensor.linearize(x))]
+        )
     differ = not all(np.array_equal(a, b, equal_nan=True) for a, b in zip(*said, strict=True))
     assert world.follows(reading) == (differ or (name, reading) == ("mower", "coded"))
 
@@ -81,7 +93,8 @@ def test_a_straight_way_is_exact(robot):
         step = distance * np.array([math.cos(0.4), math.sin(0.4)])
         after = np.array([*(pose[:2] + step), 0.4 + turn])
         velocity = step * robot.rate
-        tick = Tick(pose[None], after[None], np.array([distance]), np.array([turn]), velocity[None], velocity[None],
+        tick = Tick(pose[None], after[None], np.array([distance]), np.array([turn]), velocity[None],
+        velocity[None],
                     1 / robot.rate)  # fmt: skip
         states = followed(robot, tick, np.array([pose, after]))
         assert_allclose(robot.layout.pose(states)[-1], after, rtol=0, atol=1e-12)

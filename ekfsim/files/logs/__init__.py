@@ -4,12 +4,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ekfsim.errors import UsageError
-from ekfsim.files.logs.gnss import read_gnss
-from ekfsim.files.logs.mower import read_mower
-from ekfsim.files.logs.mrclam import read_mrclam
-from ekfsim.files.logs.pioneer import read_pioneer
-from ekfsim.files.logs.pylon import read_pylon
-from ekfsim.files.logs.ranges import read_ranges
+from ekfsim.files.logs.formats.gnss import read_gnss
+from ekfsim.files.logs.formats.mower import read_mower
+from ekfsim.files.logs.formats.mrclam import read_mrclam
+from ekfsim.files.logs.formats.pioneer import read_pioneer
+from ekfsim.files.logs.formats.pylon import read_pylon
+from ekfsim.files.logs.formats.ranges import read_ranges
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.written import WRITERS, write_log
 from ekfsim.systems.document import DocumentReading
@@ -30,12 +30,17 @@ SYSTEM_OF = {**{name: name for name in FORMATS}, "mrclam": "landmarks"}  # whose
 
 
 def read_log(
-    format: str, path: Path, world: World, reading: DocumentReading, warnings: list[str] | None = None
+    format: str,
+    path: Path,
+    world: World,
+    reading: DocumentReading,
+    warnings: list[str] | None = None,
 ) -> Recorded:
     """The log that a file or a folder holds, for the robot and the instruments of a world.
 
-    `warnings` gets what is odd in the log as it is found, and so holds it where the reading ends in a mistake, too.
-    Raises UsageError where a file is missing or the world is another system's, InputError with what is wrong in a file.
+    `warnings` gets what is odd in the log as it is found, and so holds it where the reading ends in
+    a mistake, too. Raises UsageError where a file is missing or the world is another system's,
+    InputError with what is wrong in a file.
     """
     system = SYSTEM_OF[format]
     if world.system != system:

@@ -37,7 +37,10 @@ def find_any(folder: Path, what: str, *patterns: str) -> Path | None:
         found = [name for name in names if fnmatchcase(name, pattern)]
         if len(found) > 1:
             names_of_some = ", ".join([*found[:3], *(["…"] if len(found) > 3 else [])])
-            raise UsageError(f"{folder}: several files '{pattern}' in it: {names_of_some}; leave one there for {what}")
+            raise UsageError(
+                f"{folder}: several files '{pattern}' in it: {names_of_some}; leave one there for "
+                f"{what}"
+            )
         if found:
             return folder / found[0]
     return None

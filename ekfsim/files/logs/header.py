@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.logs.text import Lines
 from ekfsim.files.source import mistake
-from ekfsim.files.telling import quoted
+from ekfsim.files.yaml.telling import quoted
 
 
 def separator_of(line: str) -> str | None:
@@ -19,7 +19,8 @@ def separator_of(line: str) -> str | None:
 
 
 def places_of(lines: Lines, columns: Sequence[tuple[str, ...]]) -> tuple[int, list[int]]:
-    """How many columns a header names, and where each wanted one stands; it may go by any of several names.
+    """How many columns a header names, and where each wanted one stands; it may go by any of
+    several names.
 
     Raises InputError where the header is missing, or lacks one of them.
     """
@@ -33,7 +34,9 @@ def places_of(lines: Lines, columns: Sequence[tuple[str, ...]]) -> tuple[int, li
     place = Place(lines.file, lines.numbers[0], 1)
     if not any(name[:1].isalpha() for name in names):
         wrong = f"{quoted(line)} names no columns"
-        raise InputError([Mistake(place, "", wrong, f"the first line says what they are: {wanted}")])
+        raise InputError(
+            [Mistake(place, "", wrong, f"the first line says what they are: {wanted}")]
+        )
     found, missing = [], list[Mistake]()
     for known in columns:
         here = [i for i, name in enumerate(names) if name in known]
@@ -43,7 +46,9 @@ def places_of(lines: Lines, columns: Sequence[tuple[str, ...]]) -> tuple[int, li
         shown = " or ".join(map(quoted, known))
         wrong = f"{len(here)} columns are named {shown}" if here else f"no column is named {shown}"
         near = difflib.get_close_matches(known[0], names, 1) if not here else []
-        right = f"found {', '.join(map(quoted, names))}" + (f"; did you mean {quoted(near[0])}?" if near else "")
+        right = f"found {', '.join(map(quoted, names))}" + (
+            f"; did you mean {quoted(near[0])}?" if near else ""
+        )
         missing.append(Mistake(place, "", wrong, right))
     if missing:
         raise InputError(missing)

@@ -15,12 +15,16 @@ def in_order(rows: Rows, warnings: list[str]) -> Rows:
 
 
 def tell_back(rows: Rows, warnings: list[str]) -> bool:
-    """Whether a time lies before that of the row above; a warning says that the rows are put in order."""
+    """Whether a time lies before that of the row above; a warning says that the rows are put in
+    order.
+    """
     back = np.flatnonzero(np.diff(rows.t) < 0) + 1
     if not len(back):
         return False
     first, more = int(back[0]), f", and so do {len(back) - 1} more" if len(back) > 1 else ""
-    told = f"{rows.at(first)}: the time {rows.t[first]:.12g} lies before that of the row above{more}"
+    told = (
+        f"{rows.at(first)}: the time {rows.t[first]:.12g} lies before that of the row above{more}"
+    )
     warnings.append(f"{told}: the rows are put in order of time")
     return True
 
@@ -33,17 +37,23 @@ def _once(rows: Rows, warnings: list[str]) -> Rows:
     twice = np.setdiff1d(np.arange(len(rows)), first)
     if len(twice):
         more = f", as do {len(twice) - 1} more" if len(twice) > 1 else ""
-        warnings.append(f"{rows.at(int(twice[0]))}: this row repeats another of the same time{more}: left out")
+        warnings.append(
+            f"{rows.at(int(twice[0]))}: this row repeats another of the same time{more}: left out"
+        )
     return rows[first]
 
 
 def tell_repeated(rows: Rows, warnings: list[str], made: str = "") -> None:
-    """Warn of rows that share a time where each should have its own, and of what is made of them."""
+    """Warn of rows that share a time where each should have its own, and of what is made of
+    them.
+    """
     repeated = np.flatnonzero(np.diff(rows.t) == 0) + 1
     if len(repeated):
         more = f", and so do {len(repeated) - 1} more" if len(repeated) > 1 else ""
         row = int(repeated[0])
-        warnings.append(f"{rows.at(row)}: the time {rows.t[row]:.12g} is that of the row above, too{more}{made}")
+        warnings.append(
+            f"{rows.at(row)}: the time {rows.t[row]:.12g} is that of the row above, too{more}{made}"
+        )
 
 
 def tell_gaps(rows: Rows, warnings: list[str]) -> None:

@@ -11,5 +11,6 @@ class Recorded:
     """A log that was read, and what its reader must be told of it."""
 
     log: Log
-    landmarks: tuple[Landmark, ...] | None  # where the log's own files say what stands where, else None
+    # where the log's own files say what stands where, else None
+    landmarks: tuple[Landmark, ...] | None
     warnings: list[str]  # each a line: file:line: what was odd, and what was made of it

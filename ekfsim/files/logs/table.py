@@ -1,7 +1,8 @@
 """Lines → numbers: quickly where all is well, and line by line where something is wrong.
 
-What no person would use is left out, and told: a last line that was cut short, numbers that are none (nan, inf), or
-cannot be meant (denormals, a million metres, a range of 0 or less). Whatever else is wrong is refused with its place.
+What no person would use is left out, and told: a last line that was cut short, numbers that are
+none (nan, inf), or cannot be meant (denormals, a million metres, a range of 0 or less). Whatever
+else is wrong is refused with its place.
 """
 
 import math
@@ -17,26 +18,32 @@ from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.logs.header import places_of, separator_of
 from ekfsim.files.logs.text import Lines, lines_of
 from ekfsim.files.source import mistake
-from ekfsim.files.telling import quoted
+from ekfsim.files.yaml.telling import quoted
 from ekfsim.geometry import Array, Booleans, Integers
 
-NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?(nan|inf|infinity)", re.IGNORECASE | re.ASCII)
+NUMBER = re.compile(
+    r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?(nan|inf|infinity)", re.IGNORECASE | re.ASCII
+)
 MOST_TOLD = 20  # mistakes
 MOST_WARNED = 3  # rows of one kind
 EPOCH = 1e10  # s since 1970, until the year 2286; stamps count from then on in
 FINER = (("milliseconds", 1e3), ("microseconds", 1e6), ("nanoseconds", 1e9))
-ENORMOUS = {"t": 1e12, "time": 1e12, "x": 1e8, "y": 1e8}  # s and m: until the year 33658, and for any map grid
+# s and m: until the year 33658, and for any map grid
+ENORMOUS = {"t": 1e12, "time": 1e12, "x": 1e8, "y": 1e8}
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """The columns of a table that are read: how messages call them, and where they stand, from 0."""
+    """The columns of a table that are read: how messages call them, and where they stand, from
+    0.
+    """
 
     names: tuple[str, ...]
     places: tuple[int, ...]
     widths: range  # how many columns a row may have
     maybe: frozenset[str] = frozenset()  # columns that may say nan
-    ranges: frozenset[str] = frozenset()  # columns that are ranges: where nothing answers, many sensors say 0 or −1
+    # columns that are ranges: where nothing answers, many sensors say 0 or −1
+    ranges: frozenset[str] = frozenset()
 
     def limits(self) -> Array:
         """The magnitude beyond which a number cannot be meant."""
@@ -69,7 +76,10 @@ class Rows:
 
 
 def named_table(
-    path: Path, columns: Sequence[tuple[str, ...]], warnings: list[str], ranges: frozenset[str] = frozenset()
+    path: Path,
+    columns: Sequence[tuple[str, ...]],
+    warnings: list[str],
+    ranges: frozenset[str] = frozenset(),
 ) -> Rows:
     """A table whose first line names its columns; each wanted one may go by several names.
 
@@ -77,7 +87,9 @@ def named_table(
     """
     lines = lines_of(path)
     width, places = places_of(lines, columns)
-    wanted = Wanted(tuple(names[0] for names in columns), tuple(places), range(width, width + 1), ranges=ranges)
+    wanted = Wanted(
+        tuple(names[0] for names in columns), tuple(places), range(width, width + 1), ranges=ranges
+    )
     body = replace(lines[1:], ended=lines.ended or len(lines) == 1)
     return numbers_of(body, wanted, separator_of(lines.texts[0]), warnings)
 
@@ -94,9 +106,13 @@ def bare_table(path: Path, wanted: Wanted, warnings: list[str], mixed: bool = Fa
 
 
 def numbers_of(lines: Lines, wanted: Wanted, separator: str | None, warnings: list[str]) -> Rows:
-    """The wanted columns of all rows that can be used. Raises InputError with the mistakes in the others."""
+    """The wanted columns of all rows that can be used. Raises InputError with the mistakes in the
+    others.
+    """
     if separator:
-        lines = replace(lines, texts=[text.rstrip().removesuffix(separator) for text in lines.texts])
+        lines = replace(
+            lines, texts=[text.rstrip().removesuffix(separator) for text in lines.texts]
+        )
     lines = _whole(lines, separator, warnings)
     values = _quickly(lines, wanted, separator)
     if values is None:
@@ -108,15 +124,24 @@ def _whole(lines: Lines, separator: str | None, warnings: list[str]) -> Lines:
     """The lines without a last one that was cut short."""
     if not len(lines):
         return lines
-    last, above = lines.texts[-1].split(separator), [text.split(separator) for text in lines.texts[-20:-1]]
+    last, above = (
+        lines.texts[-1].split(separator),
+        [text.split(separator) for text in lines.texts[-20:-1]],
+    )
     place = f"{lines.file}:{lines.numbers[-1]}"
     if above and len(last) < len(above[-1]):
         why = "in the middle of a row"
-    elif above and not lines.ended and (not is_number(last[-1]) or _is_cut(last[-1], [row[-1] for row in above])):
+    elif (
+        above
+        and not lines.ended
+        and (not is_number(last[-1]) or _is_cut(last[-1], [row[-1] for row in above]))
+    ):
         why = "in the middle of a number"
     else:
         if not lines.ended:
-            warnings.append(f"{place}: the file ends without a line break; its last number may be cut short")
+            warnings.append(
+                f"{place}: the file ends without a line break; its last number may be cut short"
+            )
         return lines
     warnings.append(f"{place}: the file ends {why}: this line is left out")
     return replace(lines[:-1], ended=True)
@@ -125,7 +150,11 @@ def _whole(lines: Lines, separator: str | None, warnings: list[str]) -> Lines:
 def _is_cut(number: str, above: list[str]) -> bool:
     """Whether a number has fewer decimals than the others, which all have the same."""
     decimals = {len(text.strip().partition(".")[2]) for text in above}
-    return len(above) > 2 and len(decimals) == 1 and len(number.strip().partition(".")[2]) < decimals.pop()
+    return (
+        len(above) > 2
+        and len(decimals) == 1
+        and len(number.strip().partition(".")[2]) < decimals.pop()
+    )
 
 
 def is_number(text: str) -> bool:
@@ -134,14 +163,18 @@ def is_number(text: str) -> bool:
 
 
 def _quickly(lines: Lines, wanted: Wanted, separator: str | None) -> Array | None:
-    """The wanted columns as numpy reads them; None where it stumbles, or some rows have other widths."""
+    """The wanted columns as numpy reads them; None where it stumbles, or some rows have other
+    widths.
+    """
     if not len(lines):
         return np.empty((0, len(wanted.places)))
     width, *others = {_width(text, separator) for text in lines.texts}
     if others or width not in wanted.widths:
         return None
     try:
-        return np.loadtxt(lines.texts, delimiter=separator, usecols=wanted.places, ndmin=2, comments=None)
+        return np.loadtxt(
+            lines.texts, delimiter=separator, usecols=wanted.places, ndmin=2, comments=None
+        )
     except (ValueError, OverflowError):
         return None
 
@@ -159,7 +192,9 @@ def _carefully(lines: Lines, wanted: Wanted, separator: str | None) -> Array:
         raise InputError([_width_mistake(lines, 0, widths[0], wanted.widths)])
     for row, text in enumerate(lines.texts):
         found = _row_mistakes(lines, row, text, separator, wanted, usual)
-        mistakes, more = (mistakes + found, more) if len(mistakes) < MOST_TOLD else (mistakes, more + len(found))
+        mistakes, more = (
+            (mistakes + found, more) if len(mistakes) < MOST_TOLD else (mistakes, more + len(found))
+        )
         if not mistakes:
             fields = text.split(separator)
             rows.append([float(fields[place]) for place in wanted.places])
@@ -177,26 +212,46 @@ def _row_mistakes(
     """What is wrong with one row."""
     fields = text.split(separator)
     if len(fields) not in wanted.widths or (usual is not None and len(fields) != usual):
-        return [_width_mistake(lines, row, len(fields), wanted.widths if usual is None else range(usual, usual + 1))]
+        return [
+            _width_mistake(
+                lines, row, len(fields), wanted.widths if usual is None else range(usual, usual + 1)
+            )
+        ]
     found, column = [], 0
     for place, field in enumerate(fields):
         column = text.index(field, column) if field else column
         if place in wanted.places and not is_number(field):
-            start, name = column + len(field) - len(field.lstrip()), wanted.names[wanted.places.index(place)]
-            wrong = f"{quoted(field)} is not a number" if field.strip() else "nothing stands where a number belongs"
+            start, name = (
+                column + len(field) - len(field.lstrip()),
+                wanted.names[wanted.places.index(place)],
+            )
+            wrong = (
+                f"{quoted(field)} is not a number"
+                if field.strip()
+                else "nothing stands where a number belongs"
+            )
             meant = field.strip().strip("\"'").replace(",", ".")  # as spreadsheets write it
             right = f"write {meant}" if NUMBER.fullmatch(meant) else "write e.g. 1.5"
-            found.append(Mistake(Place(lines.file, lines.numbers[row], start + 1), name, wrong, right))
+            found.append(
+                Mistake(Place(lines.file, lines.numbers[row], start + 1), name, wrong, right)
+            )
         column += len(field) + (separator is not None)
     return found
 
 
 def _width_mistake(lines: Lines, row: int, width: int, widths: range) -> Mistake:
     columns = "1 column stands" if width == 1 else f"{width} columns stand"
-    right = f"{widths.start}" + (" or more" if len(widths) > 2 else f" or {widths[-1]}" if len(widths) == 2 else "")
+    right = f"{widths.start}" + (
+        " or more" if len(widths) > 2 else f" or {widths[-1]}" if len(widths) == 2 else ""
+    )
     if width == 1 and (mark := separator_of(lines.texts[row])):
         right += f", and no '{mark}' between them"
-    return Mistake(Place(lines.file, lines.numbers[row], 1), "", f"{columns} in this row", f"it must have {right}")
+    return Mistake(
+        Place(lines.file, lines.numbers[row], 1),
+        "",
+        f"{columns} in this row",
+        f"it must have {right}",
+    )
 
 
 def _sane(rows: Rows, wanted: Wanted, warnings: list[str]) -> Rows:
@@ -213,7 +268,9 @@ def _sane(rows: Rows, wanted: Wanted, warnings: list[str]) -> Rows:
         why = _why(value, name, name in wanted.ranges)
         warnings.append(f"{rows.at(row)}: {name}: {value:g} is {why}: this row is left out")
     if len(bad) > MOST_WARNED:
-        warnings.append(f"{rows.at(bad[MOST_WARNED])}: so {_are_rows(len(bad) - MOST_WARNED)} from here on")
+        warnings.append(
+            f"{rows.at(bad[MOST_WARNED])}: so {_are_rows(len(bad) - MOST_WARNED)} from here on"
+        )
     return replace(rows[~odd.any(axis=1)], left_out=len(bad)) if len(bad) else rows
 
 
@@ -224,7 +281,9 @@ def _why(value: float, name: str, is_range: bool) -> str:
     if 0 < abs(value) < sys.float_info.min:
         return "a denormal"
     if name in ("t", "time"):
-        unit = next((f" (are these {unit}?)" for unit, second in FINER if abs(value) < EPOCH * second), "")
+        unit = next(
+            (f" (are these {unit}?)" for unit, second in FINER if abs(value) < EPOCH * second), ""
+        )
         return f"no time in s{unit}"
     return "no range" if is_range and value <= 0 else "absurdly large"
 
@@ -236,6 +295,8 @@ def _are_rows(count: int) -> str:
 def some(rows: Rows, what: str) -> Rows:
     """The rows, of which there must be one. Raises InputError where there is none."""
     if not len(rows):
-        wrong = f"all {rows.left_out} rows are left out" if rows.left_out else "the file holds no rows"
+        wrong = (
+            f"all {rows.left_out} rows are left out" if rows.left_out else "the file holds no rows"
+        )
         raise mistake(rows.file, 1, 1, wrong, f"without {what} there is nothing to localize")
     return rows

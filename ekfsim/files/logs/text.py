@@ -41,7 +41,13 @@ def lines_of(path: Path) -> Lines:
         except IsADirectoryError:
             raise UsageError(f"{shown}: is a folder, where a file of the log belongs") from None
     if len(raw) > MAX_BYTES:
-        raise mistake(shown, 1, 1, f"the file is larger than {MAX_BYTES // 10**6} MB", "cut the log into parts")
+        raise mistake(
+            shown,
+            1,
+            1,
+            f"the file is larger than {MAX_BYTES // 10**6} MB",
+            "cut the log into parts",
+        )
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
         raise mistake(shown, 1, 1, "the file is UTF-16, not UTF-8", "save it as UTF-8")
     try:
@@ -60,6 +66,10 @@ def _numbered(shown: str, text: str) -> Lines:
     ended = texts[-1] == ""
     if ended:
         texts.pop()
-    kept = [(n, line) for n, line in enumerate(texts, 1) if line.strip() and line.lstrip()[0] not in COMMENTS]
+    kept = [
+        (n, line)
+        for n, line in enumerate(texts, 1)
+        if line.strip() and line.lstrip()[0] not in COMMENTS
+    ]
     ended = ended or not kept or kept[-1][0] != len(texts)
     return Lines(shown, [n for n, _ in kept], [line for _, line in kept], ended)

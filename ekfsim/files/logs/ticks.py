@@ -58,7 +58,9 @@ def numbered(reading: Reading, kinds: tuple[str, ...], path: Path) -> tuple[str,
     return kind, int(number or 0)
 
 
-def text_of(rows: Iterable[Iterable[float | int]], separator: str, header: str = "", ending: str = "") -> str:
+def text_of(
+    rows: Iterable[Iterable[float | int]], separator: str, header: str = "", ending: str = ""
+) -> str:
     """A table with 17 digits, from which every number can be read back as it was."""
     lines = [separator.join(number(value) for value in row) + ending for row in rows]
     return "\n".join([*([header] if header else []), *lines, ""])

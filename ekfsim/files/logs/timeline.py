@@ -28,7 +28,8 @@ class Motions:
     begin: Array  # (n,) s
     end: Array  # (n,) s
     u: Array  # (n, m)
-    amounts: Booleans  # (m,) which entries of u grow with the time: ways, turns, dt; the others are rates
+    # (m,) which entries of u grow with the time: ways, turns, dt; the others are rates
+    amounts: Booleans
 
     def part(self, k: int, begin: float, end: float) -> Control:
         """What is held from `begin` to `end` of the k-th motion."""
@@ -67,26 +68,41 @@ class Timeline:
     between: bool = True  # whether errors are counted at readings between two motions
 
     def recorded(self, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
-        """The log. It starts at the truth's first instant where that comes later, and at the true pose."""
+        """The log. It starts at the truth's first instant where that comes later, and at the true
+        pose.
+        """
         start, motions = self.start, self.motions
         if self.truth is not None and not self.truth.t[0] <= start <= self.truth.t[-1]:
             if start > self.truth.t[-1] or not np.any(motions.end > self.truth.t[0]):
-                told = f"the truth is of {_span(self.truth.t)}, the motion of {_span([start, motions.end[-1]])}"
-                raise UsageError(f"{self.name}: the truth and the motion have no instant in common: {told}")
+                told = (
+                    f"the truth is of {_span(self.truth.t)}, the motion of "
+                    f"{_span([start, motions.end[-1]])}"
+                )
+                raise UsageError(
+                    f"{self.name}: the truth and the motion have no instant in common: {told}"
+                )
             start = float(self.truth.t[0])
             told = f"{self.name}: starts at {start:.12g} s, where the truth begins"
             warnings.append(f"{told}: what was before is left out")
             motions = motions.since(start)
-        if self.truth is not None and (after := float(motions.end[-1] - self.truth.t[-1])) > self.truth.longest:
+        if (
+            self.truth is not None
+            and (after := float(motions.end[-1] - self.truth.t[-1])) > self.truth.longest
+        ):
             told = f"the truth ends {after:.3g} s before the motion: errors are counted until then"
             warnings.append(f"{self.name}: {told}")
-        happened = [(start, None, True), *_merged(motions, self._within(start, motions, warnings), self.between)]
+        happened = [
+            (start, None, True),
+            *_merged(motions, self._within(start, motions, warnings), self.between),
+        ]
         truths = _truths(self.truth, np.array([t for t, _, _ in happened]))
         entries = tuple(
             Entry(index, given, truth, t=t, judged=judged)
             for index, ((t, given, judged), truth) in enumerate(zip(happened, truths, strict=True))
         )
-        return Recorded(Log(entries, beginning(world, reading, truths[0])), self.landmarks, warnings)
+        return Recorded(
+            Log(entries, beginning(world, reading, truths[0])), self.landmarks, warnings
+        )
 
     def _within(self, start: float, motions: Motions, warnings: list[str]) -> list[Sample]:
         """The readings that the motions reach, by time."""
@@ -100,7 +116,9 @@ class Timeline:
         if missed := len(self.samples) - len(kept):
             readings = "1 reading lies" if missed == 1 else f"{missed} readings lie"
             spans = f"readings are of {_span(times)}, the motion of {_span(edges)}"
-            warnings.append(f"{self.name}: {readings} before or after the motion: left out; {spans}")
+            warnings.append(
+                f"{self.name}: {readings} before or after the motion: left out; {spans}"
+            )
         if not kept:
             warnings.append(f"{self.name}: no reading is left: the filter follows the motion alone")
         return kept
@@ -112,27 +130,36 @@ def _span(t: Array | list[float]) -> str:
 
 
 def _snapped(t: Array, edges: Array) -> Array:
-    """The times, those that are an edge's but for rounding as the edge has it. edges : (n,) in order"""
+    """The times, those that are an edge's but for rounding as the edge has it. edges : (n,) in
+    order
+    """
     after = np.minimum(np.searchsorted(edges, t), len(edges) - 1)
     before = np.maximum(after - 1, 0)
-    nearest = np.where(np.abs(edges[after] - t) < np.abs(edges[before] - t), edges[after], edges[before])
+    nearest = np.where(
+        np.abs(edges[after] - t) < np.abs(edges[before] - t), edges[after], edges[before]
+    )
     return np.where(np.abs(nearest - t) <= SAME, nearest, t)
 
 
 def beginning(world: World, reading: DocumentReading, pose: Array | None) -> Gaussian:
-    """The first belief: at the true pose, or where the world file says, as uncertain as the robot's document has it."""
+    """The first belief: at the true pose, or where the world file says, as uncertain as the robot's
+    document has it.
+    """
     assert world.told_robot is not None
     pose = world.told.start if pose is None else pose
     return Gaussian(world.layout.state(pose), world.told_robot.first_covariance(reading))
 
 
-Happened = tuple[float, Control | Reading | None, bool]  # t, what the filter is given, whether errors are counted
+# t, what the filter is given, whether errors are counted
+Happened = tuple[float, Control | Reading | None, bool]
 
 
 def _merged(motions: Motions, samples: Sequence[Sample], between: bool) -> list[Happened]:
     """Predict up to each reading, take it, predict the rest."""
     happened, i = list[Happened](), 0
-    for k, (begin, end) in enumerate(zip(motions.begin.tolist(), motions.end.tolist(), strict=True)):
+    for k, (begin, end) in enumerate(
+        zip(motions.begin.tolist(), motions.end.tolist(), strict=True)
+    ):
         now = begin
         while i < len(samples) and samples[i].t < end:
             if samples[i].t > now:
@@ -152,4 +179,7 @@ def _truths(truth: Truth | None, t: Array) -> list[Array | None]:
     if truth is None:
         return [None] * len(t)
     poses = truth.at(t)
-    return [pose if known else None for pose, known in zip(poses, np.isfinite(poses[:, 0]).tolist(), strict=True)]
+    return [
+        pose if known else None
+        for pose, known in zip(poses, np.isfinite(poses[:, 0]).tolist(), strict=True)
+    ]

@@ -21,8 +21,12 @@ class Truth:
     longest: float = np.inf  # s between two poses over which the truth is interpolated
 
     def at(self, t: Array) -> Array:
-        """The pose at each instant, interpolated, the heading the short way round : (…, 3), nan where it is unknown"""
-        poses = np.stack([np.interp(t, self.t, column, np.nan, np.nan) for column in self.poses.T], axis=-1)
+        """The pose at each instant, interpolated, the heading the short way round : (…, 3), nan
+        where it is unknown
+        """
+        poses = np.stack(
+            [np.interp(t, self.t, column, np.nan, np.nan) for column in self.poses.T], axis=-1
+        )
         poses[..., 2] = wrap(poses[..., 2])
         if len(self.t) > 1:
             after = np.clip(np.searchsorted(self.t, t), 1, len(self.t) - 1)
@@ -36,7 +40,9 @@ def truth_of(rows: Rows, warnings: list[str]) -> Truth | None:
     rows = in_order(rows, warnings)
     distinct = np.concatenate([[True], np.diff(rows.t) > 0])[: len(rows)]
     if not distinct.all():
-        warnings.append(f"{rows.at(int(np.argmin(distinct)))}: a second pose of the same time: left out")
+        warnings.append(
+            f"{rows.at(int(np.argmin(distinct)))}: a second pose of the same time: left out"
+        )
         rows = rows[distinct]
     if not len(rows):
         why = f"all {rows.left_out} poses are left out" if rows.left_out else "holds no poses"

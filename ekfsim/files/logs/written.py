@@ -1,4 +1,6 @@
-"""A simulated run → the files of a recorded log, from which the filter makes the same numbers again."""
+"""A simulated run → the files of a recorded log, from which the filter makes the same numbers
+again.
+"""
 
 import math
 from collections.abc import Callable, Iterable
@@ -8,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from ekfsim.errors import UsageError
-from ekfsim.files.logs.pylon import CLOCK, EARTH_RADIUS
+from ekfsim.files.logs.formats.pylon import CLOCK, EARTH_RADIUS
 from ekfsim.files.logs.ticks import Run, numbered, text_of
-from ekfsim.files.writing import whole_folder
-from ekfsim.models.offset import from_global
+from ekfsim.files.results.writing import whole_folder
+from ekfsim.models.sensors.offset import from_global
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Entry
 from ekfsim.scene import Scene
@@ -28,29 +30,43 @@ Writer = Callable[[Scene, Run, Path], Files]
 def write_log(scene: Scene, entries: Iterable[Entry], out: Path, force: bool) -> list[str]:
     """Write a simulated run into a folder, and return the sentences that its reader should know.
 
-    Raises UsageError where the scene is no simulation of a driven robot, or the folder may not be written.
+    Raises UsageError where the scene is no simulation of a driven robot, or the folder may not be
+    written.
     """
     writer = _writer_of(scene)
     with whole_folder(out, *ALL_FILES, force=force) as folder:
         run = Run.of(entries)
-        files = {**writer(scene, run, out), "about.txt": f"A recorded log: {told_in_a_line(_as_told(scene))}\n"}
+        files = {
+            **writer(scene, run, out),
+            "about.txt": f"A recorded log: {told_in_a_line(_as_told(scene))}\n",
+        }
         for name, text in files.items():
             (folder / name).write_text(text, encoding="utf-8")
     return _differences(scene, run)
 
 
 def _as_told(scene: Scene) -> Scene:
-    """The scene without the settings that no one knows of: its faults, and what the filter is told otherwise."""
+    """The scene without the settings that no one knows of: its faults, and what the filter is told
+    otherwise.
+    """
     told = scene.world.told
-    hidden = ["faults.", *(["robot."] if told.robot else ()), *(["sensors."] if told.instruments else ())]
-    return replace(scene, settings=tuple(one for one in scene.settings if not one.startswith(tuple(hidden))))
+    hidden = [
+        "faults.",
+        *(["robot."] if told.robot else ()),
+        *(["sensors."] if told.instruments else ()),
+    ]
+    return replace(
+        scene, settings=tuple(one for one in scene.settings if not one.startswith(tuple(hidden)))
+    )
 
 
 def _writer_of(scene: Scene) -> Writer:
     """How the log of a scene's robot is written. Raises UsageError where it cannot be."""
     known = ", ".join(WRITERS)
     if scene.log is not None:
-        raise UsageError(f"{scene.commands_source}: is a recorded log already; name a simulated drive")
+        raise UsageError(
+            f"{scene.commands_source}: is a recorded log already; name a simulated drive"
+        )
     if scene.world.robot is None or scene.drive is None:
         wrong = "the classroom has no clock and cannot be recorded"
         raise UsageError(f"{scene.commands_source}: {wrong}; runs of {known} can")
@@ -64,20 +80,28 @@ def _differences(scene: Scene, run: Run) -> list[str]:
     """What the log cannot hold of the run."""
     told, system = scene.world.told, scene.world.system
     if system == "mower" and scene.reading == "coded":
-        return ["the listing begins with the mean heading of the first second: the log's numbers differ from the run's"]
+        return [
+            "the listing begins with the mean heading of the first second: the log's numbers "
+            "differ from the run's"
+        ]
     starts_elsewhere = system in ("gnss", "pioneer") and not np.array_equal(told.start, run.truth)
     if not starts_elsewhere and not np.any(told.sigma):
         return []
-    belief = "with the covariance of its document" + (", at the true pose" if starts_elsewhere else "")
-    return [f"the filter of a recorded log begins {belief}: this run began otherwise, and its numbers will differ"]
+    belief = "with the covariance of its document" + (
+        ", at the true pose" if starts_elsewhere else ""
+    )
+    return [
+        f"the filter of a recorded log begins {belief}: this run began otherwise, and its numbers "
+        f"will differ"
+    ]
 
 
 def _mower(scene: Scene, run: Run, out: Path) -> Files:
     """Poselog, angles and map.
 
-    The listing's filter starts at the pose of row 1 and then makes row 1's time update, so that row holds the pose at
-    which the filter of the run started, and every other the true pose after its own motion. Cameras look half a step
-    before the stamp of the row at which they are used.
+    The listing's filter starts at the pose of row 1 and then makes row 1's time update, so that row
+    holds the pose at which the filter of the run started, and every other the true pose after its
+    own motion. Cameras look half a step before the stamp of the row at which they are used.
     """
     poses, angles = list[list[float | int]](), list[list[float | int]]()
     row_of = {mark.id: row for row, mark in enumerate(scene.world.landmarks)}
@@ -96,7 +120,9 @@ def _mower(scene: Scene, run: Run, out: Path) -> Files:
 
 
 def _gnss(scene: Scene, run: Run, out: Path) -> Files:
-    """Wheel speeds, each row's since the row before it; fixes and true poses at the stamps of the wheels."""
+    """Wheel speeds, each row's since the row before it; fixes and true poses at the stamps of the
+    wheels.
+    """
     wheels, fixes = list[list[float]](), list[list[float]]()
     for tick in run.ticks:
         left, right, _ = tick.u.tolist()
@@ -114,7 +140,9 @@ def _gnss(scene: Scene, run: Run, out: Path) -> Files:
 
 
 def _pylon(scene: Scene, run: Run, out: Path) -> Files:
-    """One row a tick: the pylon in the lidar's frame, or nan; stamps in whole microseconds, in plain digits."""
+    """One row a tick: the pylon in the lidar's frame, or nan; stamps in whole microseconds, in
+    plain digits.
+    """
     rows = list[list[float | int]]()
     for tick in run.ticks:
         ahead, left, θ, _ = tick.u.tolist()
@@ -137,9 +165,15 @@ def _degrees(x: float, y: float) -> tuple[float, float]:
 
 
 def _pioneer(scene: Scene, run: Run, out: Path) -> Files:
-    """The ways of the wheels since the row before, which the first row, the start, has not; beams, and yaws in rad."""
+    """The ways of the wheels since the row before, which the first row, the start, has not; beams,
+    and yaws in rad.
+    """
     ways, read = [[run.t, 0.0, 0.0]], dict[str, list[list[float | int]]](ultrasonic=[], infrared=[])
-    yaws = {name: list[list[float]]() for name in YAWS if any(i.name == name for i in scene.world.instruments)}
+    yaws = {
+        name: list[list[float]]()
+        for name in YAWS
+        if any(i.name == name for i in scene.world.instruments)
+    }
     for tick in run.ticks:
         left, right, *dt = tick.u.tolist()  # a skid-steered robot is given speeds and dt
         span = dt[0] if dt else 1.0

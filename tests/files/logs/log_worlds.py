@@ -18,7 +18,9 @@ from ekfsim.world import Map, Told, World
 
 SHARED = Path(__file__).resolve().parents[3] / ".." / "shared" / "data"
 PYLON = (Landmark(1, 5.0, -5.0),)
-MARKS = tuple(Landmark(i, x, y) for i, (x, y) in enumerate([(3.0, 2.0), (8.0, 3.0), (2.0, 6.0), (-4.0, 1.0)]))
+MARKS = tuple(
+    Landmark(i, x, y) for i, (x, y) in enumerate([(3.0, 2.0), (8.0, 3.0), (2.0, 6.0), (-4.0, 1.0)])
+)
 CLOSET = Map(np.array([[-1, -1], [3, -1], [3, 3], [-1, 3.0]]))
 
 
@@ -32,13 +34,16 @@ def world(format, landmarks=(), instruments=None, robot=None, floor=Map(), start
     name = SYSTEM_OF[format]
     system, start = SYSTEMS[name], np.array(start)
     return World(
-        "test", floor, start, np.zeros(3), SILENT, Told(start, np.zeros(3), SILENT, floor), landmarks=landmarks,
+        "test", floor, start, np.zeros(3), SILENT, Told(start, np.zeros(3), SILENT, floor),
+        landmarks=landmarks,
         system=name, robot=robot or system.robot, instruments=instruments or system.instruments,
     )  # fmt: skip
 
 
 def read(format, path, place=None, reading="corrected"):
-    return read_log(format, path, place or world(format, PYLON if format == "pylon" else ()), reading)
+    return read_log(
+        format, path, place or world(format, PYLON if format == "pylon" else ()), reading
+    )
 
 
 def steps_of(format, path, place=None, reading="corrected", **settings):
@@ -54,7 +59,9 @@ def steps_of(format, path, place=None, reading="corrected", **settings):
 def errors(steps, layout):
     """Position and heading errors at every judged instant, after its last update : (n, 3)"""
     last = {step.entry.t: step for step in steps if step.entry.truth is not None}
-    e = np.array([posed(s.posterior, layout).mean - s.entry.truth for s in last.values() if s.entry.judged])
+    e = np.array(
+        [posed(s.posterior, layout).mean - s.entry.truth for s in last.values() if s.entry.judged]
+    )
     return np.column_stack([e[:, :2], wrap(e[:, 2])])
 
 
@@ -64,7 +71,8 @@ def rmse(steps, scene):
 
 
 def lay(folder, **files):
-    """Write files, `_` for `-` and `.` where names cannot hold them: given as a dict of name → text."""
+    """Write files, `_` for `-` and `.` where names cannot hold them: given as a dict of name →
+    text."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():
         (folder / name).write_text(text)

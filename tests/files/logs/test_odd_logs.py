@@ -9,10 +9,10 @@ import pytest
 from log_worlds import MARKS, lay, read, table, world
 
 from ekfsim.errors import InputError, UsageError
-from ekfsim.files.load import read_scene
 from ekfsim.files.logs import read_log
 from ekfsim.files.packaged import resolve
-from ekfsim.files.settings import setting
+from ekfsim.files.scenes.load import read_scene
+from ekfsim.files.scenes.settings import setting
 from ekfsim.records import Control, Reading
 
 WHEELS = [[k / 10, 1.0, 0.5] for k in range(11)]  # t, vr, vl
@@ -68,7 +68,9 @@ def test_a_sound_log_is_read_without_a_word(log):
     assert [entry.index for entry in found.log.entries] == list(range(len(found.log.entries)))
     assert found.log.entries[0].t == 0.0
     assert given(found, Reading)[0].given.name == "gnss"
-    np.testing.assert_array_equal([entry.given.z for entry in given(found, Reading)], np.array(FIXES)[:, 1:])
+    np.testing.assert_array_equal(
+        [entry.given.z for entry in given(found, Reading)], np.array(FIXES)[:, 1:]
+    )
     np.testing.assert_array_equal(found.log.first.mean, np.zeros(4))
     np.testing.assert_allclose(found.log.first.covariance, np.diag([1, 0.05, 0.05, 0.05]) ** 2)
 
@@ -96,12 +98,24 @@ def test_a_reading_between_two_rows_cuts_the_motion_in_two(log):
         lambda text: "# wheel speeds\n" + text + "# the end\n",
         lambda text: text.upper(),
     ],
-    ids=["CRLF", "CR", "BOM", "tabs", "spaces", "semicolons", "trailing commas", "blank lines", "comments", "capitals"],
+    ids=[
+        "CRLF",
+        "CR",
+        "BOM",
+        "tabs",
+        "spaces",
+        "semicolons",
+        "trailing commas",
+        "blank lines",
+        "comments",
+        "capitals",
+    ],
 )
 def test_ways_to_write_a_table(log, change):
     sound = read("gnss", LOG)
     texts = {name: table(header, rows) for name, header, rows in (
-        ("wheels", "time,vr,vl", WHEELS), ("fixes", "t,x,y", FIXES), ("truth", "t,x,y,phi", TRUTH))}  # fmt: skip
+        ("wheels", "time,vr,vl", WHEELS), ("fixes", "t,x,y", FIXES), ("truth", "t,x,y,phi",
+        TRUTH))}  # fmt: skip
     log(**{name: change(text) for name, text in texts.items()})
     found = read("gnss", LOG)
     assert same(found, sound)
@@ -120,12 +134,18 @@ def test_rows_out_of_order_are_put_in_order_and_told(log):
     wheels, fixes, truth = WHEELS.copy(), FIXES[::-1], TRUTH.copy()
     wheels[3], wheels[7] = wheels[7], wheels[3]
     truth.append(truth.pop(4))
-    log(wheels=table("time,vr,vl", wheels), fixes=table("t,x,y", fixes), truth=table("t,x,y,phi", truth))
+    log(
+        wheels=table("time,vr,vl", wheels),
+        fixes=table("t,x,y", fixes),
+        truth=table("t,x,y,phi", truth),
+    )
     found = read("gnss", LOG)
     assert same(found, sound)
     assert found.warnings == [
-        "log/groundtruth-1.csv:12: the time 0.4 lies before that of the row above: the rows are put in order of time",
-        "log/wheelspeeds-1.csv:6: the time 0.4 lies before that of the row above, and so do 1 more: "
+        "log/groundtruth-1.csv:12: the time 0.4 lies before that of the row above: the rows are "
+        "put in order of time",
+        "log/wheelspeeds-1.csv:6: the time 0.4 lies before that of the row above, and so do 1 "
+        "more: "
         "the rows are put in order of time",
         "log/gnss-1.csv:3: the time 0.45 lies before that of the row above, and so do 2 more: "
         "the rows are put in order of time",
@@ -135,7 +155,11 @@ def test_rows_out_of_order_are_put_in_order_and_told(log):
 def test_a_row_that_stands_twice_is_left_out_and_told(log):
     sound = read("gnss", LOG)
     wheels, fixes, truth = ([*rows[:3], rows[2], *rows[3:]] for rows in (WHEELS, FIXES, TRUTH))
-    log(wheels=table("time,vr,vl", wheels), fixes=table("t,x,y", fixes), truth=table("t,x,y,phi", truth))
+    log(
+        wheels=table("time,vr,vl", wheels),
+        fixes=table("t,x,y", fixes),
+        truth=table("t,x,y,phi", truth),
+    )
     found = read("gnss", LOG)
     assert same(found, sound)
     assert [told.partition(": ")[::2] for told in found.warnings] == [
@@ -156,8 +180,14 @@ def test_two_rows_of_one_time_that_differ(log):
         "log/wheelspeeds-1.csv:5: the time 0.2 is that of the row above, too",
     ]
     fixes = [*FIXES, [FIXES[-1][0], 0.7, 0.7]]
-    log(fixes=table("t,x,y", fixes), wheels=table("time,vr,vl", WHEELS), truth=table("t,x,y,phi", TRUTH))
-    np.testing.assert_array_equal([e.given.z for e in given(read("gnss", LOG), Reading)], np.array(fixes)[:, 1:])
+    log(
+        fixes=table("t,x,y", fixes),
+        wheels=table("time,vr,vl", WHEELS),
+        truth=table("t,x,y,phi", TRUTH),
+    )
+    np.testing.assert_array_equal(
+        [e.given.z for e in given(read("gnss", LOG), Reading)], np.array(fixes)[:, 1:]
+    )
 
 
 def test_a_gap_is_told_with_its_place_and_length(log):
@@ -172,7 +202,9 @@ def test_a_gap_is_told_with_its_place_and_length(log):
 
 
 def test_over_a_gap_of_the_truth_it_is_not_known(log):
-    truth = [row for row in [*TRUTH, *([k / 10, 1.0, 1.0, 0.0] for k in range(30, 41))] if row[0] != 0.5]
+    truth = [
+        row for row in [*TRUTH, *([k / 10, 1.0, 1.0, 0.0] for k in range(30, 41))] if row[0] != 0.5
+    ]
     wheels = [[k / 10, 1.0, 0.5] for k in range(45)]
     log(wheels=table("time,vr,vl", wheels), truth=table("t,x,y,phi", truth))
     known = {round(entry.t, 9): entry.truth is not None for entry in read("gnss", LOG).log.entries}
@@ -212,7 +244,10 @@ def test_many_such_rows_are_counted(log):
     found = read("gnss", LOG)
     assert len(given(found, Reading)) == 4
     assert found.warnings[:4] == [
-        *(f"log/gnss-1.csv:{line}: x: nan is no number: this row is left out" for line in (2, 3, 4)),
+        *(
+            f"log/gnss-1.csv:{line}: x: nan is no number: this row is left out"
+            for line in (2, 3, 4)
+        ),
         "log/gnss-1.csv:5: so are 9 more rows from here on",
     ]
 
@@ -227,7 +262,10 @@ def test_many_such_rows_are_counted(log):
     ],
 )
 def test_stamps_of_another_unit_are_told_though_nothing_is_left_to_localize(log, second, told):
-    log(wheels=table("time,vr,vl", [[(1.248e9 + t) * second, *more] for t, *more in WHEELS]), truth="absent")
+    log(
+        wheels=table("time,vr,vl", [[(1.248e9 + t) * second, *more] for t, *more in WHEELS]),
+        truth="absent",
+    )
     warnings = []
     with pytest.raises(InputError) as refused:
         read_log("gnss", LOG, world("gnss"), "corrected", warnings)
@@ -245,12 +283,17 @@ def test_a_truth_in_another_unit_is_none_and_told(log):
     found = read("gnss", LOG)
     told = "t: 1.5e+18 is no time in s (are these nanoseconds?): this row is left out"
     assert found.warnings[0] == f"log/groundtruth-1.csv:2: {told}"
-    assert "log/groundtruth-1.csv: all 11 poses are left out: the truth is unknown" in found.warnings
+    assert (
+        "log/groundtruth-1.csv: all 11 poses are left out: the truth is unknown" in found.warnings
+    )
 
 
 def test_what_is_odd_in_a_log_is_told_before_why_it_is_refused(log):
     fixes = [*FIXES, [math.nan, 0.0, 0.0]]
-    log(fixes=table("t,x,y", fixes), truth=table("t,x,y,phi", [[t + 100, *pose] for t, *pose in TRUTH]))
+    log(
+        fixes=table("t,x,y", fixes),
+        truth=table("t,x,y,phi", [[t + 100, *pose] for t, *pose in TRUTH]),
+    )
     for settings in ((), (setting("start.x=1"),)):
         found = read_scene(resolve("gnss_log", "commands"), None, LOG, settings=settings)
         assert found.warnings == ["log/gnss-1.csv:6: t: nan is no number: this row is left out"]
@@ -273,7 +316,9 @@ def test_what_is_odd_in_a_log_is_told_before_why_it_is_refused(log):
 def test_a_last_line_that_was_cut_short_is_left_out(log, ending, why):
     log(wheels=table("time,vr,vl", WHEELS[:9]) + ending)
     found = read("gnss", LOG)
-    assert found.warnings[0] == f"log/wheelspeeds-1.csv:11: the file ends {why}: this line is left out"
+    assert (
+        found.warnings[0] == f"log/wheelspeeds-1.csv:11: the file ends {why}: this line is left out"
+    )
     assert given(found, Control)[-1].t == 0.8
 
 
@@ -283,7 +328,8 @@ def test_a_last_number_that_may_be_whole_is_used_and_told(log):
     found = read("gnss", LOG)
     assert same(found, sound)
     assert found.warnings == [
-        "log/wheelspeeds-1.csv:12: the file ends without a line break; its last number may be cut short"
+        "log/wheelspeeds-1.csv:12: the file ends without a line break; its last number may be cut "
+        "short"
     ]
 
 
@@ -291,30 +337,35 @@ def test_a_last_number_that_may_be_whole_is_used_and_told(log):
     ("wheels", "told"),
     [
         ("", "log/wheelspeeds-1.csv:1:1: the file is empty; it begins with the line t,vl,vr"),
-        ("\n \n# nothing\n", "log/wheelspeeds-1.csv:1:1: the file is empty; it begins with the line t,vl,vr"),
+        ("\n \n# nothing\n", "log/wheelspeeds-1.csv:1:1: the file is empty; it begins with the "
+                             "line t,vl,vr"),
         ("t,vr,vl\n", "log/wheelspeeds-1.csv:1:1: the file holds no rows; "
                       "without wheel speeds there is nothing to localize"),
         ("0,1,1\n0.1,1,1\n", "log/wheelspeeds-1.csv:1:1: '0,1,1' names no columns; "
                              "the first line says what they are: t,vl,vr"),
         ("t,vr\n0,1\n", "log/wheelspeeds-1.csv:1:1: no column is named 'vl'; found 't', 'vr'"),
         ("t,vr,v_l\n0,1,1\n",
-         "log/wheelspeeds-1.csv:1:1: no column is named 'vl'; found 't', 'vr', 'v_l'; did you mean 'v_l'?"),
+         "log/wheelspeeds-1.csv:1:1: no column is named 'vl'; found 't', 'vr', 'v_l'; did you "
+         "mean 'v_l'?"),
         ("time,left,right\n0,1,1\n",
          "log/wheelspeeds-1.csv:1:1: no column is named 'vl'; found 'time', 'left', 'right'\n"
          "log/wheelspeeds-1.csv:1:1: no column is named 'vr'; found 'time', 'left', 'right'"),
         ("t,vr,vl,t\n0,1,1,0\n",
-         "log/wheelspeeds-1.csv:1:1: 2 columns are named 't' or 'time'; found 't', 'vr', 'vl', 't'"),
+         "log/wheelspeeds-1.csv:1:1: 2 columns are named 't' or 'time'; found 't', 'vr', 'vl', "
+         "'t'"),
         ("t,vr,vl\n0,1,1\n0.1,1,x\n0.2,,1\n0.3,1,1\n",
          "log/wheelspeeds-1.csv:3:7: vl: 'x' is not a number; write e.g. 1.5\n"
          "log/wheelspeeds-1.csv:4:5: vr: nothing stands where a number belongs; write e.g. 1.5"),
         ("t,vr,vl\n0,1,1\n0.1,1\n0.2,1,1,1\n0.3,1,1\n",
          "log/wheelspeeds-1.csv:3:1: 2 columns stand in this row; it must have 3\n"
          "log/wheelspeeds-1.csv:4:1: 4 columns stand in this row; it must have 3"),
-        ("t,vr,vl\n0,1\n0.1,1\n0.2,1\n", "log/wheelspeeds-1.csv:2:1: 2 columns stand in this row; it must have 3"),
+        ("t,vr,vl\n0,1\n0.1,1\n0.2,1\n", "log/wheelspeeds-1.csv:2:1: 2 columns stand in this row; "
+                                         "it must have 3"),
         ("t,vr,vl\n0,1_0,1\n0.1,0x1,1\n",
          "log/wheelspeeds-1.csv:2:3: vr: '1_0' is not a number; write e.g. 1.5\n"
          "log/wheelspeeds-1.csv:3:5: vr: '0x1' is not a number; write e.g. 1.5"),
-        ("t;vr;vl\n0;1,5;1\n0.1;1;1\n", "log/wheelspeeds-1.csv:2:3: vr: '1,5' is not a number; write 1.5"),
+        ("t;vr;vl\n0;1,5;1\n0.1;1;1\n", "log/wheelspeeds-1.csv:2:3: vr: '1,5' is not a number; "
+                                        "write 1.5"),
         ('t,vr,vl\n0,"1.5",1\n0.1,"1",1\n',
          "log/wheelspeeds-1.csv:2:3: vr: '\"1.5\"' is not a number; write 1.5\n"
          "log/wheelspeeds-1.csv:3:5: vr: '\"1\"' is not a number; write 1"),
@@ -332,15 +383,23 @@ def test_twenty_mistakes_are_told_and_the_others_counted(log):
     with pytest.raises(InputError) as refused:
         read("gnss", LOG)
     assert len(refused.value.mistakes) == 21
-    assert str(refused.value.mistakes[-1]) == "log/wheelspeeds-1.csv:21:1: and 30 more mistakes below"
+    assert (
+        str(refused.value.mistakes[-1]) == "log/wheelspeeds-1.csv:21:1: and 30 more mistakes below"
+    )
 
 
 @pytest.mark.parametrize(
     ("raw", "told"),
     [
-        (b"t,vr,vl\n0,1,1\n0.1,\xff,1\n", "3:5: the byte 0xff is not UTF-8; a log is plain text in UTF-8"),
+        (
+            b"t,vr,vl\n0,1,1\n0.1,\xff,1\n",
+            "3:5: the byte 0xff is not UTF-8; a log is plain text in UTF-8",
+        ),
         ("t,vr,vl\n".encode("utf-16"), "1:1: the file is UTF-16, not UTF-8; save it as UTF-8"),
-        (b"t,vr,vl\n0,1,1\n0.1,\x00,1\n0.2,1,1\n", "3:5: vr: '\\x00' is not a number; write e.g. 1.5"),
+        (
+            b"t,vr,vl\n0,1,1\n0.1,\x00,1\n0.2,1,1\n",
+            "3:5: vr: '\\x00' is not a number; write e.g. 1.5",
+        ),
     ],
 )
 def test_bytes_that_are_no_text_are_refused(log, raw, told):
@@ -355,9 +414,11 @@ def test_missing_files_and_folders_are_told(log, tmp_path):
     (folder / "gnss-1.csv").rename(folder / "fixes.csv")
     for path, told in (
         (LOG, "log: no file 'gnss*.csv' in it; it would hold the satellite fixes"),
-        (LOG / "fixes.csv", "log/fixes.csv: is a file; name the folder that holds wheelspeeds*.csv, gnss*.csv and, "
+        (LOG / "fixes.csv", "log/fixes.csv: is a file; name the folder that holds "
+                            "wheelspeeds*.csv, gnss*.csv and, "
                             "where it is known, groundtruth*.csv"),
-        (Path("away"), "away: no such folder; name the one that holds wheelspeeds*.csv, gnss*.csv and, "
+        (Path("away"), "away: no such folder; name the one that holds wheelspeeds*.csv, gnss*.csv "
+                       "and, "
                        "where it is known, groundtruth*.csv"),
     ):  # fmt: skip
         with pytest.raises(UsageError) as refused:
@@ -373,7 +434,8 @@ def test_two_files_for_one_are_refused(log):
     with pytest.raises(UsageError) as refused:
         read("gnss", LOG)
     assert str(refused.value) == (
-        "log: several files 'gnss*.csv' in it: gnss-1.csv, gnss-2.csv; leave one there for the satellite fixes"
+        "log: several files 'gnss*.csv' in it: gnss-1.csv, gnss-2.csv; leave one there for the "
+        "satellite fixes"
     )
 
 
@@ -393,7 +455,10 @@ def test_a_log_starts_where_its_truth_does(log):
     np.testing.assert_allclose(first.truth, [0.5, 0.5, 3.2 - 2 * math.pi])
     np.testing.assert_allclose(found.log.first.mean, [0, 3.2 - 2 * math.pi, 0.5, 0.5])
     assert sum(float(entry.given.u[2]) for entry in given(found, Control)) == pytest.approx(0.68)
-    assert "log: starts at 0.32 s, where the truth begins: what was before is left out" in found.warnings
+    assert (
+        "log: starts at 0.32 s, where the truth begins: what was before is left out"
+        in found.warnings
+    )
     assert found.log.entries[-1].truth is not None
     log(truth=table("t,x,y,phi", [[t + 100, *pose] for t, *pose in TRUTH]))
     with pytest.raises(UsageError) as refused:
@@ -418,12 +483,18 @@ def test_without_truth_the_filter_starts_where_the_world_says(log):
 def test_headings_are_interpolated_the_short_way_round(log):
     log(
         truth=table(
-            "t,x,y,phi", [[k / 10, 0.0, 0.0, math.pi - 0.3 + 0.1 * k - (k > 3) * 2 * math.pi] for k in range(11)]
+            "t,x,y,phi",
+            [
+                [k / 10, 0.0, 0.0, math.pi - 0.3 + 0.1 * k - (k > 3) * 2 * math.pi]
+                for k in range(11)
+            ],
         )
     )
     found = read("gnss", LOG)
     for entry in found.log.entries:
-        assert math.remainder(entry.truth[2] - (math.pi - 0.3 + entry.t), 2 * math.pi) == pytest.approx(0, abs=1e-12)
+        assert math.remainder(
+            entry.truth[2] - (math.pi - 0.3 + entry.t), 2 * math.pi
+        ) == pytest.approx(0, abs=1e-12)
         assert -math.pi < entry.truth[2] <= math.pi
 
 
@@ -432,8 +503,12 @@ def test_large_files_are_read_quickly(tmp_path):
     poses = rng.normal(size=(54_900, 21))
     poses[:, 2] = np.arange(54_900) / 100
     lines = [" ".join(map(repr, row)) for row in poses.tolist()]
-    files = {"marker-001-poselog.txt": "\n".join([*lines, ""]), "marker-001-003-angles.txt": "5.005 1 0.1 -0.05\n"}
+    files = {
+        "marker-001-poselog.txt": "\n".join([*lines, ""]),
+        "marker-001-003-angles.txt": "5.005 1 0.1 -0.05\n",
+    }
     folder = lay(tmp_path / "log", **files, **{"marker-001-map.txt": "0 3 3\n1 4 4\n"})
     before = time.process_time()
     assert len(read("mower", folder, world("mower", MARKS)).log.entries) == 54_902
-    assert time.process_time() - before < 5  # s; it takes about a tenth of it, line by line it would take longer
+    # s; it takes about a tenth of it, line by line it would take longer
+    assert time.process_time() - before < 5

@@ -1,4 +1,5 @@
-"""A simulated run, written as a recorded log and read again, gives the numbers of the run itself."""
+"""A simulated run, written as a recorded log and read again, gives the numbers of the run
+itself."""
 
 from dataclasses import replace
 
@@ -23,18 +24,29 @@ SCENES = {
     "gnss": Scene(world("gnss"), drive=ROUND, seed=5),
     "pylon": Scene(world("pylon", PYLON), drive=ROUND, seed=6),
     "pioneer": Scene(world("pioneer", floor=CLOSET), drive=AROUND, seed=7),
-    "pylon seen now and then": Scene(world("pylon", PYLON, instruments=(PylonLidar(rate=3.0),)), drive=ROUND),
+    "pylon seen now and then": Scene(
+        world("pylon", PYLON, instruments=(PylonLidar(rate=3.0),)), drive=ROUND
+    ),
     "pylon from elsewhere": Scene(world("pylon", PYLON, start=(2.0, -3.0, 1.0)), drive=ROUND),
     "pylon of another rate": Scene(world("pylon", PYLON, robot=PylonCart(rate=25.0)), drive=ROUND),
     "pioneer's other order": Scene(
         world("pioneer", floor=CLOSET, instruments=(Infrared(), Ultrasonic(rate=1.0))), drive=AROUND
     ),
     "pioneer with a compass and a gyro": Scene(
-        world("pioneer", floor=CLOSET, start=(1, 1, 2.5), instruments=(Ultrasonic(), Compass(2, 0.1, 0.7), Gyro())),
+        world(
+            "pioneer",
+            floor=CLOSET,
+            start=(1, 1, 2.5),
+            instruments=(Ultrasonic(), Compass(2, 0.1, 0.7), Gyro()),
+        ),
         drive=AROUND,
     ),
-    "pioneer by its gyro alone": Scene(world("pioneer", floor=CLOSET, instruments=(Gyro(),)), drive=AROUND),
-    "pioneer on skids": Scene(world("pioneer", floor=CLOSET, robot=Pioneer(odometry="skidSteer")), drive=AROUND),
+    "pioneer by its gyro alone": Scene(
+        world("pioneer", floor=CLOSET, instruments=(Gyro(),)), drive=AROUND
+    ),
+    "pioneer on skids": Scene(
+        world("pioneer", floor=CLOSET, robot=Pioneer(odometry="skidSteer")), drive=AROUND
+    ),
     "gnss from elsewhere": Scene(world("gnss", start=(2.0, -3.0, 3.0)), drive=ROUND),
 }
 
@@ -42,7 +54,9 @@ SCENES = {
 def again(scene, folder):
     """The scene whose log the folder holds, and the warnings of its reader."""
     found = read_log(scene.world.system, folder, scene.world, scene.reading)
-    place = scene.world if found.landmarks is None else replace(scene.world, landmarks=found.landmarks)
+    place = (
+        scene.world if found.landmarks is None else replace(scene.world, landmarks=found.landmarks)
+    )
     return replace(scene, world=place, drive=None, log=found.log), found.warnings
 
 
@@ -60,7 +74,9 @@ def test_a_run_and_its_log_give_the_same_numbers(tmp_path, name, filter):
         assert (a.entry.index, type(a.entry.given)) == (b.entry.index, type(b.entry.given))
         assert a.entry.t == pytest.approx(b.entry.t, abs=1e-9)
         np.testing.assert_allclose(b.posterior.mean, a.posterior.mean, rtol=0, atol=1e-9)
-        np.testing.assert_allclose(b.posterior.covariance, a.posterior.covariance, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(
+            b.posterior.covariance, a.posterior.covariance, rtol=0, atol=1e-9
+        )
         if a.correction is not None:
             assert a.entry.given.name == b.entry.given.name
             np.testing.assert_allclose(b.correction.nis, a.correction.nis, rtol=1e-7)
@@ -89,7 +105,10 @@ def test_the_gps_of_a_pylon_log_begins_at_its_first_fix(tmp_path):
     scene = SCENES["pylon"]
     write_log(scene, simulate(scene), tmp_path / "log", force=False)
     found = read("pylon", tmp_path / "log", scene.world).log.entries
-    fixes = [np.array([e.fix for e in log if isinstance(e.given, Control)]) for log in (list(simulate(scene)), found)]
+    fixes = [
+        np.array([e.fix for e in log if isinstance(e.given, Control)])
+        for log in (list(simulate(scene)), found)
+    ]
     np.testing.assert_allclose(fixes[1], fixes[0] - fixes[0][0], rtol=0, atol=1e-7)
 
 
@@ -100,7 +119,9 @@ def test_what_the_files_hold(tmp_path):
     assert sorted(path.name for path in folder.iterdir()) == [
         *("about.txt", "marker-001-003-angles.txt", "marker-001-map.txt", "marker-001-poselog.txt")
     ]
-    poses, angles, marks = (np.loadtxt(folder / f"marker-001-{name}.txt") for name in ("poselog", "003-angles", "map"))
+    poses, angles, marks = (
+        np.loadtxt(folder / f"marker-001-{name}.txt") for name in ("poselog", "003-angles", "map")
+    )
     assert poses.shape == (len([e for e in simulate(scene) if isinstance(e.given, Control)]), 21)
     assert poses[0, 2] == 0.01
     np.testing.assert_array_equal(poses[0, 18:], scene.world.told.start)
@@ -127,16 +148,22 @@ def test_what_a_log_cannot_hold_is_told(tmp_path):
     elsewhere = replace(place, told=replace(place.told, start=np.array([1.0, 0.0, 0.0])))
     scene = replace(SCENES["gnss"], world=elsewhere)
     assert write_log(scene, simulate(scene), tmp_path / "a", force=False) == [
-        "the filter of a recorded log begins with the covariance of its document, at the true pose: "
+        "the filter of a recorded log begins with the covariance of its document, at the true "
+        "pose: "
         "this run began otherwise, and its numbers will differ"
     ]
     scene = replace(SCENES["mower"], reading="coded")
     assert write_log(scene, simulate(scene), tmp_path / "b", force=False) == [
-        "the listing begins with the mean heading of the first second: the log's numbers differ from the run's"
+        "the listing begins with the mean heading of the first second: the log's numbers differ "
+        "from the run's"
     ]
-    with_fixes = replace(SCENES["mower"].world, instruments=(*SCENES["mower"].world.instruments, *place.instruments))
+    with_fixes = replace(
+        SCENES["mower"].world, instruments=(*SCENES["mower"].world.instruments, *place.instruments)
+    )
     scene = replace(SCENES["mower"], world=with_fixes)
-    with pytest.raises(UsageError, match="no place for readings of 'gnss'; take that sensor out of the world"):
+    with pytest.raises(
+        UsageError, match="no place for readings of 'gnss'; take that sensor out of the world"
+    ):
         write_log(scene, simulate(scene), tmp_path / "c", force=False)
     assert not (tmp_path / "c").exists()
 
@@ -147,9 +174,18 @@ def test_only_simulated_drives_are_recorded(tmp_path):
     classroom = Scene(replace(mower.world, robot=None, system="classroom"), (Sense(0.0),))
     write_log(mower, simulate(mower), tmp_path / "log", force=False)
     for scene, told in (
-        (classroom, f"commands: the classroom has no clock and cannot be recorded; runs of {known} can"),
-        (landmarks, f"commands: a run of the system 'landmarks' cannot be recorded; runs of {known} can"),
-        (again(mower, tmp_path / "log")[0], "commands: is a recorded log already; name a simulated drive"),
+        (
+            classroom,
+            f"commands: the classroom has no clock and cannot be recorded; runs of {known} can",
+        ),
+        (
+            landmarks,
+            f"commands: a run of the system 'landmarks' cannot be recorded; runs of {known} can",
+        ),
+        (
+            again(mower, tmp_path / "log")[0],
+            "commands: is a recorded log already; name a simulated drive",
+        ),
     ):
         with pytest.raises(UsageError) as refused:
             write_log(scene, iter(()), tmp_path / "out", force=False)

@@ -23,7 +23,8 @@ STATES = {  # row: x, y, ẋ, ẏ, θ, variance of x, of y
 
 
 def off_the_square(places):
-    """Eq. 11: the distance from the nearest side's line, beyond a corner from the corner. places : (n, 2)"""
+    """Eq. 11: the distance from the nearest side's line, beyond a corner from the corner. places :
+    (n, 2)"""
     x, y = places.T
     line = np.min([abs(x - 10), abs(x), abs(y + 10), abs(y)], axis=0)
     dx, dy = np.maximum(np.maximum(-x, x - 10), 0), np.maximum(np.maximum(y, -10 - y), 0)
@@ -64,16 +65,24 @@ def test_the_authors_filter_of_the_pylon_to_the_digit(coded):
 def test_the_pylon_read_from_its_folder_or_its_file_is_the_same():
     folder = shared("pylon")
     (file,) = folder.glob("*.csv")
-    assert len(read("pylon", file).log.entries) == len(read("pylon", folder).log.entries) == 1 + 2 * 707
+    assert (
+        len(read("pylon", file).log.entries)
+        == len(read("pylon", folder).log.entries)
+        == 1 + 2 * 707
+    )
 
 
 def test_every_second_correction_of_the_pylon(coded):
     _, scene, _ = coded
     for left_out in (0, 1):
-        readings = [entry for entry in scene.log.entries if isinstance(entry.given, Reading)][left_out::2]
+        readings = [entry for entry in scene.log.entries if isinstance(entry.given, Reading)][
+            left_out::2
+        ]
         skipped = {entry.index for entry in readings}
         entries = tuple(entry for entry in scene.log.entries if entry.index not in skipped)
-        found = path_rmse(corrected_places(play(replace(scene, log=replace(scene.log, entries=entries)))))
+        found = path_rmse(
+            corrected_places(play(replace(scene, log=replace(scene.log, entries=entries))))
+        )
         if found == pytest.approx(0.233241404, abs=1e-8):
             return
     pytest.fail(f"neither half gives 0.233241404, but {found}")
@@ -100,7 +109,9 @@ def test_the_pylons_times_headings_and_gps(coded):
     assert controls[-1].t - controls[0].t == pytest.approx(73.3, abs=2e-3)
     assert {float(entry.given.u[3]) for entry in controls} == {0.1}
     assert [float(controls[row].given.u[2]) for row in (387, 465)] == [np.pi, np.pi]
-    assert path_rmse(np.array([entry.fix for entry in controls])) == pytest.approx(0.454782, abs=1e-6)
+    assert path_rmse(np.array([entry.fix for entry in controls])) == pytest.approx(
+        0.454782, abs=1e-6
+    )
     measured = read("pylon", shared("pylon")).log.entries
     dt = np.array([entry.given.u[3] for entry in measured if isinstance(entry.given, Control)])
     assert np.median(dt) == pytest.approx(0.0993, abs=1e-4)
@@ -115,7 +126,9 @@ def test_wheel_speeds_and_fixes_of_a_lawn_mower():
     e = errors(steps, scene.world.layout)
     assert len(e) == 5201
     assert rmse(steps, scene) == pytest.approx(0.0846, abs=1e-3)
-    np.testing.assert_allclose(np.sqrt(np.mean(e**2, axis=0)), [0.0553, 0.0640, 0.0969], rtol=0, atol=3e-4)
+    np.testing.assert_allclose(
+        np.sqrt(np.mean(e**2, axis=0)), [0.0553, 0.0640, 0.0969], rtol=0, atol=3e-4
+    )
     at = {step.entry.t: step.posterior.mean[[2, 3, 1]] for step in steps}
     for t, pose in (
         (10, (9.0741, 0.0781, -0.0113)),
@@ -147,11 +160,16 @@ def test_the_wheels_alone_of_a_lawn_mower():
 )
 def test_landmarks_of_mrclam(filter, instrument, expected):
     place = world("mrclam", instruments=(instrument,))
-    steps, scene, warnings = steps_of("mrclam", shared("mrclam6_robot1"), place, filter=filter, gate=0.999)
+    steps, scene, warnings = steps_of(
+        "mrclam", shared("mrclam6_robot1"), place, filter=filter, gate=0.999
+    )
     assert len(errors(steps, scene.world.layout)) == 25006
     assert rmse(steps, scene) == pytest.approx(expected, abs=1e-3)
     assert sum(step.correction is not None for step in steps) == 613
-    assert any("this measurement is of another robot, and so are 175 more: left out" in told for told in warnings)
+    assert any(
+        "this measurement is of another robot, and so are 175 more: left out" in told
+        for told in warnings
+    )
     assert [mark.id for mark in scene.world.landmarks] == list(range(6, 21))
 
 

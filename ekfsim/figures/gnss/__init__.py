@@ -1,0 +1,1 @@
+"""Document 003, the lawn mower with GNSS and wheel speeds."""

@@ -1,0 +1,1 @@
+"""Document 001, the P3 robot with ultrasound and infrared."""

@@ -1,0 +1,1 @@
+"""Document 004, lidar and inertial unit around one pylon."""

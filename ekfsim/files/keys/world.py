@@ -1,0 +1,307 @@
+"""The keys of a world file."""
+
+from collections.abc import Iterable
+from dataclasses import fields
+
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic.config import JsonDict
+
+from ekfsim.files.keys.fields import (
+    Coordinate,
+    Degrees,
+    Name,
+    Polygon,
+    Pose,
+    Ratio,
+    Spread,
+    Strict,
+    Text,
+    Way,
+    aliases,
+)
+from ekfsim.files.keys.sensors import MARKERS, SensorKeys
+from ekfsim.files.keys.system import (
+    ODOMETRY,
+    RobotKeys,
+    SystemName,
+    ToldRobotKeys,
+    not_carried,
+    robot_fields,
+)
+from ekfsim.files.keys.told import FaultKeys, ToldSensorsKeys
+from ekfsim.systems import SYSTEMS
+from ekfsim.world import Faults
+
+POSE = {"x": 1.0, "y": 1.0, "theta": 90}
+SIGMA = {"x": 0.1, "y": 0.1, "theta": 5}
+DESK: JsonDict = {"name": "desk", "points": [[4, 3], [5, 3], [5, 4], [4, 4]]}
+LANDMARK: JsonDict = {"id": 3, "x": 5.0, "y": -5.0}
+ROOM = [[0, 0], [10, 0], [10, 8], [0, 8]]
+SQUARE = [[0, 0], [10, 0], [10, -10], [0, -10]]
+
+
+def only(names: Iterable[str], keys: type[BaseModel]) -> JsonDict:
+    """A mapping with no other of a model's keys than these."""
+    known = aliases(keys)
+    return {"propertyNames": {"enum": [known[name] for name in names]}}
+
+
+def of_system(system: str) -> JsonDict:
+    """What a world of a driven robot may hold."""
+    robot = robot_fields(system)
+    turning: JsonDict = (
+        {"properties": {"odometry": {"enum": list(ODOMETRY[system])}}} if system in ODOMETRY else {}
+    )
+    believed = only((name for name in robot if name != "rate"), ToldRobotKeys)
+    told: JsonDict = {"noise": False, "robot": {**believed, **turning}}
+    return {
+        "noise": False,
+        "robot": {**only(robot, RobotKeys), **turning},
+        "faults": only((*SYSTEMS[system].robot.faults, "sensors"), FaultKeys),
+        "belief": {"properties": told},
+        "sensors": {"items": {"properties": dict.fromkeys(not_carried(system), False)}},
+    }
+
+
+IN_THE_CLASSROOM: JsonDict = {
+    "robot": False,
+    "sensors": False,
+    "faults": only((field.name for field in fields(Faults)), FaultKeys),
+    "belief": {"properties": {"robot": False, "sensors": False}},
+}
+CLASSROOM: JsonDict = {
+    "if": {"properties": {"system": {"const": "classroom"}}},
+    "then": {"required": ["noise"], "properties": IN_THE_CLASSROOM},
+}
+
+
+def where_it_is(system: str) -> JsonDict:
+    """The condition of a system."""
+    told: JsonDict = {"properties": {"system": {"const": system}}, "required": ["system"]}
+    return {"if": told, "then": {"properties": of_system(system)}}
+
+
+BY_SYSTEM: JsonDict = {"allOf": [CLASSROOM, *map(where_it_is, SYSTEMS)]}
+
+
+class SigmaKeys(Strict):
+    """Standard deviations of a pose."""
+
+    x: Spread | None = Field(None, description="m")
+    y: Spread | None = Field(None, description="m")
+    theta: Degrees | None = Field(None, ge=0, description="degrees", examples=[5])
+
+
+class StartKeys(Pose):
+    """Where the robot starts."""
+
+    sigma: SigmaKeys | None = Field(
+        None,
+        description="Standard deviations from which the true start of each run is drawn, x and y "
+        "in m, theta in "
+        "degrees. The first belief has the same, unless `belief` says otherwise. 0 where nothing "
+        "is said.",
+        examples=[SIGMA],
+    )
+
+
+class NoiseKeys(Strict):
+    """The five noise ratios: the standard deviation is the ratio times the magnitude of what is
+    done or measured.
+    """
+
+    execution_distance: Ratio = Field(
+        alias="executionDstSigmaRatio",
+        description="Noise of the distance that the wheels drive, per metre commanded.",
+    )
+    execution_angle: Ratio = Field(
+        alias="executionAngSigmaRatio",
+        description="Noise of the angle that the robot turns, per degree commanded.",
+    )
+    odometry_distance: Ratio = Field(
+        alias="odometryDstSigmaRatio",
+        description="Noise of the distance that the odometry measures, per metre.",
+        examples=[0.02],
+    )
+    odometry_angle: Ratio = Field(
+        alias="odometryAngSigmaRatio",
+        description="Noise of the angle that the odometry measures, per degree.",
+        examples=[0.02],
+    )
+    range: Ratio = Field(
+        alias="rangeSigmaRatio",
+        description="Noise of the range that the laser measures, per metre.",
+        examples=[0.01],
+    )
+
+
+class ToldNoiseKeys(Strict):
+    """The noise ratios that the filter is told, where they differ from the true ones; any of the
+    five.
+    """
+
+    execution_distance: Ratio | None = Field(
+        None, alias="executionDstSigmaRatio", description="See noise."
+    )
+    execution_angle: Ratio | None = Field(
+        None, alias="executionAngSigmaRatio", description="See noise."
+    )
+    odometry_distance: Ratio | None = Field(
+        None, alias="odometryDstSigmaRatio", description="See noise."
+    )
+    odometry_angle: Ratio | None = Field(
+        None, alias="odometryAngSigmaRatio", description="See noise."
+    )
+    range: Ratio | None = Field(None, alias="rangeSigmaRatio", description="See noise.")
+
+
+class ObstacleKeys(Strict):
+    """A polygon that stops robots and beams."""
+
+    model_config = ConfigDict(title="an obstacle", json_schema_extra={"examples": [DESK]})
+
+    name: Name = Field(
+        description="What messages and pictures call it; no two obstacles share a name."
+    )
+    points: Polygon = Field(
+        description="Its corners in order, [x, y] in m; the outline closes by itself."
+    )
+
+
+class LandmarkKeys(Strict):
+    """A point that a sensor can tell apart from all others."""
+
+    model_config = ConfigDict(title="a landmark", json_schema_extra={"examples": [LANDMARK]})
+
+    id: int = Field(description="A number of its own.", ge=0, le=2**31 - 1, examples=[3])
+    x: Coordinate = Field(description="m")
+    y: Coordinate = Field(description="m")
+
+
+class BeliefKeys(Strict):
+    """What the filter is told, where that differs from the truth."""
+
+    start: Pose | None = Field(
+        None, description="Where the filter believes the robot to start.", examples=[POSE]
+    )
+    sigma: SigmaKeys | None = Field(
+        None,
+        description="Standard deviations of the first belief, x and y in m, theta in degrees; "
+        "each left out is that "
+        "of start.sigma, and 0 where nothing is said. Moves nothing in the truth.",
+        examples=[SIGMA],
+    )
+    noise: ToldNoiseKeys | None = Field(
+        None,
+        description="Noise ratios that the filter is told. Only in the classroom.",
+        examples=[{"odometryDstSigmaRatio": 0.001}],
+    )
+    robot: ToldRobotKeys | None = Field(
+        None,
+        description="What the filter is told of the robot; what is left out is as in `robot`. Not "
+        "in the classroom. "
+        "(`ekfsim check` also refuses skidSteer for one of the two alone, as no schema can.)",
+        examples=[{"wheelSigma": 0.02}],
+    )
+    sensors: ToldSensorsKeys | None = Field(
+        None,
+        description="What the filter is told of the sensors, by their names; what is left out is "
+        "as in `sensors`. Not "
+        "in the classroom. (`ekfsim check` also refuses sensors that the robot does not carry, as "
+        "no schema can.)",
+        examples=[{"markers": {"azimuthSigma": 5}}],
+    )
+    missing: list[Name] | None = Field(
+        None, description="Names of the obstacles that the filter's map lacks.", examples=[["desk"]]
+    )
+    obstacles: list[ObstacleKeys] | None = Field(
+        None,
+        description="The filter's whole list of obstacles, in place of the true one.",
+        examples=[[DESK]],
+    )
+    boundary: Polygon | None = Field(
+        None, description="The filter's own idea of the boundary.", examples=[ROOM]
+    )
+
+
+class WorldKeys(Strict):
+    """What stands where, how noisy the robot is, and what the filter is told of both. Metres and
+    degrees.
+    """
+
+    model_config = ConfigDict(title="ekfsim world", json_schema_extra=BY_SYSTEM)
+
+    name: Name = Field(
+        description="What pictures and reports call this world.", examples=["classroom"]
+    )
+    description: Text = Field(
+        "", description="What this world is for; its first line is shown by `ekfsim list`."
+    )
+    system: SystemName = Field(
+        "classroom",
+        description="Whose robot this is: the classroom's, which obeys commands, or that of a "
+        "document or a recorded "
+        "log, which is driven along a way.",
+        examples=["mower"],
+    )
+    boundary: Polygon | None = Field(
+        None,
+        description="The room: corners in order, [x, y] in m. Its ring is a wall. Unbounded "
+        "without.",
+        examples=[ROOM],
+    )
+    obstacles: list[ObstacleKeys] = Field(
+        [],
+        description="Polygons that stop robots and beams; they may overlap, and cross the "
+        "boundary.",
+        examples=[[DESK]],
+    )
+    landmarks: list[LandmarkKeys] = Field(
+        [], description="Points for the sensors that see landmarks.", examples=[[LANDMARK]]
+    )
+    start: StartKeys = Field(description="Where the robot truly starts.", examples=[POSE])
+    noise: NoiseKeys | None = Field(
+        None,
+        description="The five noise ratios, all required in the classroom; the other systems have "
+        "theirs in robot and "
+        "sensors.",
+        examples=[
+            {
+                "executionDstSigmaRatio": 0.05,
+                "executionAngSigmaRatio": 0.05,
+                "odometryDstSigmaRatio": 0.02,
+                "odometryAngSigmaRatio": 0.02,
+                "rangeSigmaRatio": 0.01,
+            }
+        ],
+    )
+    robot: RobotKeys | None = Field(
+        None,
+        description="What the robot measures of its motion; what is left out is the document's. "
+        "Not in the classroom.",
+        examples=[{"rate": 100, "width": 1.41}],
+    )
+    sensors: list[SensorKeys] | None = Field(
+        None,
+        description="All sensors, in place of the system's own. Not in the classroom, whose robot "
+        "has a laser.",
+        examples=[[{"markers": MARKERS}]],
+    )
+    expected_path: Way | None = Field(
+        None,
+        alias="expectedPath",
+        description="The way that was meant to be driven: an outline that closes by itself, [x, "
+        "y] in m. It is drawn, "
+        "and the summary's path_rmse is measured to it.",
+        examples=[SQUARE],
+    )
+    belief: BeliefKeys | None = Field(
+        None,
+        description="What the filter is told, where that differs from the truth.",
+        examples=[{"start": {"x": 1.2, "y": 1.0, "theta": 80}}],
+    )
+    faults: FaultKeys | None = Field(
+        None,
+        description="What is wrong with the robot, and no one knows.",
+        examples=[{"rangeBias": 0.1}],
+    )

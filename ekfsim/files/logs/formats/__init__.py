@@ -1,0 +1,1 @@
+"""The recorded logs that are read, a file a format."""

@@ -1,0 +1,125 @@
+"""A log of ranges to radio nodes (Plaza): way and turn since the last row, ranges, nodes, and the
+true pose.
+"""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ekfsim.files.logs.folder import find, folder_of
+from ekfsim.files.logs.formats.gnss import TIME, read_truth
+from ekfsim.files.logs.formats.targets import landmarks_of, of_landmarks
+from ekfsim.files.logs.ordering import in_order, step_of, tell_gaps, tell_repeated
+from ekfsim.files.logs.recorded import Recorded
+from ekfsim.files.logs.table import Rows, named_table, some
+from ekfsim.files.logs.timeline import Motions, Sample, Timeline
+from ekfsim.files.logs.truth import Truth
+from ekfsim.geometry.angles import wrap
+from ekfsim.records import Reading
+from ekfsim.systems.document import DocumentReading
+from ekfsim.systems.instruments import Landmark, Ranges
+from ekfsim.world import World
+
+HOLDS = "odometry.csv, ranges.csv, nodes.csv and, where it is known, groundtruth.csv"
+FIRST_METRES = 2.0  # of travel, by which a stored heading is found to point ahead or back
+
+
+def read_ranges(
+    path: Path, world: World, reading: DocumentReading, warnings: list[str]
+) -> Recorded:
+    """Each row of the odometry is a stride that ends at its time. Errors are counted there.
+
+    Raises UsageError where a file is missing, InputError with what is wrong in one.
+    """
+    folder = folder_of(path, HOLDS)
+    odometry_file = find(folder, "the odometry", "odometry*.csv")
+    ranges_file = find(folder, "the ranges", "ranges*.csv")
+    nodes = named_table(
+        find(folder, "the nodes", "nodes*.csv"), (("node",), ("x",), ("y",)), warnings
+    )
+    truth = read_truth(folder, warnings)
+    columns = TIME, ("distance",), ("dheading",)
+    odometry = some(in_order(named_table(odometry_file, columns, warnings), warnings), "odometry")
+    tell_repeated(odometry, warnings)
+    tell_gaps(odometry, warnings)
+    if truth is not None:
+        truth = _ahead(truth, odometry, folder, warnings)
+    measured = named_table(
+        ranges_file, (TIME, ("node",), ("range",)), warnings, frozenset({"range"})
+    )
+    ranges = in_order(measured, warnings)
+    landmarks = landmarks_of(nodes)
+    start = _start(odometry, truth)
+    begin = np.concatenate([[start], odometry.t[:-1]])
+    u = np.column_stack([odometry.values[:, 1:], odometry.t - begin])
+    assert world.told_robot is not None
+    motions = Motions(
+        world.told_robot.motion(reading), begin, odometry.t, u, np.array([True, True, True])
+    )
+    samples = _samples(ranges, landmarks, world, reading, warnings)
+    return Timeline(str(path), start, motions, samples, truth, landmarks, between=False).recorded(
+        world, reading, warnings
+    )
+
+
+def _start(odometry: Rows, truth: Truth | None) -> float:
+    """When the first stride began: a usual step before its end, at a pose of the truth where one is
+    near.
+    """
+    step = step_of(odometry)
+    start = float(odometry.t[0]) - step
+    if truth is not None:
+        nearest = float(truth.t[np.argmin(np.abs(truth.t - start))])
+        start = nearest if abs(nearest - start) < step / 2 else start
+    return start
+
+
+def _ahead(truth: Truth, odometry: Rows, folder: Path, warnings: list[str]) -> Truth:
+    """The truth with headings that point where the robot goes when its odometry counts up: logs of
+    this kind differ.
+
+    The first metres decide: Σ d_odometry (d_truth · heading) < 0 is back. Driven in reverse, both
+    factors are negative.
+    """
+    poses = truth.at(odometry.t)
+    d, steps = odometry.values[1:, 1], np.diff(poses[:, :2], axis=0)
+    θ = poses[:-1, 2] + wrap(np.diff(poses[:, 2])) / 2
+    along = d * (steps[:, 0] * np.cos(θ) + steps[:, 1] * np.sin(θ))
+    known = np.isfinite(along)
+    first = int(np.searchsorted(np.cumsum(np.abs(d[known])), FIRST_METRES)) + 1
+    if np.sum(along[known][:first]) >= 0:
+        return truth
+    told = "the true headings point against the first metres of travel as the odometry counts them"
+    warnings.append(f"{folder}: {told}: half a turn is added")
+    poses = truth.poses.copy()
+    poses[:, 2] = np.unwrap(wrap(poses[:, 2] + math.pi))
+    return replace(truth, poses=poses)
+
+
+def _samples(
+    ranges: Rows,
+    landmarks: tuple[Landmark, ...],
+    world: World,
+    reading: DocumentReading,
+    warnings: list[str],
+) -> list[Sample]:
+    """What each row tells of a node."""
+    samples, unknown = list[Sample](), list[int]()
+    for instrument, targets in of_landmarks(world, reading, landmarks, (Ranges,))[:1]:
+        assert isinstance(instrument, Ranges)
+        for row, (t, node, raw) in enumerate(ranges.values.tolist()):
+            target = targets.get(int(node)) if node == int(node) else None
+            if target is None:
+                unknown.append(row)
+            else:
+                z = np.array([instrument.corrected(raw)])
+                samples.append(Sample(t, Reading(target.sensor, z, target.name)))
+    if unknown:
+        node, more = (
+            ranges.values[unknown[0], 1],
+            f", nor those of {len(unknown) - 1} more rows" * (len(unknown) > 1),
+        )
+        warnings.append(f"{ranges.at(unknown[0])}: nodes.csv has no node {node:g}{more}: left out")
+    return samples

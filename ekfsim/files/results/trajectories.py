@@ -1,0 +1,169 @@
+"""Trajectories that other programs read: TUM text for evo, a flat CSV table for a spreadsheet."""
+
+import csv
+import math
+from typing import TextIO
+
+import numpy as np
+
+from ekfsim.files.results.trace import ODOMETRY
+from ekfsim.filters.belief import Refused, posed
+from ekfsim.geometry import Array
+from ekfsim.geometry.ellipse import ellipse
+from ekfsim.printable import cell
+from ekfsim.provenance import provenance, told_in_a_line
+from ekfsim.records import Control, Reading, Step
+from ekfsim.scene import Scene
+from ekfsim.summary import Instants
+
+
+class Tum:
+    """Writes `t x y 0 0 0 qz qw` lines of the truth and of the estimate: one for each instant that
+    the summary counts.
+
+    The poses are those after its last reading. t is the instant in s; where there is no clock, in
+    the classroom, the index of the step. So the RMSE that evo finds between the two files is the
+    summary's.
+    """
+
+    def __init__(self, truth: TextIO, estimate: TextIO, scene: Scene) -> None:
+        self._truth, self._estimate, self._layout = truth, estimate, scene.world.layout
+        self._instants = Instants()
+        self._waiting: Step | None = None  # the last step of an instant, until the next begins
+        clock = "step" if scene.commanded else "t (s)"
+        for file, name in ((truth, "truth"), (estimate, "estimate")):
+            file.write(
+                f"# {name}: {told_in_a_line(scene)}\n# {clock} x y z qx qy qz qw (m, unit "
+                f"quaternion)\n"
+            )
+        if scene.log is not None and all(entry.truth is None for entry in scene.log.entries):
+            truth.write("# the log does not tell the truth\n")
+
+    def write(self, step: Step) -> None:
+        """Append the two poses after this step; with a clock, once the next instant begins."""
+        if not self._instants.hold(step.entry):
+            return
+        if step.entry.t is None:
+            self._append(step.entry.index, step)
+            return
+        if self._waiting is not None and self._waiting.entry.t != step.entry.t:
+            self.finish()
+        self._waiting = step
+
+    def finish(self) -> None:
+        """Append the poses of the last instant."""
+        if self._waiting is not None:
+            self._append(float(self._waiting.entry.t or 0.0), self._waiting)
+            self._waiting = None
+
+    def _append(self, t: float, step: Step) -> None:
+        self._estimate.write(_tum_line(t, self._layout.pose(step.posterior.mean)))
+        if step.entry.truth is not None:
+            self._truth.write(_tum_line(t, step.entry.truth))
+
+
+def _tum_line(t: float, pose: Array) -> str:
+    x, y, theta = pose.tolist()
+    return f"{t!r} {x!r} {y!r} 0 0 0 {math.sin(theta / 2)!r} {math.cos(theta / 2)!r}\n"
+
+
+ESTIMATE = ("x", "y", "theta", "P_xx", "P_xy", "P_xtheta", "P_yy", "P_ytheta", "P_thetatheta")
+TRUTH = ("true_x", "true_y", "true_theta")
+JUDGED = ("ellipse_major", "ellipse_minor", "ellipse_orientation", "nees", "nees_dof", "impossible")
+COLUMNS = (
+    *("index", "type", *ESTIMATE, *TRUTH),
+    *("range", "predicted_range", "innovation", "innovation_variance", "nis", "refused", *JUDGED),
+)
+DRIVEN_COLUMNS = (  # z, predicted and innovation hold all their numbers, with a space between
+    *("index", "t", "type", "sensor", *ESTIMATE, *TRUTH),
+    *("z", "predicted", "innovation", "nis", "refused", *JUDGED),
+)
+
+
+class Table:
+    """Writes a row a step; m, rad and their squares. An empty cell is a number that is undefined.
+
+    Whatever else the state holds, its pose is told.
+    """
+
+    def __init__(self, file: TextIO, scene: Scene, confidence: float) -> None:
+        self._origin = [cell(_cell(value)) for value in provenance(scene).values()]
+        self._confidence, self._layout, self._commanded = (
+            confidence,
+            scene.world.layout,
+            scene.commanded,
+        )
+        self._csv = csv.writer(file, lineterminator="\n")
+        columns = COLUMNS if self._commanded else DRIVEN_COLUMNS
+        self._csv.writerow([*columns, *provenance(scene), "confidence"])
+
+    def write(self, step: Step) -> None:
+        """Append the row of this step."""
+        x, P = posed(step.posterior, self._layout)
+        drawn, measured = ellipse(P, self._confidence), step.nees
+        self._csv.writerow(
+            [
+                step.entry.index,
+                *([_kind(step)] if self._commanded else _instrument(step)),
+                *x.tolist(),
+                *(float(P[i, j]) for i in range(3) for j in range(i, 3)),
+                *([""] * 3 if step.entry.truth is None else step.entry.truth.tolist()),
+                *(_reading(step) if self._commanded else _numbers(step)),
+                *map(float, (drawn.major, drawn.minor, drawn.orientation)),
+                *(
+                    [""] * 3
+                    if measured is None
+                    else map(
+                        _cell, (float(measured.value), int(measured.dof), bool(measured.impossible))
+                    )
+                ),
+                *self._origin,
+                self._confidence,
+            ]
+        )
+
+
+def _kind(step: Step) -> str:
+    command = step.entry.command
+    return "start" if command is None else type(command).__name__.lower()
+
+
+def _instrument(step: Step) -> list[object]:
+    """When a driven robot's step was, which kind it is, and of which sensor."""
+    match step.entry.given:
+        case Control():
+            return [_cell(step.entry.t), "predict", ODOMETRY]
+        case Reading(name=name):
+            return [_cell(step.entry.t), "update", name]
+    return [_cell(step.entry.t), "start", ""]
+
+
+def _reading(step: Step) -> list[object]:
+    c = step.correction
+    if c is None or not isinstance(step.entry.given, Reading):
+        return [""] * 6
+    numbers = (step.entry.given.z[0], c.predicted[0], c.innovation[0], c.S[0, 0], c.nis)
+    return [*(_cell(float(n)) for n in numbers), Refused(int(c.refused)).word or ""]
+
+
+def _numbers(step: Step) -> list[object]:
+    """z, predicted, innovation, NIS and why it is refused; of a motion input u alone."""
+    given, c = step.entry.given, step.correction
+    if isinstance(given, Control):
+        return [_joined(given.u), "", "", "", ""]
+    if c is None or given is None:
+        return [""] * 5
+    told = map(_joined, (given.z, c.predicted, c.innovation))
+    return [*told, _cell(float(c.nis)), Refused(int(c.refused)).word or ""]
+
+
+def _joined(values: Array) -> str:
+    """Numbers with a space between; nothing where there is none among them."""
+    return "" if np.isnan(values).all() else " ".join(map(repr, values.tolist()))
+
+
+def _cell(value: object) -> object:
+    """As it stands in the table: nothing for None and nan, 1 and 0 for true and false."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    return int(value) if isinstance(value, bool) else value

@@ -1,0 +1,1 @@
+"""World, commands and study files → scenes; all mistakes at once."""

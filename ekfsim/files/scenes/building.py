@@ -1,0 +1,259 @@
+"""Models → the objects a run is made of: degrees become radians, lists arrays, and belief what the
+filter is told.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import fields, replace
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ekfsim.files.keys.commands import CommandKeys, CommandsKeys, ExpectKeys
+from ekfsim.files.keys.drive import PathKeys, StretchKeys
+from ekfsim.files.keys.fields import PartKeys, Pose, aliases
+from ekfsim.files.keys.sensors import SENSORS, SensorKeys
+from ekfsim.files.keys.told import FaultKeys
+from ekfsim.files.keys.world import BeliefKeys, ObstacleKeys, SigmaKeys, WorldKeys
+from ekfsim.filters.tuning import Tuning
+from ekfsim.geometry import Array
+from ekfsim.geometry.angles import wrap
+from ekfsim.records import Command, Kidnap, Move, Repeat, Say, Sense
+from ekfsim.scene import Expect, Scene
+from ekfsim.systems import SYSTEMS
+from ekfsim.systems.drives import DRIVES, Drive, Stretch, Stretches
+from ekfsim.systems.faults import DriveFaults, SensorFaults
+from ekfsim.systems.instruments import Instrument
+from ekfsim.systems.robots import Robot
+from ekfsim.world import Faults, Landmark, Map, Noise, Obstacle, Told, World
+
+P = TypeVar("P", Robot, Instrument)
+NO_NOISE = Noise(0.0, 0.0, 0.0, 0.0, 0.0)  # of the classroom's robot, where another one drives
+
+
+def world_of(keys: WorldKeys) -> World:
+    """The world that a file describes."""
+    floor_plan = Map(array(keys.boundary), obstacles_of(keys.obstacles))
+    start, noise = pose(keys.start), Noise(**keys.noise.model_dump()) if keys.noise else NO_NOISE
+    return World(
+        name=keys.name,
+        map=floor_plan,
+        start=start,
+        start_sigma=sigma(keys.start.sigma),
+        noise=noise,
+        told=told(keys, floor_plan, start, noise),
+        faults=faults_of(keys.faults),
+        drive_faults=drive_faults_of(keys.faults),
+        landmarks=tuple(Landmark(mark.id, mark.x, mark.y) for mark in keys.landmarks),
+        description=keys.description,
+        system=keys.system,
+        robot=robot_of(keys),
+        instruments=instruments_of(keys),
+        expected_path=ring(keys.expected_path),
+    )
+
+
+def robot_of(keys: WorldKeys) -> Robot | None:
+    """The robot of a system, each number the document's where the file tells no other; None in the
+    classroom.
+    """
+    if keys.system == "classroom":
+        return None
+    robot = SYSTEMS[keys.system].robot
+    return robot if keys.robot is None else changed(robot, keys.robot)
+
+
+def told_robot_of(keys: WorldKeys, belief: BeliefKeys) -> Robot | None:
+    """The robot as the filter is told, None where that is as it is."""
+    robot = robot_of(keys)
+    return None if robot is None or belief.robot is None else changed(robot, belief.robot)
+
+
+def changed(part: P, keys: PartKeys) -> P:
+    """The same robot or instrument with other numbers."""
+    anew: Callable[..., P] = replace
+    return anew(part, **keys.given())
+
+
+def instruments_of(keys: WorldKeys) -> tuple[Instrument, ...]:
+    """The sensors of a file, or those of its system."""
+    if keys.system == "classroom":
+        return ()
+    return (
+        SYSTEMS[keys.system].instruments
+        if keys.sensors is None
+        else tuple(map(instrument_of, keys.sensors))
+    )
+
+
+def told_instruments_of(keys: WorldKeys, belief: BeliefKeys) -> tuple[Instrument, ...] | None:
+    """The sensors as the filter is told, None where that is as they are."""
+    if belief.sensors is None:
+        return None
+    told = {
+        alias: getattr(belief.sensors, name)
+        for name, alias in aliases(type(belief.sensors)).items()
+    }
+    return tuple(
+        one if told[one.name] is None else changed(one, told[one.name])
+        for one in instruments_of(keys)
+    )
+
+
+def faults_of(keys: FaultKeys | None) -> Faults:
+    """What is wrong with the classroom's robot."""
+    return Faults(**_of_record(Faults, keys))
+
+
+def drive_faults_of(keys: FaultKeys | None) -> DriveFaults:
+    """What is wrong with a driven robot and its instruments."""
+    given = _of_record(DriveFaults, keys)
+    faulty = given.pop("sensors", None)
+    if keys is None or keys.sensors is None or faulty is None:
+        return DriveFaults(**given)
+    sensors = {
+        alias: SensorFaults(part.biases(), part.outliers, part.outlier_size, part.delay)
+        for name, alias in aliases(type(keys.sensors)).items()
+        if (part := getattr(keys.sensors, name)) is not None
+    }
+    return DriveFaults(**given, sensors=sensors)
+
+
+def _of_record(record: type[Faults] | type[DriveFaults], keys: FaultKeys | None) -> dict[str, Any]:
+    """What a file tells of the fields of a record."""
+    names = {one.name for one in fields(record)}
+    return (
+        {}
+        if keys is None
+        else {name: value for name, value in keys.given().items() if name in names}
+    )
+
+
+def instrument_of(item: SensorKeys) -> Instrument:
+    """A sensor, each number the document's where the file tells no other."""
+    keys = item.part()
+    made: Callable[..., Instrument] = SENSORS[type(keys)]
+    return made(**keys.given())
+
+
+def told(keys: WorldKeys, floor_plan: Map, start: Array, noise: Noise) -> Told:
+    """What the filter is told: the truth, except where `belief` differs."""
+    belief = keys.belief or BeliefKeys()
+    return Told(
+        start=pose(belief.start) if belief.start else start,
+        sigma=sigma(belief.sigma, keys.start.sigma),
+        noise=replace(noise, **belief.noise.model_dump(exclude_none=True))
+        if belief.noise
+        else noise,
+        map=told_map(belief, floor_plan),
+        robot=told_robot_of(keys, belief),
+        instruments=told_instruments_of(keys, belief),
+    )
+
+
+def told_map(belief: BeliefKeys, floor_plan: Map) -> Map:
+    """The filter's map: the true one itself where nothing differs, so that its walls are built
+    once.
+    """
+    if belief.boundary is None and belief.obstacles is None and not belief.missing:
+        return floor_plan
+    missing = belief.missing or []
+    return Map(
+        boundary=floor_plan.boundary if belief.boundary is None else array(belief.boundary),
+        obstacles=obstacles_of(belief.obstacles)
+        if belief.obstacles is not None
+        else tuple(obstacle for obstacle in floor_plan.obstacles if obstacle.name not in missing),
+    )
+
+
+def obstacles_of(obstacles: Iterable[ObstacleKeys]) -> tuple[Obstacle, ...]:
+    """Obstacles with their corners as arrays."""
+    return tuple(Obstacle(keys.name, np.array(keys.points, dtype=float)) for keys in obstacles)
+
+
+def array(points: list[list[float]] | None) -> Array | None:
+    """points : (n, 2) m"""
+    return None if points is None else np.array(points, dtype=float)
+
+
+def ring(points: list[list[float]] | None) -> Array | None:
+    """The corners of an outline : (n, 2) m, the first not repeated at its end"""
+    if points and len(points) > 2 and points[0] == points[-1]:
+        return array(points[:-1])
+    return array(points)
+
+
+def pose(keys: Pose) -> Array:
+    """x, y, θ : (3,) m, m, rad in (−π, π]"""
+    return np.array([keys.x, keys.y, float(wrap(np.radians(keys.theta)))])
+
+
+def sigma(*choices: SigmaKeys | None) -> Array:
+    """Standard deviations : (3,) m, m, rad; each from the first mapping that tells it, 0 where none
+    does.
+    """
+    x, y, theta = (
+        next(
+            (value for keys in choices if keys and (value := getattr(keys, axis)) is not None), 0.0
+        )
+        for axis in ("x", "y", "theta")
+    )
+    return np.array([x, y, np.radians(theta)])
+
+
+def scene_of(keys: CommandsKeys, world: World, world_source: str, commands_source: str) -> Scene:
+    """The scene that a commands file plays in a world."""
+    return Scene(
+        world=world,
+        commands=tuple(commands_of(keys.commands or ())),
+        drive=None if keys.drive is None else drive_of(keys.drive),
+        seed=keys.seed,
+        filter=keys.filter,
+        tuning=Tuning(**keys.filter_settings.model_dump()) if keys.filter_settings else Tuning(),
+        gate=keys.gate,
+        guard=keys.guard,
+        description=keys.description,
+        expect=expect(keys.expect) if keys.expect else None,
+        world_source=world_source,
+        commands_source=commands_source,
+    )
+
+
+def drive_of(keys: PathKeys | list[StretchKeys]) -> Drive:
+    """The way that a robot is driven, each number the document's where the file tells no other."""
+    if isinstance(keys, PathKeys):
+        given = keys.given()
+        made: Callable[..., Drive] = DRIVES[given.pop("path")]
+        if keys.path == "square" and keys.laps is not None:
+            given["laps"] = int(keys.laps)
+        return made(**given)
+    return Stretches(
+        tuple(
+            Stretch(item.speed, float(np.radians(item.turn_rate)), item.duration) for item in keys
+        )
+    )
+
+
+def expect(keys: ExpectKeys) -> Expect:
+    """What a study must find."""
+    lost = (keys.lost[0], keys.lost[1]) if keys.lost else None
+    coverage = (keys.coverage[0], keys.coverage[1]) if keys.coverage else None
+    return Expect(lost, keys.nis, keys.nees, coverage, keys.runs)
+
+
+def commands_of(items: Iterable[CommandKeys]) -> Iterator[Command]:
+    """The commands of a list, angles in radians; repetitions of nothing are left out."""
+    for item in items:
+        if item.move is not None:
+            yield Move(
+                float(item.move.distance), float(np.radians(item.move.angle)), float(item.move.slip)
+            )
+        elif item.sense is not None:
+            yield Sense(float(np.radians(item.sense.angle)))
+        elif item.kidnap is not None:
+            yield Kidnap(*pose(item.kidnap).tolist())
+        elif item.say is not None:
+            yield Say(item.say)
+        elif item.repeat is not None:
+            repeated = tuple(commands_of(item.repeat.commands))
+            if item.repeat.times and repeated:
+                yield Repeat(item.repeat.times, repeated)

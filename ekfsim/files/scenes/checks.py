@@ -1,0 +1,291 @@
+"""What no single key can tell: polygons, names, places to stand, how many commands there are.
+
+The checks read the raw tree and skip whatever a model has found wrong, so that all mistakes of a
+file are told at once.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from ekfsim.errors import MOST_TOLD, Mistake
+from ekfsim.files.keys.commands import MAX_COMMANDS, CommandKeys
+from ekfsim.files.scenes import polygons
+from ekfsim.files.scenes.polygons import FloorPlan, Points
+from ekfsim.files.yaml.marked import Node, Path
+from ekfsim.files.yaml.telling import at, nearest
+from ekfsim.printable import quoted, short, some
+from ekfsim.world import BOUNDARY, Map, World
+
+COMMANDS = list(CommandKeys.model_fields)
+
+
+class Sound:
+    """A file without what is known to be wrong with it."""
+
+    def __init__(self, file: str, root: Node, wrong: set[Path]) -> None:
+        self.file = file
+        self.root = root
+        self.wrong: set[Path] = set()  # what is wrong itself
+        self.around: set[Path] = set()  # what holds something wrong
+        for path in wrong:
+            self.give_up(path)
+
+    def give_up(self, path: Path) -> None:
+        """Know the value at a path as wrong, and whatever holds it or lies in it."""
+        self.wrong.add(path)
+        self.around.update(path[:length] for length in range(len(path)))
+
+    def value(self, *path: str | int) -> Any:
+        """The plain value at a path, None where there is none, or where a mistake lies in it or
+        around it.
+        """
+        node = self.root.at(path)
+        if (
+            node is None
+            or path in self.around
+            or any(path[: length + 1] in self.wrong for length in range(len(path)))
+        ):
+            return None
+        return node.plain()
+
+    def count(self, *path: str | int) -> int:
+        """The length of a list, right or wrong; 0 where there is none."""
+        node = self.root.at(path)
+        return len(node.value) if node and isinstance(node.value, list) else 0
+
+    def mistake(self, path: Path, wrong: str, right: str) -> Mistake:
+        """A mistake in the value at a path."""
+        return at(self.file, self.root.nearest(path).mark, path, wrong, right)
+
+
+def check_world(file: Sound) -> Iterator[Mistake]:
+    """Mistakes of a world file that lie between its keys."""
+    yield from check_polygons(file)
+    for owner in ((), ("belief",)):
+        yield from check_names(file, owner)
+    yield from check_landmarks(file)
+    yield from check_missing(file)
+    x, y = file.value("start", "x"), file.value("start", "y")
+    if x is not None and y is not None:
+        for wrong in FloorPlan(file.value("boundary"), sound_obstacles(file)).in_the_way(x, y):
+            yield file.mistake(
+                ("start",), f"the robot starts at {wrong}", "start it where it can move"
+            )
+
+
+def sound_obstacles(file: Sound) -> Iterator[tuple[str, Points]]:
+    """The obstacles whose points are right, with their names."""
+    for index in range(file.count("obstacles")):
+        points = file.value("obstacles", index, "points")
+        if points is not None:
+            yield file.value("obstacles", index, "name") or f"obstacles[{index}]", points
+
+
+def check_polygons(file: Sound) -> Iterator[Mistake]:
+    """Polygons that are none. Each is known as wrong from here on."""
+    for path in polygon_paths(file):
+        points = file.value(*path)
+        if points is not None and (fault := polygons.fault_of(points)):
+            index, wrong, right = fault
+            place = path if index is None else (*path, index)
+            yield file.mistake(place, wrong, right)
+            file.give_up(path)
+
+
+def polygon_paths(file: Sound) -> Iterator[Path]:
+    """Where a world file holds polygons."""
+    for owner in ((), ("belief",)):
+        yield (*owner, "boundary")
+        for index in range(file.count(*owner, "obstacles")):
+            yield (*owner, "obstacles", index, "points")
+
+
+def check_names(file: Sound, owner: Path) -> Iterator[Mistake]:
+    """Two obstacles of one name, and an obstacle named like the boundary."""
+    seen: dict[str, int] = {}
+    for index in range(file.count(*owner, "obstacles")):
+        path = (*owner, "obstacles", index, "name")
+        name = file.value(*path)
+        if name == BOUNDARY:
+            yield file.mistake(
+                path, f"'{BOUNDARY}' is the name of the room's own wall", "choose another name"
+            )
+        elif name in seen:
+            line = file.root.nearest((*owner, "obstacles", seen[name], "name")).mark[0]
+            yield file.mistake(
+                path,
+                f"{quoted(name)} is already the name of the obstacle on line {line}",
+                "choose another name",
+            )
+        elif name is not None:
+            seen[name] = index
+
+
+def check_landmarks(file: Sound) -> Iterator[Mistake]:
+    """Two landmarks that no sensor could tell apart."""
+    seen: dict[int, int] = {}
+    for index in range(file.count("landmarks")):
+        path = ("landmarks", index, "id")
+        number = file.value(*path)
+        if number in seen:
+            line = file.root.nearest(("landmarks", seen[number], "id")).mark[0]
+            yield file.mistake(
+                path,
+                f"{number} is already the id of the landmark on line {line}",
+                "choose another id",
+            )
+        elif number is not None:
+            seen[number] = index
+
+
+def check_missing(file: Sound) -> Iterator[Mistake]:
+    """Obstacles that the filter cannot lack."""
+    belief = file.root.at(("belief",))
+    if belief and belief.get("missing") and belief.get("obstacles"):
+        wrong = "belief.obstacles lists all that the filter's map holds"
+        yield file.mistake(("belief", "missing"), wrong, "delete either 'missing' or 'obstacles'")
+        return
+    count = file.count("obstacles")
+    names = [file.value("obstacles", index, "name") for index in range(count)]
+    known, told = set(names), 0
+    if None in known or ("obstacles",) in file.wrong:
+        return
+    for index in range(file.count("belief", "missing")):
+        path = ("belief", "missing", index)
+        name = file.value(*path)
+        if name is not None and name not in known:
+            near = nearest(name, names) if told < MOST_TOLD else ""
+            right = (
+                f"did you mean {quoted(near)}?"
+                if near
+                else f"the obstacles are: {some(names) or 'none'}"
+            )
+            yield file.mistake(path, f"no obstacle is named {quoted(name)}", right)
+            told += 1
+
+
+def check_commands(file: Sound) -> Iterator[Mistake]:
+    """Mistakes of a commands file that lie between its keys."""
+    yield from check_items(file, ("commands",), COMMANDS, "command")
+    count = expanded(file, ("commands",))
+    if count > MAX_COMMANDS:
+        number = (
+            f"{count:,}".replace(",", " ")
+            if count < 10**12
+            else f"about {float(min(count, 10**300)):.0e}"
+        )
+        wrong = f"the commands expand to {number}, more than 1 000 000"
+        yield file.mistake(("commands",), wrong, "repeat fewer times")
+
+
+def check_items(file: Sound, path: Path, known: list[str], what: str) -> Iterator[Mistake]:
+    """Items that hold none of the known keys, or two."""
+    for index in range(file.count(*path)):
+        item = file.root.at((*path, index))
+        if item is None or not isinstance(item.value, dict):
+            continue
+        held = [key for key in item.keys if key in known]
+        if len(held) > 1:
+            wrong = f"{' and '.join(repr(key) for key in held)} stand in one item"
+            yield file.mistake(
+                (*path, index), wrong, f"begin each {what} with '- ' on a line of its own"
+            )
+        elif not item.keys:
+            yield file.mistake(
+                (*path, index), f"the {what} is missing", f"write one of {', '.join(known)}"
+            )
+        yield from check_items(file, (*path, index, "repeat", "commands"), known, what)
+
+
+def expanded(file: Sound, path: Path) -> int:
+    """How many commands a list expands to, as far as it is right."""
+    total = 0
+    for index in range(file.count(*path)):
+        repeat = (*path, index, "repeat")
+        if file.root.at(repeat) is None:
+            total += 1
+        else:
+            times = file.value(*repeat, "times")
+            total += (times if times is not None else 1) * expanded(file, (*repeat, "commands"))
+    return total
+
+
+def angle_warnings(file: Sound) -> Iterator[Mistake]:
+    """Angles that are hardly meant as degrees."""
+    for path, node in file.root.walk():
+        is_angle, is_rate = (
+            path[-1:] in (("theta",), ("angle",)),
+            path[-1:] in (("omega",), ("turnRate",)),
+        )
+        is_angle = is_angle or "bearings" in path
+        number = file.value(*path) if is_angle or is_rate else None
+        if not isinstance(number, int | float):
+            continue
+        if abs(number) > 360 and is_angle:
+            wrong, right = (
+                f"{short(node.written)} is more than a full turn",
+                "angles are in degrees: 90 is a quarter turn",
+            )
+        elif is_radians(number, node.written):
+            what = "angles are in degrees" if is_angle else "turn rates are in degrees per second"
+            wrong, right = (
+                f"{node.written} looks like radians",
+                f"{what}: write {math.degrees(number):.0f}",
+            )
+        else:
+            continue
+        yield at(file.file, node.mark, path, wrong, right)
+
+
+def kidnap_warnings(file: Sound, floor_plan: Map) -> Iterator[str]:
+    """Kidnaps to where no robot can stand."""
+    rings = [(obstacle.name, obstacle.points) for obstacle in floor_plan.obstacles]
+    plan = FloorPlan(floor_plan.boundary, rings)
+    for path, node in file.root.walk():
+        if path[-1:] == ("kidnap",) and (target := file.value(*path)) is not None:
+            for wrong in plan.in_the_way(target["x"], target["y"]):
+                yield str(
+                    at(
+                        file.file,
+                        node.mark,
+                        path,
+                        f"the robot is carried to {wrong}",
+                        "it cannot move there",
+                    )
+                )
+
+
+def perfect_beam_warnings(file: Sound, world: World) -> Iterator[str]:
+    """A laser that is believed without noise, by a robot that is not sure of its place."""
+    if not world.perfect_beam:
+        return
+    for path in (("belief", "noise", "rangeSigmaRatio"), ("noise", "rangeSigmaRatio")):
+        if (node := file.root.at(path)) is not None:
+            wrong = (
+                "a linearised filter takes a beam without noise for certain, and soon claims "
+                "a place it is not at"
+            )
+            yield str(
+                at(
+                    file.file,
+                    node.mark,
+                    path,
+                    wrong,
+                    "a small ratio, such as 0.001, leaves room for the bend",
+                )
+            )
+            return
+
+
+def is_radians(angle: float, written: str) -> bool:
+    """Whether an angle is a multiple of π/4 to all its decimals, of which it has two or more.
+
+    >>> is_radians(1.5708, "1.5708"), is_radians(1.5, "1.5"), is_radians(45.25, "45.25")
+    (True, False, False)
+    """
+    decimals = len(written.partition(".")[2])
+    eighths = round(angle / (math.pi / 4))
+    return (
+        decimals >= 2 and 0 < abs(eighths) <= 8 and round(eighths * math.pi / 4, decimals) == angle
+    )

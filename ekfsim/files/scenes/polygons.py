@@ -1,0 +1,108 @@
+"""What makes points a polygon, and where a robot can stand."""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import shapely
+
+from ekfsim.geometry import Array
+from ekfsim.printable import quoted
+
+Points = Sequence[Sequence[float]] | Array
+Fault = tuple[int | None, str, str]  # the point it is about, what is wrong, what would be right
+
+
+def fault_of(points: Sequence[Sequence[float]]) -> Fault | None:
+    """Why points are no simple polygon; None where they are one."""
+    for index, point in enumerate(points):
+        if index and point == points[index - 1]:
+            return index, f"the point {pair(point)} repeats the one before it", "delete one of them"
+    if points[0] == points[-1]:
+        return (
+            len(points) - 1,
+            f"the last point {pair(points[0])} repeats the first",
+            "delete it: an outline closes by itself",
+        )
+    if without_area(points):
+        return (
+            None,
+            "the polygon has no area: its points lie on one line",
+            "move a point off that line",
+        )
+    polygon = shapely.Polygon(points)
+    if not polygon.is_valid:
+        return (
+            None,
+            f"the outline crosses or touches itself{crossing(polygon)}",
+            "give the corners in order, around it",
+        )
+    return None
+
+
+def without_area(points: Sequence[Sequence[float]]) -> bool:
+    """Whether all points lie on one line, to rounding. In plain floats: a file may hold thousands
+    of small polygons.
+    """
+    # far from the origin, products of coordinates have no digit left for an area
+    x_0, y_0 = points[0]
+    x, y = [point[0] - x_0 for point in points], [point[1] - y_0 for point in points]
+    least = 1e-12 * max(max(x) - min(x), max(y) - min(y)) ** 2
+    # the last edge ends at 0, 0
+    twice = sum(a * d - b * c for a, b, c, d in zip(x, y, x[1:], y[1:], strict=False))
+    if abs(twice) / 2 > least:
+        return False  # the area that it encloses is at most that of its hull
+    return bool(shapely.MultiPoint(list(zip(x, y, strict=True))).convex_hull.area <= least)
+
+
+def crossing(polygon: shapely.Polygon) -> str:
+    """Where an outline crosses itself, as the end of a sentence."""
+    found = re.search(r"\[(\S+) (\S+)\]", shapely.is_valid_reason(polygon))
+    return f" at {pair([float(found[1]), float(found[2])])}" if found else ""
+
+
+def pair(point: Sequence[float]) -> str:
+    """A point as it is written, in a map's grid to 0.1 mm.
+
+    >>> pair([4, 3.5]), pair([388097.25, 5632217.123456])
+    ('[4, 3.5]', '[388097.25, 5632217.1235]')
+    """
+    x, y = (f"{value:.6g}" if abs(value) < FINE else f"{round(value, 4):.15g}" for value in point)
+    return f"[{x}, {y}]"
+
+
+FINE = 100  # m, up to which six digits tell 0.1 mm
+MOST_IN_THE_WAY = 5  # obstacles that are told of one place
+
+
+class FloorPlan:
+    """Where a robot cannot stand: outside a boundary, inside an obstacle, on the wall of either."""
+
+    def __init__(self, boundary: Points | None, obstacles: Iterable[tuple[str, Points]]) -> None:
+        self._boundary = None if boundary is None else shapely.Polygon(boundary)
+        self._named = list(obstacles)
+        self._tree = shapely.STRtree(
+            _shapes([np.asarray(points, dtype=float) for _, points in self._named])
+        )
+
+    def in_the_way(self, x: float, y: float) -> Iterator[str]:
+        """Why a robot cannot stand at a point, as the ends of sentences."""
+        where, point = f"{pair([x, y])},", shapely.Point(x, y)
+        if self._boundary is not None and not self._boundary.contains(point):
+            yield f"{where} outside the boundary or on its wall"
+        for index in sorted(self._tree.query(point, predicate="intersects").tolist())[
+            :MOST_IN_THE_WAY
+        ]:
+            yield f"{where} inside the obstacle {quoted(self._named[index][0])} or on its wall"
+
+
+def _shapes(outlines: list[Array]) -> list[Any]:
+    """The polygons of Shapely, made all at once: one by one they take the longest of all that a
+    file is asked.
+    """
+    if not outlines:
+        return []
+    owners = np.repeat(np.arange(len(outlines)), [len(corners) for corners in outlines])
+    made: Any = shapely.polygons(shapely.linearrings(np.concatenate(outlines), indices=owners))
+    return list(made)

@@ -1,0 +1,365 @@
+"""What of a system, its robot and its drive no single key can tell."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import fields
+
+import numpy as np
+
+from ekfsim.errors import Mistake
+from ekfsim.files.keys.commands import SYSTEM_OF, WAYS, CommandsKeys
+from ekfsim.files.keys.drive import MAX_ROUNDS, MAX_STEPS, PathKeys
+from ekfsim.files.keys.fields import aliases
+from ekfsim.files.keys.sensors import SensorKeys
+from ekfsim.files.keys.system import (
+    ODOMETRY,
+    RobotKeys,
+    ToldRobotKeys,
+    fields_of,
+    not_carried,
+    robot_fields,
+)
+from ekfsim.files.keys.told import FaultKeys
+from ekfsim.files.scenes.building import drive_of
+from ekfsim.files.scenes.checks import Sound, check_items
+from ekfsim.files.yaml.marked import Path
+from ekfsim.files.yaml.schema import schema_at
+from ekfsim.files.yaml.telling import at, example, meant, one_of
+from ekfsim.systems import SYSTEMS
+from ekfsim.systems.drives import DRIVES, Circle, Drive, Spiral, Square, Stretches
+from ekfsim.systems.instruments import (
+    Bearings,
+    Infrared,
+    Instrument,
+    Lidar,
+    Markers,
+    Pylon,
+    RangeBearings,
+    Ranges,
+    Ultrasonic,
+)
+from ekfsim.world import Faults, World
+
+BEAMS: dict[str, type[Ultrasonic] | type[Infrared]] = {
+    "ultrasonic": Ultrasonic,
+    "infrared": Infrared,
+}
+NARROW = 2 * math.pi  # degrees: no bound of a field of view is larger, where radians are written
+LOOKING = (Markers, RangeBearings, Bearings, Ranges, Pylon, Lidar)
+OF_LANDMARKS = tuple(kind.name for kind in LOOKING)
+ALL_IN_ONE = {  # how one sensor does the work of two
+    **dict.fromkeys(BEAMS, ", with the 'bearings' of both"),
+    **dict.fromkeys(OF_LANDMARKS, ", with the 'views' of both"),
+}
+
+
+def check_system(file: Sound) -> Iterator[Mistake]:
+    """Keys of a world file that its system does not read, or lacks."""
+    system = system_of(file)
+    if system == "classroom":
+        yield from check_classroom(file)
+    elif system is not None:
+        for path in (("noise",), ("belief", "noise")):
+            if file.root.at(path):
+                right = f"'robot' and 'sensors' hold that of the system '{system}'"
+                yield file.mistake(path, "the noise ratios belong to the classroom's robot", right)
+        for path in (("robot",), ("belief", "robot")):
+            yield from check_robot(file, system, path)
+        yield from check_steering(file)
+        yield from check_faults(file, f"the robot of the system '{system}'", faults_of(system))
+        for path in (("belief", "sensors"), ("faults", "sensors")):
+            yield from check_carried(file, system, path)
+        yield from check_carriable(file, system)
+    yield from check_sensors(file)
+
+
+def system_of(file: Sound) -> str | None:
+    """The system of a world file, None where it is told wrongly."""
+    told = file.value("system")
+    return (
+        "classroom"
+        if file.root.at(("system",)) is None
+        else told
+        if isinstance(told, str)
+        else None
+    )
+
+
+def check_classroom(file: Sound) -> Iterator[Mistake]:
+    """The classroom needs its noise, and has no other robot."""
+    if file.root.at(("noise",)) is None and not any(
+        meant(key, "world", ()) == "noise" for key in file.root.keys
+    ):
+        right = f"write noise: {example(schema_at('world', ('noise',)))}"
+        yield file.mistake(("noise",), "the key is missing", right)
+    for key, what in (("robot", "is told by 'noise'"), ("sensors", "carries a laser")):
+        if file.root.at((key,)):
+            right = f"delete '{key}', or write e.g. system: mower"
+            yield file.mistake((key,), f"the classroom's robot {what}", right)
+    for key in ("robot", "sensors"):
+        if file.root.at(("belief", key)):
+            wrong = (
+                f"what is believed of the classroom's "
+                f"{'robot' if key == 'robot' else 'laser'} is told by 'noise'"
+            )
+            yield file.mistake(
+                ("belief", key),
+                wrong,
+                f"delete '{key}', or write e.g. noise: {{rangeSigmaRatio: 0.02}}",
+            )
+    yield from check_faults(file, "the classroom's robot", [name.name for name in fields(Faults)])
+
+
+def check_robot(file: Sound, system: str, path: Path) -> Iterator[Mistake]:
+    """Keys that the robot of a system does not have, true or told, and a skid-steer matrix that
+    tells nothing.
+    """
+    names = aliases(RobotKeys if path == ("robot",) else ToldRobotKeys)
+    known = [names[name] for name in robot_fields(system) if name in names]
+    robot = file.root.at(path)
+    for key in robot.keys if robot else ():
+        if key in names.values() and key not in known:
+            wrong = f"the robot of the system '{system}' has no key '{key}'"
+            yield file.mistake((*path, key), wrong, f"it has: {', '.join(known)}")
+    odometry = file.value(*path, "odometry")
+    if odometry is not None and "odometry" in known and odometry not in ODOMETRY[system]:
+        wrong = f"the robot of the system '{system}' has no odometry '{odometry}'"
+        yield file.mistake((*path, "odometry"), wrong, f"write {one_of(list(ODOMETRY[system]))}")
+    skid = file.value(*path, "skid")
+    if skid is not None and "skid" in known:
+        (forward, _, turning) = skid
+        if abs(forward[0] * turning[1] - forward[1] * turning[0]) < 1e-9:
+            wrong = "by its rows 1 and 3, other speeds of the two sides make the same motion"
+            yield file.mistake(
+                (*path, "skid"), wrong, "write e.g. [[0.5, 0.5], [0, 0], [2.5, -2.5]]"
+            )
+
+
+def check_steering(file: Sound) -> Iterator[Mistake]:
+    """A filter that is told speeds where the robot counts ways, or the other way round."""
+    believed = file.value("belief", "robot", "odometry")
+    true = file.value("robot", "odometry") or "arctan"
+    if believed is not None and (believed == "skidSteer") != (true == "skidSteer"):
+        wrong = f"a robot of the odometry '{true}' cannot be read as one of '{believed}'"
+        right = "write robot: {odometry: skidSteer} as well, or skidSteer in neither"
+        yield file.mistake(("belief", "robot", "odometry"), wrong, right)
+
+
+def faults_of(system: str) -> list[str]:
+    """The names of what may be wrong with the robot of a system."""
+    return [*SYSTEMS[system].robot.faults, "sensors"]
+
+
+def check_faults(file: Sound, whose: str, names: list[str]) -> Iterator[Mistake]:
+    """Faults that a robot cannot have."""
+    known = [aliases(FaultKeys)[name] for name in names]
+    faults = file.root.at(("faults",))
+    for key in faults.keys if faults else ():
+        if key in aliases(FaultKeys).values() and key not in known:
+            wrong = f"{whose} has no fault '{key}'"
+            yield file.mistake(("faults", key), wrong, f"it may have: {', '.join(known)}")
+
+
+def check_carried(file: Sound, system: str, path: Path) -> Iterator[Mistake]:
+    """Sensors that are told of and that the robot does not carry."""
+    carried = [instrument.name for instrument in SYSTEMS[system].instruments]
+    if file.root.at(("sensors",)):
+        items = (file.root.at(("sensors", index)) for index in range(file.count("sensors")))
+        carried = [kind for item in items if item is not None for kind in item.keys]
+    told = file.root.at(path)
+    for kind in told.keys if told else ():
+        if kind in aliases(SensorKeys).values() and kind not in carried:
+            wrong = f"the world has no sensor '{kind}'"
+            yield file.mistake((*path, kind), wrong, f"it has: {', '.join(carried) or 'none'}")
+
+
+def check_carriable(file: Sound, system: str) -> Iterator[Mistake]:
+    """Sensors that the robot of a system cannot carry."""
+    for index in range(file.count("sensors")):
+        item = file.root.at(("sensors", index))
+        for kind in item.keys if item and len(item.keys) == 1 else ():
+            if kind in not_carried(system):
+                wrong = f"the robot of the system '{system}' cannot carry the sensor '{kind}'"
+                able = one_of([name for name in SYSTEMS if kind not in not_carried(name)])
+                right = (
+                    "write lidar, which no measured yaw has to turn"
+                    if kind == Pylon.name
+                    else f"the robot of {able} can"
+                )
+                yield file.mistake(("sensors", index, kind), wrong, right)
+
+
+def check_sensors(file: Sound) -> Iterator[Mistake]:
+    """Items that hold no sensor or two, a second sensor of a kind, and beams that can measure
+    nothing.
+    """
+    kinds = list(aliases(SensorKeys).values())
+    yield from check_items(file, ("sensors",), kinds, "sensor")
+    yield from check_kinds(file, kinds)
+    for index in range(file.count("sensors")):
+        for kind, document in BEAMS.items():
+            path = ("sensors", index, kind)
+            if (beams := file.value(*path)) is not None:
+                near, far = (
+                    beams.get("nearest", document.nearest),
+                    beams.get("range", document.farthest),
+                )
+                if near >= far:
+                    wrong = (
+                        f"nothing lies between its nearest {near:g} m and its range of {far:g} m"
+                    )
+                    yield file.mistake(path, wrong, "write a range that is more than the nearest")
+
+
+def check_kinds(file: Sound, kinds: list[str]) -> Iterator[Mistake]:
+    """A second sensor of a kind: its readings would go by the names of the first one's."""
+    lines = dict[str, int]()
+    for index in range(file.count("sensors")):
+        item = file.root.at(("sensors", index))
+        kind = next(iter(item.keys)) if item is not None and len(item.keys) == 1 else ""
+        if item is None or kind not in kinds:
+            continue
+        if kind in lines:
+            wrong = f"the sensor '{kind}' on line {lines[kind]} goes by the same name"
+            yield file.mistake(
+                ("sensors", index, kind), wrong, f"keep one of them{ALL_IN_ONE.get(kind, '')}"
+            )
+        lines.setdefault(kind, item.keys[kind][0])
+
+
+def system_warnings(file: Sound, world: World, logged: bool) -> Iterator[str]:
+    """Sensors that have nothing to see, or are read less often than they say; a log may bring its
+    landmarks.
+    """
+    for index, instrument in enumerate(world.instruments):
+        item = file.root.at(("sensors", index))
+        path: Path = ("sensors", index, *item.keys) if item else ("system",)
+        for wrong, right in doubts(instrument, world, logged):
+            yield str(at(file.file, file.root.nearest(path).mark, path, wrong, right))
+
+
+def doubts(instrument: Instrument, world: World, logged: bool) -> Iterator[tuple[str, str]]:
+    """Why a sensor hardly does what is meant, and the way out."""
+    name, robot = instrument.name, world.robot
+    if name in OF_LANDMARKS and not world.landmarks and not logged:
+        yield (
+            f"the sensor '{name}' sees landmarks, and the world has none",
+            "list them under 'landmarks'",
+        )
+    if name in BEAMS and not any(world.map.rings()):
+        yield (
+            f"the sensor '{name}' sees walls, and the world has none",
+            "write a 'boundary' or 'obstacles'",
+        )
+    if isinstance(instrument, LOOKING) and np.abs(instrument.views).max() < math.radians(NARROW):
+        yield (
+            f"the sensor '{name}' sees a few degrees only",
+            "'views' are in degrees: [-30, 30] looks ahead",
+        )
+    if robot is not None and instrument.rate > robot.rate:
+        wrong = (
+            f"the sensor '{name}' is to be read at {instrument.rate:g} Hz, the robot moves at "
+            f"{robot.rate:g} Hz"
+        )
+        yield wrong, "it is read once at each motion"
+
+
+def check_ways(file: Sound) -> Iterator[Mistake]:
+    """A commands file without anything to do, or with two; a path with keys of another."""
+    held = [way for way in file.root.keys if way in WAYS]
+    if not held and not any(meant(key, "commands", ()) in WAYS for key in file.root.keys):
+        wrong, right = "the file says nothing to do", f"write one of {', '.join(WAYS)}"
+        yield file.mistake((), wrong, right)
+    for second in held[1:]:
+        wrong = f"'{held[0]}' on line {file.root.keys[held[0]][0]} says already what happens"
+        yield file.mistake((second,), wrong, "keep one of them")
+    yield from check_path(file)
+
+
+def check_path(file: Sound) -> Iterator[Mistake]:
+    """A path with keys of another, with a broken lap, or with more rounds than fit."""
+    path, drive = file.value("drive", "path"), file.root.at(("drive",))
+    if path is None or drive is None:
+        return
+    names = aliases(PathKeys)
+    known = ["path", *(names[name] for name in fields_of(DRIVES[path]))]
+    foreign = [key for key in drive.keys if key in names.values() and key not in known]
+    for key in foreign:
+        yield file.mistake(
+            ("drive", key), f"a {path} has no key '{key}'", f"it has: {', '.join(known)}"
+        )
+    laps = file.value("drive", "laps")
+    if path == "square" and laps is not None and laps != int(laps):
+        yield file.mistake(
+            ("drive", "laps"), f"{laps} is no whole number of squares", f"write {max(int(laps), 1)}"
+        )
+    if path == "spiral" and (way := file.value("drive")) is not None:
+        width, length = way.get("width", Spiral.width), way.get("length", Spiral.length)
+        spacing = way.get("spacing", Spiral.spacing)
+        rounds = 0.4 * min(width, length) / spacing
+        if rounds > MAX_ROUNDS:
+            wrong = f"so near to each other, there are {rounds:.0f} rounds, more than {MAX_ROUNDS}"
+            yield file.mistake(
+                ("drive", "spacing"),
+                wrong,
+                f"write at least {0.4 * min(width, length) / MAX_ROUNDS:g}",
+            )
+    if foreign:
+        file.give_up(("drive",))  # it cannot be driven: how long it takes is not asked
+
+
+def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake]:
+    """A commands file whose robot the world does not have, and drives too long or too short for
+    it.
+    """
+    system = world.system
+    if keys.commands is not None and world.robot is not None:
+        wrong = f"the robot of the system '{system}' obeys no commands"
+        yield file.mistake(
+            ("commands",), wrong, "write 'drive' or 'recording', or name a world of the classroom"
+        )
+    elif keys.drive is not None:
+        if world.robot is None:
+            wrong = "the classroom's robot is not driven, it obeys commands"
+            yield file.mistake(
+                ("drive",), wrong, "write 'commands', or name a world of another system"
+            )
+        elif file.value("drive") is not None:
+            yield from check_length(file, drive_of(keys.drive), world.robot.rate)
+    elif keys.recording is not None and system != (wanted := SYSTEM_OF[keys.recording.format]):
+        wrong = (
+            f"a '{keys.recording.format}' log is of the system '{wanted}', the world of the "
+            f"system '{system}'"
+        )
+        yield file.mistake(("recording", "format"), wrong, f"name a world of the system '{wanted}'")
+    if keys.recording is not None and keys.filter == "kf-nominal":
+        yield file.mistake(
+            ("filter",), "a recording does not tell the way that was planned", "write kf or ekf"
+        )
+
+
+def check_length(file: Sound, drive: Drive, rate: float) -> Iterator[Mistake]:
+    """Drives of no step at all, and those that never end."""
+    steps = steps_of(drive, rate)
+    if steps > MAX_STEPS:
+        number = f"{steps:,.0f}".replace(",", " ") if steps < 1e12 else f"about {steps:.0e}"
+        wrong = f"the drive takes {number} steps at the robot's {rate:g} Hz, more than 1 000 000"
+        yield file.mistake(("drive",), wrong, "drive a shorter while, or lower the robot's rate")
+    elif round(steps) < 1:
+        wrong = f"the drive ends before the robot's first step, at {rate:g} Hz"
+        yield file.mistake(("drive",), wrong, f"drive at least {1 / rate:g} s")
+
+
+def steps_of(drive: Drive, rate: float) -> float:
+    """How many steps a drive takes, about, without taking them."""
+    match drive:
+        case Spiral():
+            return drive.duration * rate
+        case Square():
+            side, turn = drive.side / drive.speed, math.pi / 2 / drive.turn_rate
+            return 4 * drive.laps * (max(side * rate, 1) + max(turn * rate, 1))
+        case Circle():
+            return max(2 * math.pi * drive.radius * drive.laps / drive.speed * rate, 1)
+        case Stretches():
+            return math.fsum(stretch.duration for stretch in drive.stretches) * rate
+    raise AssertionError(drive)

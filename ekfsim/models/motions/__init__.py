@@ -1,0 +1,1 @@
+"""f, F, G, M and Q, a file a robot."""

@@ -1,0 +1,1 @@
+"""h, H, R and residual, a file a sensor."""

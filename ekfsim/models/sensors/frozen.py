@@ -1,0 +1,50 @@
+"""A sensor that keeps being linearised where the robot was (the listing of document 000)."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ekfsim.geometry import Array
+from ekfsim.models.protocols import Quantity, Sensor
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frozen(Sensor):
+    """h(at), H(at) and R(at), whatever the estimate has become.
+
+    The listing linearises every marker at the state before the time update (its xM, yM, Phi),
+    predictions included; the text (section 3.2) does it at the newest estimate, and again after
+    each marker.
+    """
+
+    sensor: Sensor
+    at: Array  # (…, n)
+
+    @property
+    def outputs(self) -> tuple[Quantity, ...]:
+        """Those of the sensor."""
+        return self.sensor.outputs
+
+    def h(self, x: Array) -> Array:
+        """The reading that `at` predicts : (…, k)"""
+        return self.sensor.h(self._held(x))
+
+    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
+        """h, H and R at `at`."""
+        return self.sensor.linearize(self._held(x))
+
+    def residual(self, z: Array, h: Array) -> Array:
+        """ν = z − h(at), wrapped where it is an angle : (…, k)"""
+        return self.sensor.residual(z, h)
+
+    def sight(self, x: Array, P: Array) -> Any:
+        """What the sensor knows of its reading from where the robot is believed to be."""
+        return self.sensor.sight(x, P)
+
+    def _held(self, x: Array) -> Array:
+        """`at` for every x, of which there may be more than runs: sigma points, particles."""
+        held = self.at.reshape(
+            *self.at.shape[:-1], *(1,) * (x.ndim - self.at.ndim), self.at.shape[-1]
+        )
+        return held if held.shape == x.shape else np.broadcast_to(held, x.shape)

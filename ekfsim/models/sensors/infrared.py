@@ -1,0 +1,69 @@
+"""Infrared light that the first wall sends back, the more the nearer and brighter it is (document
+001, fig. 4).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ekfsim.geometry import Array
+from ekfsim.geometry.walls import Walls
+from ekfsim.models.protocols import Quantity, Sensor
+from ekfsim.models.sensors.laser import Laser, Sighting
+
+COLOURS: dict[str, float] = {  # reflectances; fig. 4 tells that they matter, and prints no numbers
+    "white": 1.0,
+    "yellow": 0.9,
+    "red": 0.8,
+    "grey": 0.6,
+    "blue": 0.5,
+    "green": 0.45,
+    "black": 0.25,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class InfraredBeam(Sensor):
+    """A pair of emitter and receiver that look `bearing` rad from straight ahead, from x = (x, y,
+    θ) in m, m, rad.
+    """
+
+    walls: Walls
+    bearing: float  # rad
+    gain: float  # V per e-fold of the distance, from white
+    offset: float  # V at 1 m, from white
+    reflectance: float  # of the walls, 1 where they are white
+    sigma: float  # V
+    nearest: float = 0.1  # m, more than 0
+    farthest: float = 1.5
+
+    @property
+    def outputs(self) -> tuple[Quantity, ...]:
+        """One intensity."""
+        return (Quantity("intensity", "V"),)
+
+    def h(self, x: Array) -> Array:
+        """I = ρ (offset − gain ln r) : (…, 1) V, nan where no wall stands between `nearest` and
+        `farthest`
+
+        ρ is the reflectance; the almost logarithmic dependency is section IV A's.
+        """
+        return self.linearize(x)[0]
+
+    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
+        """h (…, 1), H (…, 1, 3) and R = σ² (…, 1, 1): ∂I/∂x = −ρ gain/r · ∂r/∂x, with the laser's
+        ∂r/∂x.
+        """
+        r, H_r, _ = self._beam().linearize(x)
+        lit = (r >= self.nearest) & (r <= self.farthest)
+        r = np.where(lit, r, 1.0)
+        intensity = np.where(lit, self.reflectance * (self.offset - self.gain * np.log(r)), np.nan)
+        H = np.where(lit[..., None], -self.reflectance * self.gain / r[..., None] * H_r, 0.0)
+        return intensity, H, np.where(lit, self.sigma**2, np.nan)[..., None]
+
+    def sight(self, x: Array, P: Array) -> Sighting:
+        """Which wall it meets, and whether that is certain; x : (…, 3), P : (…, 3, 3)"""
+        return self._beam().sight(x, P)
+
+    def _beam(self) -> Laser:
+        return Laser(self.walls, self.bearing, 0.0)

@@ -1,0 +1,34 @@
+"""The laser whose noise is taken from what it read: a counter-example to the one in laser.py."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ekfsim.geometry import Array
+from ekfsim.models.protocols import Sensor
+from ekfsim.models.sensors.laser import Laser
+
+
+@dataclass(frozen=True, slots=True)
+class LaserByReading(Laser):
+    """A laser for one reading z, whose C_v is that reading's own."""
+
+    z: Array  # (…, 1) m, nan where there is no echo
+
+    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
+        """h and H as the laser's, and R = C_v = (ratio · z)² : (…, 1, 1)
+
+        x may have an axis more than z, of sigma points or particles. Without an echo there is no z
+        to take it from.
+        """
+        h, H, R = Laser.linearize(self, x)
+        z = self.z if h.ndim == self.z.ndim else self.z[..., None, :]
+        known = ~(np.isnan(h) | np.isnan(z))
+        return h, H, np.where(known[..., None], np.square(self.range_ratio * z)[..., None], R)
+
+
+def by_reading(sensor: Sensor, z: Array) -> Sensor:
+    """The same sensor with its noise by a reading z, where it is a laser; another as it is."""
+    if not isinstance(sensor, Laser):
+        return sensor
+    return LaserByReading(sensor.walls, sensor.bearing, sensor.range_ratio, z)

@@ -1,0 +1,1 @@
+"""Pictures one after another: numbered files, GIF, MP4."""

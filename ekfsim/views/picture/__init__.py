@@ -1,0 +1,1 @@
+"""What is drawn of a run with matplotlib: artists that are made once and moved, axes, frames."""

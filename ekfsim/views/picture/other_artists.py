@@ -1,0 +1,78 @@
+"""What is drawn in one Axes of a filter that watches beside the first: its path, its estimate, its
+ellipse.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from ekfsim.geometry.ellipse import outline
+from ekfsim.views.picture.artists import NOSE, closed, direction
+from ekfsim.views.terminal.playback import View
+
+
+class Style(NamedTuple):
+    """How the artists of one of them are told from the others, without colour too."""
+
+    color: str
+    marker: str
+    dashes: tuple[int, tuple[float, ...]]
+
+
+STYLES = (
+    Style("#8C510A", "s", (0, (5, 1.5))),
+    Style("#6A3D9A", "v", (0, (2, 1))),
+    Style("#C51B7D", "P", (0, (6, 1.5, 1.5, 1.5))),
+    Style("#6B6B00", "h", (0, (1, 1))),
+)
+
+
+class OtherArtists:
+    """One filter that watches beside the first."""
+
+    def __init__(self, axes: Axes, name: str, number: int, probability: float) -> None:
+        """number : of this filter among those beside the first, from 0"""
+        self._probability, self._name = probability, name
+        color, marker, dashes = STYLES[number % len(STYLES)]
+        z = 3.05 + 0.01 * number
+        self.path = axes.add_line(
+            Line2D([], [], color=color, lw=1.0, ls=dashes, zorder=z, gid=f"path-{name}")
+        )
+        self.ellipse = axes.add_line(
+            Line2D([], [], color=color, lw=1.6, ls=dashes, zorder=z, gid=f"ellipse-{name}")
+        )
+        self.heading = axes.add_line(
+            Line2D([], [], color=color, lw=1.6, zorder=4.3, gid=f"heading-{name}")
+        )
+        self.reference = axes.add_line(
+            Line2D(
+                [],
+                [],
+                color=color,
+                ls="none",
+                marker=marker,
+                ms=6.5,
+                mfc="white",
+                mew=1.4,
+                zorder=4.4,
+            )
+        )
+        self.reference.set_gid(f"reference-{name}")
+
+    def show(self, view: View, unit: float) -> None:
+        """Move everything to what this filter believes. unit : m, what the robot's body measures in
+        this Axes
+        """
+        x, P = view.pose
+        self.path.set_data(*view.path().T)
+        self.ellipse.set_data(*closed(outline(x, P[:2, :2], self._probability)).T)
+        self.heading.set_data(*zip(x[:2], x[:2] + NOSE * unit * direction(x[2]), strict=True))
+        self.reference.set_data(x[:1], x[1:2])
+
+    def handles(self) -> Iterator[tuple[Artist, ...]]:
+        """What the legend shows of it."""
+        self.ellipse.set_label(f"{self._name}: estimate, ellipse, path")
+        yield self.ellipse, self.reference

@@ -1,0 +1,214 @@
+"""The two Axes of a picture: the world as a whole, and the surroundings of the estimate."""
+
+import math
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from ekfsim.geometry.ellipse import ellipse
+from ekfsim.models.protocols import Sensor
+from ekfsim.models.sensors.infrared import InfraredBeam
+from ekfsim.models.sensors.laser import Laser
+from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
+from ekfsim.records import Command, Repeat, Sense
+from ekfsim.scene import Scene
+from ekfsim.views.picture.artists import BeamArtists, BeliefArtists, WorldArtists
+from ekfsim.views.picture.limits import Limits
+from ekfsim.views.picture.map_axes import in_metres
+from ekfsim.views.picture.other_artists import OtherArtists
+from ekfsim.views.picture.outlined import OutlinedText
+from ekfsim.views.picture.sight_artists import FixArtists, SightArtists
+from ekfsim.views.picture.sights import Sight, kinds, sight
+from ekfsim.views.terminal.playback import View
+from ekfsim.views.words.beams import Beam, beam, length
+from ekfsim.views.words.captions import away
+
+BODY = 0.022  # of the picture's longer side: the robot's radius
+# of the close-up's width: what the cone and the true heading are measured by there
+CLOSE_BODY = 0.07
+ROOM = 2.6  # major radii across the close-up
+REACH = 3.0  # major radii from the estimate up to which the close-up widens to hold the truth
+CERTAIN = 0.1  # of the picture's longer side: the close-up's width where nothing is uncertain
+NARROWEST = 1e-4  # m
+
+
+def reading(view: View, scene: Scene) -> Beam | Sight | None:
+    """What is drawn of a reading, while it is shown."""
+    return (beam(view.step, scene) or sight(view.step)) if view.beam else None
+
+
+class Main:
+    """World, belief, truth and the reading on one Axes."""
+
+    def __init__(
+        self, axes: Axes, scene: Scene, limits: Limits, probability: float, conditional: bool
+    ) -> None:
+        self._scene = scene
+        self.axes = axes
+        self.world = WorldArtists(axes, scene.world)
+        static = set(axes.get_children())
+        self.belief = BeliefArtists(
+            axes,
+            probability,
+            conditional,
+            _driven(scene),
+            crowd=scene.filter == "pf",
+            true=_true(scene),
+        )
+        self.others = others(axes, scene, probability)
+        self.belief.call(scene.filter if self.others else "")
+        self.beam = BeamArtists(axes)
+        self._sensors = sensors(scene)
+        self.sight = SightArtists(axes, self._sensors)
+        self.fixes = FixArtists(axes, scene)
+        self.moving = [child for child in axes.get_children() if child not in static]
+        axes.set_aspect("equal", adjustable="box")
+        self.limit(limits)
+        in_metres(axes)
+
+    def limit(self, limits: Limits) -> None:
+        """Show this much of the plane, and more to the shape of the Axes."""
+        box = self.axes.get_position(original=True)
+        figure = self.axes.get_figure(root=True)
+        assert figure is not None
+        width, height = figure.get_size_inches()
+        self.limits = limits.shaped(float(box.width * width / (box.height * height)))
+        self.axes.set(
+            xlim=(self.limits.left, self.limits.right), ylim=(self.limits.bottom, self.limits.top)
+        )
+
+    def show(self, view: View, read: Beam | Sight | None) -> None:
+        """Move the artists to a view. read : what is drawn of its reading"""
+        self.belief.show(view, BODY * self.limits.size)
+        for artists, other in zip(self.others, view.others, strict=False):
+            artists.show(other, BODY * self.limits.size)
+        self.beam.show(read if isinstance(read, Beam) else None, 2 * self.limits.size)
+        self.sight.show(read if isinstance(read, Sight) else None)
+        self.fixes.show(view.step.entry)
+
+    def handles(self) -> Iterator[Artist | tuple[Artist, ...]]:
+        """What the legend shows, in its order."""
+        yield from self.belief.handles()
+        for artists in self.others:
+            yield from artists.handles()
+        yield from self.world.handles()
+        yield from self.fixes.handles()
+        if not self._sensors.isdisjoint((Laser, UltrasonicBeam, InfraredBeam)):
+            yield from self.beam.handles()
+        yield from self.sight.handles()
+
+
+class CloseUp:
+    """The surroundings of the estimate, as wide as its ellipse asks for, with a scale bar."""
+
+    def __init__(self, axes: Axes, scene: Scene, probability: float, conditional: bool) -> None:
+        self._probability = probability
+        self.axes = axes
+        self.world = WorldArtists(axes, scene.world)
+        self.belief = BeliefArtists(axes, probability, conditional, _driven(scene), body=False)
+        self.others = others(axes, scene, probability)
+        self.beam = BeamArtists(axes)
+        self.sight = SightArtists(axes)
+        self.fixes = FixArtists(axes, scene)
+        axes.set_aspect("equal", adjustable="box")
+        # square from the first, whatever stands in the world
+        axes.set(xticks=[], yticks=[], xlim=(0, 1), ylim=(0, 1))
+        axes.set_title("close-up of the estimate", fontsize=9, pad=4)
+        self.bar = axes.add_line(
+            Line2D(
+                [],
+                [],
+                color="black",
+                lw=2.5,
+                solid_capstyle="butt",
+                transform=axes.transAxes,
+                zorder=6,
+                gid="scale",
+            )
+        )
+        figure = axes.get_figure(root=True)
+        assert figure is not None
+        systems = axes.transAxes, figure.dpi_scale_trans
+        self.scale = OutlinedText(0.05, 0.07, 8, *systems, "scale-text", halo=True)
+        self.away = OutlinedText(0.05, 0.91, 8, *systems, "truth-away", halo=True)
+        axes.add_artist(self.scale)
+        axes.add_artist(self.away)
+        self.moving = [
+            *(child for child in axes.get_children() if child.get_gid()),
+            *axes.spines.values(),
+        ]
+
+    def show(self, view: View, read: Beam | Sight | None, world: Limits) -> None:
+        """Move there, and show it."""
+        x, truth = view.pose.mean, view.step.entry.truth
+        width = close_width(view, self._probability, CERTAIN * world.size)
+        self.axes.set(
+            xlim=(x[0] - width / 2, x[0] + width / 2), ylim=(x[1] - width / 2, x[1] + width / 2)
+        )
+        self.belief.show(view, CLOSE_BODY * width)
+        for artists, other in zip(self.others, view.others, strict=False):
+            artists.show(other, CLOSE_BODY * width)
+        self.beam.show(read if isinstance(read, Beam) else None, 2 * width)
+        self.sight.show(read if isinstance(read, Sight) else None)
+        self.fixes.show(view.step.entry)
+        bar = one_two_five(width / 6)
+        self.bar.set_data([0.05, 0.05 + bar / width], [0.045, 0.045])
+        self.scale.set_text(length(bar))
+        hidden = truth is not None and float(np.abs(truth[:2] - x[:2]).max()) > width / 2
+        self.away.set_text(away(view.step, view) if hidden else "")
+
+
+def others(axes: Axes, scene: Scene, probability: float) -> list[OtherArtists]:
+    """What is drawn of each filter that watches beside the first."""
+    return [
+        OtherArtists(axes, name, number, probability) for number, name in enumerate(scene.beside)
+    ]
+
+
+def close_width(view: View, probability: float, certain: float) -> float:
+    """How wide the close-up is, in m: 1, 2 or 5 times a power of ten, so that it seldom changes."""
+    radius, truth = float(ellipse(view.pose.covariance, probability).major), view.step.entry.truth
+    if radius == 0:
+        return one_two_five(max(certain, NARROWEST))
+    error = 0.0 if truth is None else math.hypot(*(truth[:2] - view.pose.mean[:2]))
+    held = error if error <= REACH * radius else 0.0
+    return one_two_five(max(ROOM * max(radius, held), NARROWEST))
+
+
+def one_two_five(least: float) -> float:
+    """The smallest 1, 2 or 5 times a power of ten that is not less.
+
+    >>> one_two_five(0.03), one_two_five(0.5), one_two_five(7)
+    (0.05, 0.5, 10.0)
+    """
+    power = math.floor(math.log10(least))
+    return next(v for digit in (1, 2, 5, 10, 20) if (v := float(f"{digit}e{power}")) >= least)
+
+
+def sensors(scene: Scene) -> set[type[Sensor]]:
+    """The kinds of sensors whose readings a run may hold; all that the classroom has where nothing
+    is commanded yet.
+    """
+    if _driven(scene):
+        return kinds(scene)
+    return {Laser} if senses(scene.commands) or not scene.commands else set()
+
+
+def _true(scene: Scene) -> bool:
+    """Whether the truth is known, at one instant at least."""
+    return scene.log is None or any(entry.truth is not None for entry in scene.log.entries)
+
+
+def _driven(scene: Scene) -> bool:
+    """Whether the robot is driven, or was recorded, rather than commanded."""
+    return scene.drive is not None or scene.log is not None
+
+
+def senses(commands: Iterable[Command]) -> bool:
+    """Whether any of the commands, repeated ones included, is a sense."""
+    return any(
+        senses(c.commands) if isinstance(c, Repeat) else isinstance(c, Sense) for c in commands
+    )

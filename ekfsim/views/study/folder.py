@@ -1,0 +1,78 @@
+"""The folder of a study: two tables, three pictures, and all that is needed to repeat it."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from ekfsim.files.results.writing import whole_folder
+from ekfsim.files.scenes.load_study import Request
+from ekfsim.files.scenes.settings import Setting
+from ekfsim.files.source import bytes_of
+from ekfsim.files.yaml.marked import scalar
+from ekfsim.study.plan import Plan, world_of
+from ekfsim.study.results import Result
+from ekfsim.study.tables import write_steps, write_summary
+from ekfsim.version import VERSION
+from ekfsim.views.study.pictures import draw_study
+
+FILES = (
+    *("summary.csv", "steps.csv", "study.yaml", "commands.yaml", "world.yaml"),
+    *("nees.png", "coverage.png", "divergence.png"),
+)
+
+
+def write_study(plan: Plan, results: Sequence[Result], out: Path, force: bool) -> None:
+    """Write the folder, whole or not at all."""
+    with whole_folder(out, *FILES, force=force) as folder:
+        with (folder / "summary.csv").open("w", newline="", encoding="utf-8") as file:
+            write_summary(file, plan, results)
+        with (folder / "steps.csv").open("w", newline="", encoding="utf-8") as file:
+            write_steps(file, plan, results)
+        draw_study(plan, results, folder)
+        write_to_repeat(plan.request, folder / "study.yaml", study_lines(plan))
+
+
+def write_to_repeat(request: Request, file: Path, lines: Iterable[str]) -> None:
+    """Write a study file, and beside it the commands and the world as they were."""
+    world = world_of(request)
+    file.with_name("commands.yaml").write_bytes(bytes_of(request.commands, str(request.commands)))
+    file.with_name("world.yaml").write_bytes(bytes_of(world, str(world)))
+    file.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+
+
+def study_lines(plan: Plan) -> Iterator[str]:
+    """A study file of this study."""
+    request = plan.request
+    yield "# `ekfsim study study.yaml -o FOLDER` makes this study again."
+    yield from first_lines(request, plan.seed)
+    yield f"filters: [{', '.join(plan.filters)}]"
+    if request.sweep:
+        yield "sweep:"
+        for values in request.sweep:
+            yield f"  {values[0].key}: [{', '.join(map(written, values))}]"
+    yield from last_lines(request)
+
+
+def first_lines(request: Request, seed: int) -> Iterator[str]:
+    """Which runs of what."""
+    yield "study: commands.yaml"
+    yield "world: world.yaml"
+    yield f"runs: {request.runs}"
+    yield f"seed: {seed}"
+
+
+def last_lines(request: Request) -> Iterator[str]:
+    """What is set for all cells or for both sides, and how it is calculated."""
+    if request.settings:
+        yield "set:"
+        yield from (f"  {one.key}: {written(one)}" for one in request.settings)
+    yield f"reading: {request.reading}"
+    if request.fast:
+        yield "fast: true"
+    yield f"ekfsim: '{VERSION}'"
+
+
+def written(one: Setting) -> str:
+    """A value as YAML: numbers as they were written, words in quotes."""
+    if isinstance(scalar(one.value), int | float):
+        return one.value
+    return "'" + one.value.replace("'", "''") + "'"

@@ -1,0 +1,264 @@
+"""A view drawn in text, for a terminal over any ssh: what the window shows, in braille dots or in
+plain ASCII.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ekfsim.geometry import Array
+from ekfsim.geometry.ellipse import cone_halfwidth, outline
+from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense
+from ekfsim.scene import Scene
+from ekfsim.views.picture.sights import instants
+from ekfsim.views.terminal.braille import (
+    Bounds,
+    Canvas,
+    Pen,
+    ansi,
+    cells,
+    inside,
+    paint,
+    printable,
+    shorten,
+)
+from ekfsim.views.terminal.playback import View
+from ekfsim.views.terminal.readings import (
+    Item,
+    direction,
+    draw_fix,
+    draw_particles,
+    draw_reading,
+    outcome,
+)
+from ekfsim.world import Landmark, World
+
+WALL = Pen()
+UNKNOWN_WALL = Pen(ascii="%", on=4, off=3)  # stands there, and the filter does not know
+IMAGINED_WALL = Pen(ascii=":", on=1, off=3)  # the filter believes in it
+PATH = Pen(ansi("#56B4E9"), ".", on=1, off=2)
+ELLIPSE = Pen(ansi("#009E73"), "*")
+CONE = Pen(ansi("#009E73"), "'")
+MEANT = Pen(ansi("#777777"), ",", on=1, off=4)  # the way that was meant
+ESTIMATE = Pen("1;" + ansi("#0072B2"))
+TRUTH = Pen("1", "~")  # bright, on a light terminal as on a dark one
+OTHERS = tuple(
+    Pen(ansi(color), ",", on=2, off=1) for color in ("#8C510A", "#6A3D9A", "#C51B7D", "#6B6B00")
+)
+
+ROBOT = np.array([[2.5, 0.0], [-1.5, 1.75], [-1.5, -1.75]])  # cells' widths ahead and to the left
+HEADING = 3.5  # cells' widths from the true position to the end of its heading
+PLAIN = str.maketrans({"°": " deg", "−": "-", "–": "-"})  # for an output that knows ASCII alone
+CROWDED = 300  # landmarks, above which none shows its number
+CONE_LENGTH = 0.25  # of the shorter side of the picture
+
+
+def draw(
+    view: View,
+    scene: Scene,
+    probability: float,
+    size: tuple[int, int],
+    limits: Bounds,
+    colour: bool,
+    ascii: bool = False,
+) -> str:
+    """A view as text of at most `size` columns and rows: a title, the picture, a legend.
+
+    limits : xmin, xmax, ymin, ymax in m, the same for the whole run, so that the picture does not
+    jump ascii : for an output that cannot print braille
+    """
+    columns, rows = max(size[0], 1), max(size[1], 1)
+    canvas = Canvas(columns, max(rows - 2, 1), limits, ascii)
+    step, (mean, P) = view.step, view.pose
+    legend = _draw_world(canvas, scene.world)
+    canvas.polyline(view.path(), PATH)
+    for other, pen in zip(view.others, OTHERS, strict=False):
+        canvas.polyline(other.path(), pen)
+    # over the path, so that their numbers stay whole
+    _draw_landmarks(canvas, scene.world.landmarks)
+    belief = draw_particles(canvas, view) + _draw_uncertainty(canvas, mean, P, probability)
+    legend += draw_fix(canvas, step.entry) + belief
+    legend = _draw_others(canvas, view, scene, probability) + legend
+    if view.beam:
+        legend = draw_reading(canvas, view) + legend
+    legend = _draw_robots(canvas, mean, step.entry.truth) + legend
+    lines = [
+        _title_line(_title(view, scene.world), _scale(limits), columns, ascii),
+        *canvas.render(colour).split("\n"),
+        _legend_line(legend, columns, colour, ascii),
+    ]
+    return "\n".join(lines[:rows])
+
+
+def _draw_others(canvas: Canvas, view: View, scene: Scene, probability: float) -> list[Item]:
+    """The other filters that watch, each with its ellipse and the first letter of its name where it
+    believes to be.
+    """
+    legend = []
+    for name, other, pen in zip(scene.beside, view.others, OTHERS, strict=False):
+        x, P = other.pose
+        if np.isfinite(x).all() and np.isfinite(P).all():
+            canvas.polyline(outline(x[:2], P[:2, :2], probability), pen)
+            canvas.text(x[:2], name[0], pen.colour)
+        legend.append(Item(name[0], name, pen.colour))
+    return legend
+
+
+def _draw_world(canvas: Canvas, world: World) -> list[Item]:
+    """Walls, with their names where there is room; those on one map only, the true one or the
+    filter's, are broken.
+    """
+    true, told = dict(world.map.rings()), dict(world.told.map.rings())
+    both = {
+        name
+        for name, ring in true.items()
+        if ring is told.get(name) or np.array_equal(ring, told.get(name, ()))
+    }
+    unknown = [ring for name, ring in true.items() if name not in both]
+    imagined = [ring for name, ring in told.items() if name not in both]
+    canvas.polygons(imagined, IMAGINED_WALL)
+    canvas.polygons(unknown, UNKNOWN_WALL)
+    canvas.polygons([true[name] for name in both], WALL)
+    for obstacle in world.map.obstacles:
+        name = printable(obstacle.name, canvas.ascii)
+        place = _place(obstacle.points, canvas.cell * np.array([len(name) + 2, 4]))
+        if place is not None and cells(name) == len(name):
+            canvas.text(place, name)
+    legend = [Item("%%" if canvas.ascii else "⠒⠂", "not on its map")] if unknown else []
+    legend += [Item("::" if canvas.ascii else "⠂⠂", "on its map only")] if imagined else []
+    if world.expected_path is not None:
+        canvas.polygons([world.expected_path], MEANT)
+        legend.append(Item(",," if canvas.ascii else "⠂⠐", "meant way", MEANT.colour))
+    return legend
+
+
+def _draw_landmarks(canvas: Canvas, landmarks: Sequence[Landmark]) -> None:
+    """Each landmark with its number, without where that would cover another."""
+    written: list[tuple[float, float, int]] = []
+    for x, y, text in ((mark.x, mark.y, f"#{mark.id}") for mark in landmarks):
+        for x_other, y_other, length in written if len(landmarks) <= CROWDED else ():
+            if (
+                abs(y - y_other) < 2 * canvas.cell
+                and abs(x - x_other) < (len(text) + length + 1) / 2 * canvas.cell
+            ):
+                text = text[:1]
+                break
+        written.append((x, y, len(text)))
+        canvas.text((x, y), text if len(landmarks) <= CROWDED else text[:1])
+
+
+def _place(ring: Array, box: Array) -> Array | None:
+    """The middle of a box : (2,) m inside a polygon : (n, 2) m, near the polygon's own; None where
+    none fits.
+    """
+    low, high = ring.min(axis=0) + box / 2, ring.max(axis=0) - box / 2
+    if np.any(low > high):
+        return None
+    middles = np.stack(np.meshgrid(*np.linspace(low, high, 9).T), axis=-1).reshape(-1, 1, 2)
+    rim = np.array([(x, y) for x in (-0.5, 0, 0.5) for y in (-0.5, 0, 0.5)])
+    x, y = np.moveaxis((middles + rim * box)[..., None, :], -1, 0)
+    (ax, ay), (bx, by) = ring.T, np.roll(ring, -1, axis=0).T
+    with np.errstate(divide="ignore", invalid="ignore"):  # level edges cross nothing
+        crossed = ((ay > y) != (by > y)) & (x < ax + (y - ay) / (by - ay) * (bx - ax))
+    fits = np.all(np.sum(crossed, axis=-1) % 2 == 1, axis=-1)
+    best = np.argmin(
+        np.where(fits, np.linalg.norm(middles[:, 0] - (low + high) / 2, axis=-1), np.inf)
+    )
+    return np.asarray(middles[best, 0]) if fits[best] else None
+
+
+def _draw_uncertainty(canvas: Canvas, mean: Array, P: Array, probability: float) -> list[Item]:
+    """The ellipse of the position and the cone of the heading. mean : (3,), P : (3, 3)"""
+    if not (np.isfinite(mean).all() and np.isfinite(P).all()):
+        return [Item("!", "the belief is no number")]
+    canvas.polyline(outline(mean[:2], P[:2, :2], probability), ELLIPSE)
+    xmin, xmax, ymin, ymax = canvas.bounds
+    length, halfwidth = (
+        CONE_LENGTH * min(xmax - xmin, ymax - ymin),
+        cone_halfwidth(float(P[2, 2]), probability),
+    )
+    if halfwidth < math.pi:
+        for side in (halfwidth, -halfwidth):
+            canvas.polyline([mean[:2], mean[:2] + length * direction(mean[2] + side)], CONE)
+    return [
+        Item(".." if canvas.ascii else "⠄⠠", "path", PATH.colour),
+        Item("*" if canvas.ascii else "⢎⡱", f"{100 * probability:g} % ellipse", ELLIPSE.colour),
+        Item(
+            "'" if canvas.ascii else "⡠⠊",
+            "cone" if halfwidth < math.pi else "any heading",
+            CONE.colour,
+        ),
+    ]
+
+
+def _draw_robots(canvas: Canvas, mean: Array, truth: Array | None) -> list[Item]:
+    """The robot where it is believed to be, and a mark where it is. mean, truth : (3,)"""
+    ahead = direction(mean[2])
+    triangle = mean[:2] + canvas.cell * ROBOT @ np.array([ahead, [-ahead[1], ahead[0]]])
+    if canvas.ascii:
+        quarter = round(mean[2] / (math.pi / 2)) % 4 if math.isfinite(mean[2]) else 0
+        canvas.text(mean[:2], ">^<v"[quarter], ESTIMATE.colour)
+    else:
+        canvas.polygons([triangle], ESTIMATE)
+        canvas.polyline(mean[:2], ESTIMATE)
+    lost = "" if inside(mean[:2], canvas.bounds) else " (outside)"
+    legend = [Item(">" if canvas.ascii else "⡷⠄", "estimate" + lost, ESTIMATE.colour)]
+    if truth is None:
+        return legend
+    canvas.polyline([truth[:2], truth[:2] + HEADING * canvas.cell * direction(truth[2])], TRUTH)
+    canvas.text(truth[:2], "o", TRUTH.colour)
+    lost = "" if inside(truth[:2], canvas.bounds) else " (outside)"
+    return [*legend, Item("o~" if canvas.ascii else "o⠒", "truth" + lost, TRUTH.colour)]
+
+
+def _title(view: View, world: World) -> str:
+    """What the picture shows: the number of the command, and what came of it."""
+    entry, step = view.step.entry, view.step
+    bumped = entry.bump is not None and int(entry.bump) >= 0
+    match entry.command, entry.given:
+        case Move(distance, angle, slip), _:
+            what = f"move {distance:g} m, turn {math.degrees(angle):.4g}°"
+            what += (f", slip {slip:g}" if slip else "") + (
+                ": bumped into a wall" if bumped else ""
+            )
+        case Sense(angle), _:
+            what = f"sense at {math.degrees(angle):.4g}°, {outcome(step, view.beam)}"
+        case Kidnap(), _:
+            what = "the robot is carried away, and the filter is not told"
+        case Say(text), _:
+            what = text
+        case None, Control():
+            what = "a motion input" if view.inputs == 1 else f"{view.inputs} motion inputs"
+        case None, Reading(name=name):
+            what = f"{name}, {outcome(step, view.beam)}"
+        case _:
+            what = f"the start in {world.name}"
+    return f"{entry.index if view.span is None else f't = {instants(*view.span)} s'}: {what}"
+
+
+def _scale(limits: Bounds) -> str:
+    """What the picture covers."""
+    xmin, xmax, ymin, ymax = limits
+    return f"x {xmin:.4g}…{xmax:.4g} m  y {ymin:.4g}…{ymax:.4g} m"
+
+
+def _title_line(title: str, scale: str, columns: int, ascii: bool) -> str:
+    """The title, and the scale at the right where there is room for both."""
+    if ascii:
+        title, scale = title.translate(PLAIN), scale.replace("…", "..")
+    title = printable(title, ascii)
+    gap = columns - cells(title) - cells(scale)
+    return title + " " * gap + scale if gap >= 2 else shorten(title, columns, ascii)
+
+
+def _legend_line(items: list[Item], columns: int, colour: bool, ascii: bool) -> str:
+    """As many items, from the first on, as there is room for."""
+    line, left = "", columns
+    for sample, word, paint_with in items:
+        text = f"{sample} {word}"
+        left -= cells(text) + (2 if line else 0)
+        if left < 0:
+            break
+        line += ("  " if line else "") + (f"{paint(sample, paint_with)} {word}" if colour else text)
+    return line

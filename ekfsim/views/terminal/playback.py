@@ -1,0 +1,167 @@
+"""One press of `n` is one view; `p` is a list index."""
+
+import itertools
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ekfsim.filters.belief import Belief, Gaussian, posed
+from ekfsim.geometry import Array
+from ekfsim.models.layout import Layout
+from ekfsim.records import Control, Move, Reading, Step
+
+GATHERED = 200  # motion inputs of a driven or recorded robot in one view, at most
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """What is on the screen after so many presses of `n`. View 0 is the world before anything
+    happens.
+
+    A reading has two: first the beam, while the estimate is still the old one, then the revised
+    estimate without it. The motion inputs of a driven or recorded robot that follow each other
+    share one, and its step is the last of them.
+    """
+
+    number: int
+    step: Step
+    beam: bool
+    settled: list[Array]  # earlier estimated positions; shared by all views, and only ever grows
+    corners: int  # how many of them lie behind this view
+    inputs: int = 1  # how many steps the view gathers
+    # the belief before the first of them, where more than one may be gathered
+    before: Belief | None = None
+    since: float | None = None  # s, the instant of the first of the steps, as stamped
+    start: float = 0.0  # s, the stamp of the start
+    others: tuple["View", ...] = ()  # the same view as other filters have it, that watch beside
+
+    @property
+    def belief(self) -> Belief:
+        """The belief that is shown: the prior while the beam is, the posterior after."""
+        return self.step.prior if self.beam else self.step.posterior
+
+    @property
+    def layout(self) -> Layout:
+        """What the entries of the estimated state are."""
+        return self.step.layout
+
+    @property
+    def pose(self) -> Gaussian:
+        """What that belief says of the pose, which is drawn : (3,), (3, 3)"""
+        return posed(self.belief, self.layout)
+
+    @property
+    def span(self) -> tuple[float, float] | None:
+        """The first and the last instant of its steps, in s since the start; None where there is no
+        clock.
+        """
+        last = self.step.entry.t
+        return (
+            None
+            if last is None
+            else ((last if self.since is None else self.since) - self.start, last - self.start)
+        )
+
+    def path(self) -> Array:
+        """All estimated positions from the start to the one that is drawn : (n, 2) m"""
+        return np.array([*self.settled[: self.corners], _position(self.belief, self.layout)])
+
+
+def views(steps: Iterable[Step]) -> Iterator[View]:
+    """Every view of a run, in order. Until the next motion the path's last corner moves with each
+    revised estimate.
+    """
+    settled: list[Array] = []
+    number, start = itertools.count(), None
+    for first, step, inputs in _seen(steps):
+        start = first.entry.t or 0.0 if start is None else start
+        before = first.prior if _gathered(first) else None
+        if before is not None or isinstance(step.entry.command, Move):
+            settled.append(_position(first.prior, first.layout))
+        if isinstance(step.entry.given, Reading):
+            yield View(next(number), step, True, settled, len(settled), start=start)
+        yield View(
+            next(number), step, False, settled, len(settled), inputs, before, first.entry.t, start
+        )
+
+
+def together(steps: Iterable[Step], others: Iterable[Iterable[Step]]) -> Iterator[View]:
+    """Every view of a run, with what other filters make of the same entries."""
+    first, *beside = (views(each) for each in (steps, *others))
+    for view, *same in zip(first, *beside, strict=True):
+        yield replace(view, others=tuple(same)) if same else view
+
+
+def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, Step, int]]:
+    """The steps that a view gathers: the first, the last and how many. Those between are not
+    kept.
+    """
+    first: Step | None = None
+    last: Step | None = None
+    inputs = 0
+    for step in steps:
+        gathered = _gathered(step)
+        if first is not None and last is not None and not gathered:
+            yield first, last, inputs
+            first = None
+        if not gathered:
+            yield step, step, 1
+            continue
+        first, last, inputs = (step, step, 1) if first is None else (first, step, inputs + 1)
+        if inputs == GATHERED:
+            yield first, last, inputs
+            first = None
+    if first is not None and last is not None:
+        yield first, last, inputs
+
+
+def _gathered(step: Step) -> bool:
+    """Whether a step shares its view with its neighbours: a motion input that no command asked
+    for.
+    """
+    return step.entry.command is None and isinstance(step.entry.given, Control)
+
+
+def _position(belief: Belief, layout: Layout) -> Array:
+    """The estimated position : (2,) m"""
+    return layout.pose(belief.mean)[:2]
+
+
+class Tally:
+    """Counts the views that steps have, as the steps go by."""
+
+    def __init__(self) -> None:
+        self.views = 0
+        self._inputs = 0  # in the view that is being gathered
+
+    def write(self, step: Step) -> None:
+        """Count the views that this step begins."""
+        self._inputs = self._inputs % GATHERED + 1 if _gathered(step) else 0
+        if self._inputs <= 1:
+            self.views += 2 if isinstance(step.entry.given, Reading) else 1
+
+
+class Playback:
+    """The views of a run by number, computed when first asked for and kept for the way back."""
+
+    def __init__(self, steps: Iterable[Step], others: Iterable[Iterable[Step]] = ()) -> None:
+        self._coming = together(steps, others)
+        self._seen: list[View] = []
+
+    def __iter__(self) -> Iterator[View]:
+        """Every view, from the first to the last."""
+        for number in itertools.count():
+            view = self.view(number)
+            if view is None:
+                return
+            yield view
+
+    def view(self, number: int) -> View | None:
+        """View `number`, or None where the run is over before it."""
+        while len(self._seen) <= number:
+            following = next(self._coming, None)
+            if following is None:
+                return None
+            self._seen.append(following)
+        return self._seen[number]

@@ -1,0 +1,162 @@
+"""What can be said of a beam to a wall: where it ends in the filter's map, and where else it might
+have ended.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+
+from ekfsim.filters.belief import Refused, posed
+from ekfsim.geometry import Array
+from ekfsim.models.sensors.laser import Laser, Sighting
+from ekfsim.records import Reading, Step
+from ekfsim.scene import Scene
+from ekfsim.views.picture.lettering import shortened
+from ekfsim.views.picture.sights import BeamSensor, beam_length
+from ekfsim.views.words.told_beams import elsewhere, others_met
+from ekfsim.world import BOUNDARY, Map
+
+TOUCHING = 1e-9  # of the range: what rounding makes of an end on the wall
+
+
+class Probe(NamedTuple):
+    """A beam from another pose that the filter holds possible, where it meets another wall or
+    none.
+    """
+
+    pose: Array  # (3,) where it starts, in m, and its direction, in rad
+    range: float  # m, nan where it meets no wall
+
+
+@dataclass(frozen=True, slots=True)
+class Beam:
+    """A beam as it is drawn: from the estimate before the update, in the filter's map."""
+
+    pose: Array  # (3,) where it starts, in m, and its direction, in rad
+    measured: float  # m, nan where there was no echo
+    predicted: float  # m, nan where no wall was expected
+    refused: Refused
+    ambiguous: bool
+    grazing: float | None  # rad between beam and wall, where that is little
+    probes: tuple[Probe, ...]
+    # where the first of them starts and what it meets: "from 0.3 m to the left it would meet …"
+    doubt: str
+    # whether the measured end lies in, on or behind a wall rather than in the air before it
+    solid: bool
+    ending: str  # the same in words: "in the air, 4 cm short of desk"
+    reaching: bool = True  # whether the sensor meets a wall however far; an ultrasonic one does not
+
+
+def beam(step: Step, scene: Scene) -> Beam | None:
+    """The beam of a step, None where it is of no sensor that has one."""
+    given, correction, sighting = step.entry.given, step.correction, step.sighting
+    if not isinstance(given, Reading) or correction is None or sighting is None:
+        return None
+    sensor = given.sensor
+    if not isinstance(sensor, BeamSensor):
+        return None
+    pose, wall = (
+        posed(step.prior, scene.world.layout).mean + np.array([0.0, 0.0, sensor.bearing]),
+        int(sighting.wall),
+    )
+    measured, predicted = (
+        beam_length(sensor, float(given.z[0])),
+        beam_length(sensor, float(correction.predicted[0])),
+    )
+    solid, ending = False, ""
+    if not math.isnan(measured):
+        end = pose[:2] + measured * np.array([math.cos(pose[2]), math.sin(pose[2])])
+        name = sensor.walls.name(wall)[0] if wall >= 0 else ""
+        gap = measured - predicted if wall >= 0 and not correction.tangent else math.nan
+        solid, ending = landing(scene.world.told.map, end, gap, name, TOUCHING * measured)
+    return Beam(
+        pose,
+        measured,
+        predicted,
+        Refused(int(correction.refused)),
+        bool(sighting.ambiguous),
+        float(sighting.incidence) if sighting.grazing else None,
+        tuple(astray(sensor, sighting)),
+        doubt(sensor, sighting, posed(step.prior, scene.world.layout).mean)
+        if sighting.ambiguous
+        else "",
+        solid,
+        ending,
+        reaching=isinstance(sensor, Laser),
+    )
+
+
+def landing(floor: Map, end: Array, gap: float, wall: str, tolerance: float) -> tuple[bool, str]:
+    """Whether a beam's end lies in a wall, and where it lies, in words.
+
+    end : (2,) m; gap : m by which the beam is longer than it is expected to be, nan where no wall
+    is expected; wall : the name of the expected one
+    """
+    if abs(gap) <= tolerance:
+        return True, f"on {called(wall)}"
+    point = shapely.Point(end)
+    for obstacle in floor.obstacles:
+        if shapely.Polygon(obstacle.points).contains(point):
+            return True, f"inside {called(obstacle.name)}" + (
+                f", {length(gap)} too far" if gap > 0 else ""
+            )
+    if floor.boundary is not None and not shapely.Polygon(floor.boundary).contains(point):
+        return True, "outside the room" + (f", {length(gap)} too far" if gap > 0 else "")
+    if gap > 0:
+        return True, f"{length(gap)} behind the edge of {called(wall)}"
+    return False, "in the air" + (f", {length(-gap)} short of {called(wall)}" if gap < 0 else "")
+
+
+def astray(sensor: BeamSensor, sighting: Sighting) -> Iterator[Probe]:
+    """The beams from other poses that meet another wall line than the estimate's beam does, or
+    none.
+    """
+    for i in np.flatnonzero(sighting.astray):
+        yield Probe(
+            sighting.probes[i] + np.array([0.0, 0.0, sensor.bearing]),
+            float(sighting.probe_ranges[i]),
+        )
+
+
+def doubt(sensor: BeamSensor, sighting: Sighting, x: Array) -> str:
+    """Why a beam from x (3,) is ambiguous: a pose that disagrees, and what the beam would meet from
+    there.
+    """
+    i = next(others_met(sensor.walls, sighting))
+    place = elsewhere(x, sighting.probes[i]).replace(" degrees", "°")
+    met, expected = (
+        _edge_of(sensor, int(wall)) for wall in (sighting.probe_walls[i], sighting.wall)
+    )
+    return f"from {place} it would meet {met}, not {expected}"
+
+
+def _edge_of(sensor: BeamSensor, wall: int) -> str:
+    if wall < 0:
+        return "no wall"
+    name, edge = sensor.walls.name(wall)
+    return f"{called(name)}, edge {edge + 1}"
+
+
+def called(name: str) -> str:
+    """A wall as it is named in a sentence."""
+    return "the room's wall" if name == BOUNDARY else shortened(name, 24)
+
+
+def length(m: float) -> str:
+    """A length with the unit that suits it.
+
+    >>> length(0.0412), length(12.345), length(0), length(0.00071), length(1234.5)
+    ('4.12 cm', '12.3 m', '0 m', '0.71 mm', '1230 m')
+    """
+    for unit, size in (("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)):
+        if abs(m) >= size:
+            return f"{_three_digits(m / size)} {unit}"
+    return f"{_three_digits(m * 1e3)} mm" if m else "0 m"
+
+
+def _three_digits(value: float) -> str:
+    return f"{float(f'{value:.3g}'):g}" if abs(value) < 1e5 else f"{value:.3g}"

@@ -1,0 +1,213 @@
+"""What is said when a run is over: what was done, how far off it ended, and one plain verdict with
+its evidence.
+"""
+
+import math
+from collections.abc import Sequence
+
+from ekfsim.consistency import BAND, LOST, Evidence, Verdict
+from ekfsim.filters.belief import Refused
+from ekfsim.filters.chi_square import quantile
+from ekfsim.records import Nees
+from ekfsim.scene import Scene
+from ekfsim.summary import Errors, Summary
+from ekfsim.views.words.numbers import number, turn
+from ekfsim.views.words.text_table import aligned
+
+REASONS = {
+    Refused.NO_ECHO: "without an echo",
+    Refused.NO_WALL: "where no wall was predicted",
+    Refused.GUARD: "left out by the guard",
+    Refused.GATE: "refused by the gate",
+}
+
+
+HEAD = ("filter", "updates", "position", "heading", "ΣNIS", "99 % band", "last NEES", "verdict")
+
+
+def conclude(summary: Summary) -> str:
+    """The closing lines, each ended by a newline."""
+    lines = [f"The run is over after {_done(summary)}: {_readings(summary)}", *_errors(summary)]
+    if summary.path.rmse is not None:
+        lines += [f"Distance to the expected path: {_metres(summary.path)}"]
+    return "".join(f"{line}\n" for line in [*lines, f"Verdict: {sentence(summary.evidence)}"])
+
+
+def conclude_all(scene: Scene, summaries: Sequence[Summary], quiet: bool = False) -> str:
+    """The same where several filters watched: side by side, and a verdict on each unless it is to
+    be quiet.
+    """
+    if len(summaries) == 1:
+        return conclude(summaries[0])
+    names, first = (scene.filter, *scene.beside), summaries[0]
+    lines = [
+        f"The run is over after {_done(first)}; {len(names)} filters side by side (RMSE in m, "
+        f"degrees):",
+        *_table(names, summaries),
+    ]
+    told = (
+        f"{name}: {sentence(summary.evidence)}"
+        for name, summary in zip(names, summaries, strict=True)
+    )
+    return "".join(f"{line}\n" for line in (lines if quiet else [*lines, "", *told]))
+
+
+def _table(names: Sequence[str], summaries: Sequence[Summary]) -> list[str]:
+    """A row for each filter, and one for the odometry alone."""
+    rows: list[Sequence[str]] = [HEAD, *map(_row, names, summaries)]
+    first = summaries[0]
+    if first.position.n:
+        reckoned = (
+            _cell(first.reckoned_position.rmse),
+            _cell(first.reckoned_heading.rmse, math.degrees(1)),
+        )
+        rows.append(("odometry alone", "", *reckoned, *[""] * 4))
+    return aligned(rows, 1)
+
+
+def _row(name: str, summary: Summary) -> tuple[str, ...]:
+    evidence, last = summary.evidence, summary.evidence.last_nees
+    low, high = evidence.nis_band
+    known = evidence.nis_dof > 0
+    nees = (
+        "-"
+        if last is None
+        else "impossible"
+        if last.impossible
+        else f"{float(last.value):.3g} ({int(last.dof)})"
+    )
+    return (
+        name,
+        f"{summary.updates} of {summary.readings}",
+        _cell(summary.position.rmse),
+        _cell(summary.heading.rmse, math.degrees(1)),
+        f"{evidence.nis_sum:.3g}" if known else "-",
+        f"{low:.3g} to {high:.3g}" if known else "-",
+        nees,
+        evidence.verdict.value,
+    )
+
+
+def _cell(value: float | None, scale: float = 1.0) -> str:
+    """A number of the table; a dash where it is unknown."""
+    return "-" if value is None else f"{scale * value:.3g}"
+
+
+def _done(summary: Summary) -> str:
+    """What was done: commands obeyed one by one, or a clock's time of motion inputs and
+    readings.
+    """
+    if summary.duration is None:
+        return _count(summary.steps, "command")
+    given = f"{_count(summary.inputs, 'motion input')} and {_count(summary.readings, 'reading')}"
+    return f"{given} over {number(summary.duration)} s"
+
+
+def _errors(summary: Summary) -> list[str]:
+    """How far off the filter was, and how far off it would have been without readings."""
+    if not summary.position.n:
+        return []
+    if summary.position.rmse is None or summary.heading.rmse is None:
+        return ["The errors are unknown: the estimate is no number"]
+    alone = "by odometry alone" if summary.duration is None else "by the motion inputs alone"
+    return [
+        f"Position error: {_metres(summary.position)}; {alone} "
+        f"{_metres(summary.reckoned_position)}",
+        f"Heading error: {_degrees(summary.heading)}; {alone} {_degrees(summary.reckoned_heading)}",
+    ]
+
+
+def sentence(evidence: Evidence) -> str:
+    """The verdict on one run and its evidence."""
+    verdict = evidence.verdict
+    match verdict:
+        case Verdict.LOST:
+            assert evidence.last_nees is not None
+            return (
+                f"{verdict.value} from step {evidence.lost_from} on: at the last step "
+                f"{_nees(evidence.last_nees)}"
+            )
+        case Verdict.NO_EVIDENCE:
+            return f"{verdict.value}: not one reading could be held against a prediction"
+        case Verdict.CONSISTENT:
+            return f"{verdict.value}: {_nis(evidence, 'within')}{_also(evidence)}"
+        case Verdict.OVER_CONFIDENT:
+            return (
+                f"{verdict.value}: {_nis(evidence, 'above')}: the filter trusts itself more "
+                f"than its readings allow"
+            )
+        case Verdict.OVER_CAUTIOUS:
+            return (
+                f"{verdict.value}: {_nis(evidence, 'below')}: the filter trusts itself less "
+                f"than it could"
+            )
+
+
+def _nis(evidence: Evidence, side: str) -> str:
+    low, high = evidence.nis_band
+    refused = f" ({evidence.nis_refused} of them refused)" if evidence.nis_refused else ""
+    readings = (
+        "1 reading is"
+        if evidence.nis_readings == 1
+        else f"{evidence.nis_readings} readings{refused} sums to"
+    )
+    mean = (
+        ""
+        if evidence.nis_dof == 1
+        else f" ({evidence.nis_sum / evidence.nis_dof:.3g} per number read)"
+    )
+    freedom = (
+        ""
+        if evidence.nis_dof == evidence.nis_readings
+        else f" ({_count(evidence.nis_dof, 'degree')} of freedom)"
+    )
+    return (
+        f"the NIS of {readings} {number(evidence.nis_sum)}{mean}, {side} the {100 * BAND:.0f} % "
+        f"band "
+        f"{number(low)} to {number(high)}{freedom}"
+    )
+
+
+def _also(evidence: Evidence) -> str:
+    return "" if evidence.last_nees is None else f"; at the last step {_nees(evidence.last_nees)}"
+
+
+def _nees(measured: Nees) -> str:
+    if measured.impossible:
+        return (
+            "the belief is impossible: the error has a part where the covariance claims certainty"
+        )
+    dof = int(measured.dof)
+    bound = quantile(LOST, dof)
+    side = "beyond" if measured.value > bound else "below"
+    return (
+        f"NEES is {number(float(measured.value))}, {side} its {100 * LOST:.1f} % bound "
+        f"{number(bound)} "
+        f"({_count(dof, 'degree')} of freedom)"
+    )
+
+
+def _readings(summary: Summary) -> str:
+    refused = ", ".join(f"{n} {REASONS[reason]}" for reason, n in sorted(summary.refused.items()))
+    told = (
+        f"; {_count(sum(summary.refused.values()), 'reading')} not used ({refused})"
+        if refused
+        else ""
+    )
+    return f"{_count(summary.updates, 'update')}{told}"
+
+
+def _metres(errors: Errors) -> str:
+    if errors.rmse is None:
+        return "unknown"
+    return f"RMSE {number(errors.rmse)} m, at most {number(errors.largest)} m"
+
+
+def _degrees(errors: Errors) -> str:
+    if errors.rmse is None:
+        return "unknown"
+    return f"RMSE {turn(errors.rmse)} degrees, at most {turn(errors.largest)} degrees"
+
+
+def _count(n: int, thing: str) -> str:
+    return f"{n} {thing}" if n == 1 else f"{n} {thing}s"

@@ -1,0 +1,172 @@
+"""The narrative: every number is read from the Step, every line is the assignment's or says what it
+leaves out.
+"""
+
+import math
+
+from ekfsim.filters.belief import Correction, Refused
+from ekfsim.printable import shown
+from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense, Step
+from ekfsim.scene import Scene
+from ekfsim.views.terminal.playback import View
+from ekfsim.views.words import driven as driven_narrative
+from ekfsim.views.words.driven import REFUSED
+from ekfsim.views.words.long_form import SHORT, Form, LongForm
+from ekfsim.views.words.numbers import fill, fill_vector, fine, matrix, number, pose, turn
+from ekfsim.views.words.opening import opening, plain
+from ekfsim.views.words.told_beams import doubts, expected_wall
+from ekfsim.views.words.uncertainty import crowd, judged, rest, surprise, uncertainty
+
+DERIVATIVES = "  dh/dx = %.6g, dh/dy = %.6g, dh/dth = %.6g\n"
+INNOVATION = "The innovation is %.6g, its standard deviation %.6g; NIS is %.6g"
+CERTAIN = "The innovation is %.6g; nothing is uncertain, so NIS is undefined and the gain is 0"
+GAIN = "The Kalman gain is (x, y, th) = (%.6g, %.6g, %.6g)"
+
+
+def narrate(view: View, scene: Scene, probability: float = 0.954, explain: bool = False) -> str:
+    """What is said at one press of `n`; every line ends in a newline. explain : in the long form
+
+    A sense has two views: the beam, with the text down to the range, and the revised estimate, with
+    the rest.
+    """
+    step, form = view.step, LongForm.of(scene) if explain else SHORT
+    match step.entry.command, step.entry.given:
+        case Move() as move, _:
+            text = _move(view, move, scene, probability, form)
+        case Sense(angle), _:
+            text = (
+                _beam(step, angle, scene, form) if view.beam else _update(view, probability, form)
+            )
+        case Kidnap(x, y, theta), _:
+            text = (
+                f"==>The robot was carried away to (x, y, th) = {pose((x, y, theta))}; the filter "
+                f"was not told\n" + judged(step, view.pose, probability)
+            )
+        case Say(said), _:
+            text = f"==>{plain(said)}\n"
+        case _, Control():
+            text = driven_narrative.moved(view, probability, form)
+        case _, Reading():
+            guarded = scene.guard != "off"
+            text = (
+                driven_narrative.read(view, guarded, form)
+                if view.beam
+                else driven_narrative.revised(view, probability, form)
+            )
+        case _:
+            text = opening(scene) + form.words + _start(view, scene, probability)
+    return shown(f"{text}\n")
+
+
+def _start(view: View, scene: Scene, probability: float) -> str:
+    if not scene.commanded:
+        return driven_narrative.started(view, probability)
+    x, P = view.belief
+    return (
+        f"First state estimate is (x, y, theta) = {pose(x.tolist())}\n"
+        f"First state covariance matrix is:\n{matrix(P)}\n"
+        + _truth(view.step)
+        + uncertainty(view.pose, probability)
+        + judged(view.step, view.pose, probability)
+    )
+
+
+def _move(view: View, move: Move, scene: Scene, probability: float, form: Form) -> str:
+    step = view.step
+    assert isinstance(step.entry.given, Control)
+    slip = f", slip={number(move.slip)}" if move.slip else ""
+    d, a = step.entry.given.u.tolist()
+    x, P = step.posterior
+    return (
+        f"==>The robot moved: distance={fine(move.distance)}, angle={turn(move.angle)}{slip}\n"
+        + _bump(step, scene)
+        + f"The odometry measured: distance={fine(d)}, angle={turn(a)}\n"
+        + form.carried(view)
+        + f"Current state estimate is (x, y, th) = {pose(step.prior.mean.tolist())}\n"
+        + f"New state estimate is (x, y, theta) = {pose(x.tolist())}{form.by('state')}\n"
+        + f"New state covariance matrix is:{form.by('covariance')}\n{matrix(P)}\n"
+        + _truth(step)
+        + uncertainty(view.pose, probability)
+        + judged(step, view.pose, probability)
+    )
+
+
+def _bump(step: Step, scene: Scene) -> str:
+    bump = step.entry.bump
+    if bump is None or bump < 0:
+        return ""
+    name, edge = scene.world.map.walls.name(int(bump))
+    return (
+        f"It bumped into edge {edge + 1} of {name} and stopped short of it; the filter was not "
+        f"told\n"
+    )
+
+
+def _beam(step: Step, angle: float, scene: Scene, form: Form) -> str:
+    assert isinstance(step.entry.given, Reading)
+    z, guarded = float(step.entry.given.z[0]), scene.guard != "off"
+    return (
+        f"==>Commanding the robot to sense at an angle of {turn(angle)}\n"
+        + doubts(step, guarded)
+        + (form.doubted(step) if guarded else "")
+        + (
+            "There is no echo: the beam met no wall\n"
+            if math.isnan(z)
+            else f"The range is {fine(z)}\n"
+        )
+    )
+
+
+def _update(view: View, probability: float, form: Form) -> str:
+    step = view.step
+    c, (x, P) = step.correction, step.posterior
+    assert c is not None
+    used = c.refused == Refused.NOT
+    by = (form if used else SHORT).by
+    return (
+        _expected(step, c, form)
+        + _innovation(c, form)
+        + REFUSED[Refused(int(c.refused))]
+        + (
+            crowd(step.posterior) or f"{fill_vector(GAIN, *c.K[:, 0].tolist())}{by('gain')}\n"
+            if used
+            else ""
+        )
+        + rest(c)
+        + f"Revised state estimate: (x, y, theta) = {pose(x.tolist())}{by('revised')}\n"
+        + f"Revised covariance matrix is:{by('revised_covariance')}\n{matrix(P)}"
+        + uncertainty(view.pose, probability)
+        + judged(step, view.pose, probability)
+    )
+
+
+def _expected(step: Step, c: Correction, form: Form) -> str:
+    h = float(c.predicted[0])
+    if math.isnan(h) or step.sighting is None:
+        return "No range was predicted: no wall of the filter's map lies that way\n"
+    return (
+        f"The predicted range was {fine(h)}{form.by('predicted')}\n"
+        + expected_wall(step)
+        + form.expected(step)
+        + f"The derivatives are:{form.by('derivatives')}\n"
+        + fill_vector(DERIVATIVES, *c.H[0].tolist())
+        + form.noise(c)
+    )
+
+
+def _innovation(c: Correction, form: Form) -> str:
+    ν, S, nis = float(c.innovation[0]), float(c.S[0, 0]), float(c.nis)
+    if math.isnan(ν):
+        return ""
+    if math.isnan(nis):
+        return f"{fill(CERTAIN, ν)}{form.by('innovation')}\n"
+    told = f"{fill(INNOVATION, ν, math.sqrt(S), nis)}{form.by('innovation')}\n"
+    return told + surprise("NIS", nis, len(c.innovation))
+
+
+def _truth(step: Step) -> str:
+    return (
+        ""
+        if step.entry.truth is None
+        else f"True state is (x, y, th) = {pose(step.entry.truth.tolist())}\n"
+    )

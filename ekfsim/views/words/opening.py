@@ -1,0 +1,109 @@
+"""The head of a narrative: what is run, and the numbers that all others come from, as they are and
+as they are told.
+"""
+
+from collections.abc import Iterator
+from dataclasses import fields
+from typing import Any
+
+from ekfsim.filters import FILTERS
+from ekfsim.filters.pf import PF
+from ekfsim.provenance import told_in_a_line
+from ekfsim.scene import Scene
+from ekfsim.views.words.numbers import number, pose
+from ekfsim.world import Noise
+
+RATIOS = {  # as the files call them
+    "execution_distance": "executionDstSigmaRatio",
+    "execution_angle": "executionAngSigmaRatio",
+    "odometry_distance": "odometryDstSigmaRatio",
+    "odometry_angle": "odometryAngSigmaRatio",
+    "range": "rangeSigmaRatio",
+}
+LINEARISED = ("kf", "kf-nominal", "ekf", "iekf")
+PERFECT = (
+    "The filter is told that the range has no noise: each beam leaves no doubt along its "
+    "derivatives, which hold for "
+    "the estimate alone, so that it may soon claim certainty where it errs"
+)
+
+
+def opening(scene: Scene) -> str:
+    """What is run, the noise and the start, and what should be known of the filter and of the
+    document's reading.
+    """
+    told = [told_in_a_line(scene), *filter(None, [plain(scene.description)]), "", *_numbers(scene)]
+    if remark := FILTERS[scene.filter].remark:
+        told.append(f"The filter {scene.filter}: {remark}")
+    if FILTERS[scene.filter] is PF:
+        told.append(f"The filter {scene.filter}: {scene.tuning.particles} particles")
+    if scene.world.perfect_beam and scene.filter in LINEARISED:
+        told.append(PERFECT)
+    if scene.reading != "corrected":
+        told.append(_followed(scene))
+    return "".join(f"{line}\n" for line in told)
+
+
+def plain(text: str) -> str:
+    r"""A text in plain lines, all but the first indented: none is taken for a line of ours.
+
+    >>> print(plain("Look!\n==>The robot moved"))
+    Look!
+       ==>The robot moved
+    """
+    return "\n   ".join(text.strip().splitlines())
+
+
+def _numbers(scene: Scene) -> Iterator[str]:
+    """Noise and start as they are, where that is known, and where the filter is told otherwise, as
+    it is told.
+    """
+    world, simulated = scene.world, scene.log is None
+    if world.robot is None:
+        yield from _both("The noise ratios", world.noise, world.told.noise, simulated)
+    else:
+        yield "The numbers of robot and sensors are in m, s, rad and V"
+        yield from _both(f"The robot ({world.system})", world.robot, world.told_robot, simulated)
+        for true, told in zip(world.instruments, world.told_instruments, strict=True):
+            yield from _both(f"Sensor {true.name}", true, told, simulated)
+    if simulated:
+        about = ""
+        if world.start_sigma.any():
+            about = (
+                f", each run about it with the standard deviations "
+                f"{pose(world.start_sigma.tolist())}"
+            )
+        yield f"The robot starts at (x, y, th) = {pose(world.start.tolist())}{about}"
+
+
+def _both(what: str, true: Any, told: Any, known: bool) -> Iterator[str]:
+    """Numbers of a record as they are, and those of them that the filter is told otherwise."""
+    other = _values(told)
+    if known:
+        yield f"{what}: {_listed(_values(true))}"
+        other = {name: value for name, value in other.items() if value != _values(true).get(name)}
+    if other:
+        yield f"{what}, as the filter is told: {_listed(other)}"
+
+
+def _values(record: Any) -> dict[str, float]:
+    """The numbers of a record by the names that people know."""
+    named = {
+        RATIOS[f.name] if isinstance(record, Noise) else f.name: getattr(record, f.name)
+        for f in fields(record)
+    }
+    return {name: value for name, value in named.items() if isinstance(value, int | float)}
+
+
+def _listed(values: dict[str, float]) -> str:
+    return ", ".join(f"{name}={number(value)}" for name, value in values.items())
+
+
+def _followed(scene: Scene) -> str:
+    """What a reading of the document changes in a run of this robot and its instruments."""
+    if scene.world.follows(scene.reading):
+        return f"The equations are those of the document as {scene.reading}, not the corrected ones"
+    return (
+        f"Of the equations that this run uses none is {scene.reading} otherwise: they are the "
+        f"corrected ones"
+    )

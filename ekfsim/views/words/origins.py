@@ -1,0 +1,127 @@
+"""Whence the numbers of each filter come: the equation, or what stands for it."""
+
+import re
+from dataclasses import dataclass, replace
+
+from ekfsim.filters import FILTERS, protocol
+from ekfsim.filters.ekf import EKF
+from ekfsim.filters.iekf import IEKF
+from ekfsim.filters.kf import KF
+from ekfsim.filters.nominal import NominalKF
+from ekfsim.filters.pf import PF
+from ekfsim.filters.ukf import UKF
+from ekfsim.filters.ukf_augmented import AugmentedUKF
+from ekfsim.localization import by_listing
+from ekfsim.scene import Scene
+
+ASSIGNMENT = {"F": "J_x", "G": "J_u", "M": "P_u", "H": "J_H", "R": "C_v"}  # its names of them
+
+
+@dataclass(frozen=True)
+class Origins:
+    """The words behind each number. `eq 4` is the assignment's, told in the classroom alone."""
+
+    state: str = "eq 4: f(x, u)"
+    covariance: str = "eq 7: F P F' + G M G' + Q"
+    jacobians: str = "eqs 5, 6"
+    predicted: str = "eq 8: h(x)"
+    derivatives: str = "eq 11: H"
+    innovation: str = "eq 9: r = z - h"
+    range_noise: str = "(rangeSigmaRatio * predicted range)^2"  # C_v, in the classroom
+    S: str = "eq 11: H P H' + R"
+    gain: str = "eq 11: P H' S^-1"
+    revised: str = "eq 10: x + K r"
+    revised_covariance: str = "eq 12: (I - K H) P"
+    linear: bool = True  # F P F' is what a motion makes of P
+
+
+def _tangents(at: str) -> Origins:
+    """Of a filter that knows f and h by their tangents at a state x0 that is known beforehand."""
+    return Origins(
+        state=f"f(x0, u) + F (x - x0), x0 {at}",
+        jacobians=f"at x0, {at}",
+        predicted=f"h(x0) + H (x - x0), x0 {at}",
+        derivatives="H at x0",
+        range_noise="(rangeSigmaRatio * range from x0)^2",
+    )
+
+
+SIGMA_POINTS = Origins(
+    state="the mean of the sigma points, moved",
+    covariance="the spread of the sigma points, moved, + G M G' + Q",
+    jacobians="at the state before",
+    predicted="the mean of the sigma points' readings",
+    derivatives="what stands for them: P_zx P^-1 of the sigma points",
+    range_noise="(rangeSigmaRatio * range from the state before)^2",
+    S="the spread of the sigma points' readings + R",
+    gain="P_xz S^-1 of the sigma points",
+    revised_covariance="P - K S K'",
+    linear=False,
+)
+
+BY_FILTER: dict[type[protocol.Filter], Origins] = {
+    EKF: Origins(),
+    KF: _tangents("the first state estimate"),
+    NominalKF: _tangents("on the nominal trajectory"),
+    IEKF: Origins(
+        derivatives="H where its iterations ended",
+        S="eq 11: H P H' + R, H at the state before",
+        gain="P H' (H P H' + R)^-1 with H where its iterations ended",
+        revised="eq 10: x + K r, iterated",
+    ),
+    UKF: SIGMA_POINTS,
+    AugmentedUKF: replace(
+        SIGMA_POINTS,
+        covariance="the spread of the sigma points, which hold the noise of M and Q, moved",
+        jacobians="",
+        S="the spread of the sigma points' readings, which hold the noise of R",
+    ),
+    PF: Origins(
+        state="the mean of the particles, each moved with a noise of its own",
+        covariance="the spread of the particles",
+        jacobians="",
+        predicted="the mean of the particles' readings",
+        derivatives="what stands for them: P_zx P^-1 of the particles",
+        range_noise="the mean of each particle's (rangeSigmaRatio * range)^2",
+        S="the spread of the particles' readings + R",
+        revised="the mean of the particles",
+        revised_covariance="the spread of the particles",
+        linear=False,
+    ),
+}
+A_FILE = Origins(
+    state="as the filter's file has it",
+    covariance="as the filter's file has it",
+    revised="as the filter's file has it",
+    revised_covariance="as the filter's file has it",
+)
+
+
+def origins(scene: Scene) -> Origins:
+    """Those of the filter that watches."""
+    kind = FILTERS.get(scene.filter)
+    own = A_FILE if kind is None else BY_FILTER.get(kind, A_FILE)
+    if by_listing(scene):
+        before = "where the robot stood before the last motion"
+        own = replace(own, predicted=f"h(x), x {before}", derivatives=f"H {before}")
+    if scene.tuning.range_variance == "reading":
+        own = replace(own, range_noise="(rangeSigmaRatio * range)^2")
+    if scene.tuning.cross_covariances == "dropped":
+        dropped = "; then sigma_xtheta and sigma_ytheta are set to 0"
+        P, revised = own.covariance + dropped, own.revised_covariance + dropped
+        own = replace(own, covariance=P, revised_covariance=revised)
+    return own
+
+
+def named(text: str, classroom: bool) -> str:
+    """The words in the assignment's names; elsewhere without the numbers of its equations.
+
+    >>> named("eq 7: F P F' + G M G' + Q", True)
+    "eq 7: J_x P J_x' + J_u P_u J_u'"
+    >>> named("eq 7: F P F' + G M G' + Q", False), named("eqs 5, 6", False)
+    ("F P F' + G M G' + Q", '')
+    """
+    if classroom:
+        words = text.replace(" + Q", "").replace(" S^-1", " / S")
+        return re.sub(r"\b[FGMHR]\b", lambda symbol: ASSIGNMENT[symbol[0]], words)
+    return re.sub(r"^eqs? [\d, ]+(: |$)", "", text)

@@ -1,0 +1,87 @@
+"""What is said of a belief: how uncertain it is, and how it stands beside the truth."""
+
+import numpy as np
+
+from ekfsim.consistency import SURPRISING, inside_cone, inside_ellipse
+from ekfsim.filters.belief import Belief, Correction, Gaussian, Particles
+from ekfsim.filters.chi_square import quantile
+from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse
+from ekfsim.records import Nees, Step
+from ekfsim.views.words.numbers import fine, heading, number, turn
+
+
+def uncertainty(pose: Gaussian, probability: float) -> str:
+    """The ellipse of the position and the cone of the heading."""
+    drawn, factor = ellipse(pose.covariance, probability), cone_factor(probability)
+    halfwidth = cone_halfwidth(float(pose.covariance[2, 2]), probability)
+    return (
+        "Uncertainty ellipse is:\n"
+        f"  minor radius is {fine(float(drawn.minor))}\n"
+        f"  major radius is {fine(float(drawn.major))}\n"
+        f"  orientation is {heading(float(drawn.orientation))} degrees\n"
+        f"  {factor:.4g}*sigma_theta is {turn(halfwidth)} degrees\n"
+    )
+
+
+def judged(step: Step, pose: Gaussian, probability: float) -> str:
+    """The belief of the pose after a step held against the truth, where the truth is known."""
+    if step.entry.truth is None or step.nees is None:
+        return ""
+    ellipse_side = "inside" if inside_ellipse(pose, step.entry.truth, probability) else "outside"
+    cone_side = "inside" if inside_cone(pose, step.entry.truth, probability) else "outside"
+    told = (
+        f"The true position lies {ellipse_side} the ellipse, the true heading {cone_side} the "
+        f"cone; "
+    )
+    return told + _nees(step.nees)
+
+
+def _nees(measured: Nees) -> str:
+    if measured.impossible:
+        return (
+            "the belief is impossible: the error has a part where the covariance claims certainty\n"
+        )
+    value, dof = float(measured.value), int(measured.dof)
+    told = f"NEES is {number(value)} ({dof} {'degree' if dof == 1 else 'degrees'} of freedom)\n"
+    return told + (surprise("NEES", value, dof) if dof else "")
+
+
+def surprise(name: str, value: float, dof: int) -> str:
+    """A line of its own for a single value above its 99 % quantile. A small one is none: 0 is the
+    mode of χ²₁.
+    """
+    limit = quantile(SURPRISING, dof)
+    if value <= limit:
+        return ""
+    return f"{name} lies above its {100 * SURPRISING:.0f} % quantile, {number(limit)}\n"
+
+
+def rest(c: Correction) -> str:
+    """A line of its own where the search of an iterated filter was cut off; all others need
+    none.
+    """
+    if c.settled:
+        return ""
+    return (
+        "The search for the most probable state did not settle: where it was cut off stands "
+        "for the end of it\n"
+    )
+
+
+def crowd(belief: Belief) -> str:
+    """How many of the particles count, where the belief is a crowd: 1/Σ wᵢ² alike ones say as
+    much.
+    """
+    if not isinstance(belief, Particles):
+        return ""
+    weights = belief.weights
+    if np.all(weights == weights[0]):
+        return (
+            f"The particles were weighed by the reading, and {len(weights)} alike ones drawn "
+            f"anew by their weights\n"
+        )
+    alike = 1 / float(np.sum(weights**2))
+    return (
+        f"The particles were weighed by the reading; the {len(weights)} say as much as "
+        f"{alike:.0f} alike\n"
+    )

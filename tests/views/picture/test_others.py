@@ -1,0 +1,125 @@
+"""Filters that watch beside the first are drawn beside it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from numpy.testing import assert_allclose
+from scenes import DESK, scene
+
+from ekfsim.geometry.ellipse import outline
+from ekfsim.localization import play
+from ekfsim.records import Move, Sense
+from ekfsim.views.picture import limits
+from ekfsim.views.picture.frames import Picture
+from ekfsim.views.picture.other_artists import STYLES
+from ekfsim.views.terminal import drawing as terminal
+from ekfsim.views.terminal.playback import Playback, together, views
+
+COURSE = (Move(2.0, 0.9), Sense(0.3), Move(1.5, -0.7), Sense(-0.8))
+RUN = replace(
+    scene(*COURSE, sigma=(0.2, 0.1, 0.3), obstacles=(DESK,), gate=0.999),
+    filter="ekf",
+    beside=("ukf", "kf", "iekf", "pf"),
+)
+EVERY = list(together(play(RUN), [play(one) for one in RUN.alone()[1:]]))
+
+
+def picture(run):
+    figure = Figure(figsize=(9, 7), dpi=100)
+    FigureCanvasAgg(figure)
+    return Picture(figure, run, limits.of_all(run, map(play, run.alone())))
+
+
+def artist(axes, gid):
+    (found,) = [child for child in axes.get_children() if child.get_gid() == gid]
+    return found
+
+
+def test_each_view_holds_what_every_filter_makes_of_the_same_entries():
+    for number, one in enumerate(RUN.alone()[1:]):
+        for view, expected in zip(EVERY, views(play(one)), strict=True):
+            other = view.others[number]
+            assert (other.number, other.beam, other.step.entry.index) == (
+                view.number,
+                view.beam,
+                view.step.entry.index,
+            )
+            assert_allclose(other.pose.mean, expected.pose.mean)
+            assert_allclose(other.path(), expected.path())
+    assert [view.others for view in together(play(RUN), [])] == [()] * len(EVERY)
+    assert len(Playback(play(RUN), others=[play(RUN.alone()[1])]).view(3).others) == 1
+
+
+@pytest.mark.parametrize("view", EVERY, ids=lambda view: f"view {view.number}")
+def test_estimate_path_and_ellipse_of_each_are_drawn_in_both_axes(view):
+    made = picture(RUN)
+    made.show(view)
+    for axes in (made.main.axes, made.close.axes):
+        for name, other in zip(RUN.beside, view.others, strict=True):
+            x, P = other.pose
+            assert_allclose(artist(axes, f"reference-{name}").get_xydata(), [x[:2]])
+            assert_allclose(artist(axes, f"path-{name}").get_xydata(), other.path())
+            assert_allclose(
+                artist(axes, f"ellipse-{name}").get_xydata()[:-1], outline(x, P[:2, :2], 0.954)
+            )
+            along = np.diff(artist(axes, f"heading-{name}").get_xydata(), axis=0)[0]
+            assert np.arctan2(along[1], along[0]) == pytest.approx(x[2])
+
+
+def test_the_legend_names_every_filter():
+    words = [text.get_text() for text in picture(RUN).legend.get_texts()]
+    assert words[0] == "ekf: estimate"
+    assert [word for word in words if "ellipse, path" in word] == [
+        f"{n}: estimate, ellipse, path" for n in RUN.beside
+    ]
+    assert "estimate" in [
+        text.get_text() for text in picture(replace(RUN, beside=())).legend.get_texts()
+    ]
+
+
+def test_none_is_told_from_another_by_colour_alone():
+    assert (
+        len({style.marker for style in STYLES})
+        == len({style.dashes for style in STYLES})
+        == len(STYLES)
+    )
+    assert len({style.color for style in STYLES}) == len(STYLES)
+
+
+def test_what_moves_is_drawn_anew():
+    made = picture(RUN)
+    moving = {child.get_gid() for child in made.moving()}
+    assert {
+        f"{part}-{name}"
+        for part in ("path", "ellipse", "heading", "reference")
+        for name in RUN.beside
+    } <= moving
+
+
+def test_the_limits_hold_every_estimate():
+    told = replace(RUN.world.told, start=RUN.world.told.start + np.array([40.0, 0, 0]))
+    far = replace(
+        EVERY[-1], others=tuple(views(play(replace(RUN, world=replace(RUN.world, told=told)))))[:1]
+    )
+    extent = limits.of(RUN, play(RUN))
+    assert not extent.hold(far.others[0].path())
+    assert limits.including(extent, far).hold(far.others[0].path())
+    both = limits.of_all(RUN, [play(RUN), play(replace(RUN, world=replace(RUN.world, told=told)))])
+    assert both.hold(far.others[0].path())
+
+
+def test_the_terminal_shows_the_first_letter_of_each():
+    run = replace(RUN, beside=("ukf", "kf"))
+    view = list(together(play(run), [play(one) for one in run.alone()[1:]]))[-1]
+    box = (
+        view.pose.mean[0] - 0.6,
+        view.pose.mean[0] + 0.6,
+        view.pose.mean[1] - 0.4,
+        view.pose.mean[1] + 0.4,
+    )
+    text = terminal.draw(view, run, 0.954, (100, 40), box, False, True)
+    assert "u ukf  k kf" in text.splitlines()[-1]
+    assert "u" in "".join(text.splitlines()[1:-1])
