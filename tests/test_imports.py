@@ -16,29 +16,51 @@ MODULES = {
     if "_packaged" not in path.parts
 }
 ROOMS = (  # each imports only from those above it, and from its own
-    {"errors", "printable", "seeds", "version"},
+    {"errors", "printable", "seeds", "version", "twins"},
     {"geometry"},
+    {"raycast"},
     {"models"},
     {"filters"},
     {"systems"},
     {"world"},
+    {"commands"},
     {"records"},
     {"scene"},
-    {"consistency"},
+    {"consistency", "diagnostics"},
     {"summary", "provenance"},
     {"files"},
     {"simulation"},
     {"localization"},
     {"study"},
+    {"fast"},
     {"views"},
     {"figures"},
     {"process", "options"},
     {"progress", "asked"},
     {"cli", "ekfsim"},
 )
-CORE = {"geometry", "models", "filters", "systems", "world", "records", "scene", "consistency",
-    "summary", "provenance",
-        "simulation", "localization"}  # fmt: skip
+DOOR = (
+    "twins",
+    "fast.table",
+)  # the one import from below: `twins` asks the table, when it is called
+CORE = {
+    "geometry",
+    "raycast",
+    "models",
+    "filters",
+    "systems",
+    "world",
+    "commands",
+    "records",
+    "scene",
+    "consistency",
+    "diagnostics",
+    "summary",
+    "provenance",
+    "simulation",
+    "localization",
+    "fast",
+}
 EXTRAS = ("numba", "av", "distributed", "dask")
 HEAVY = ("numpy", "matplotlib", "PIL", "pydantic", "shapely", "yaml", "scipy", *EXTRAS)
 
@@ -85,7 +107,9 @@ def test_a_module_imports_only_from_rooms_above_its_own(module):
     below = {
         other
         for other in imported(tree)
-        if other.startswith("ekfsim.") and level(room_of(other)) > level(room_of(module))
+        if other.startswith("ekfsim.")
+        and level(room_of(other)) > level(room_of(module))
+        and (module, other) != tuple(f"ekfsim.{end}" for end in DOOR)
     }
     assert below == set()
 
@@ -99,7 +123,7 @@ def test_modules_import_no_rings():
 
     def visit(module):
         assert module not in path, " → ".join([*path[path.index(module) :], module])
-        if module not in done:
+        if module not in done and module != "ekfsim.fast.table":  # see DOOR
             path.append(module)
             for other in graph[module] - {"ekfsim"}:
                 visit(other)
@@ -112,7 +136,7 @@ def test_modules_import_no_rings():
 
 def is_compiled(module):
     """Whether a module is made by the extra `fast`: it stands beside its readable twin."""
-    return module.endswith(".compiled")
+    return "compiled" in module.split(".")
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,45 @@
+"""The table of twins: which function of the text each stands in for, and when.
+
+A function is named "module:name". One room below the text, and imported when the first function of
+the text is called that may have a twin; a twin itself is imported when it is first needed.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+from ekfsim.twins import Way
+
+
+@dataclass(frozen=True, slots=True)
+class Twin:
+    """A quicker form of a function, with the condition under which it may stand in for it."""
+
+    of: str  # the function of the text
+    form: str  # what stands in for it; it returns None where it sees that it cannot
+    when: str  # in words: the arguments that it is for
+    given: str = ""  # the class of the first argument, where the twin is for one class alone
+    compiled: bool = False  # by Numba: only where that is asked for
+
+
+TWINS: tuple[Twin, ...] = ()
+
+
+def twins_of(name: str, way: Way, first: type) -> tuple[Callable[..., Any], ...]:
+    """The twins of a function, the quickest first, for a first argument of this type."""
+    kinds = {kind.__name__ for kind in first.__mro__}
+    return tuple(
+        function(twin.form)
+        for twin in TWINS
+        if twin.of == name
+        and (not twin.given or twin.given in kinds)
+        and (way == "compiled" or not twin.compiled)
+    )
+
+
+def function(name: str) -> Callable[..., Any]:
+    """The function of a name "module:function"."""
+    module, _, path = name.partition(":")
+    found: Callable[..., Any] = getattr(import_module(module), path)
+    return found

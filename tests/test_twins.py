@@ -1,0 +1,55 @@
+import pytest
+
+from ekfsim import twins
+from ekfsim.fast import table
+from ekfsim.fast.table import Twin
+
+
+def quick(x):
+    """A twin that declines what is negative."""
+    return None if x < 0 else ("quick", x)
+
+
+@pytest.fixture
+def named(monkeypatch):
+    """A function of the text with one twin for floats, and one more that is compiled."""
+
+    @twins.twinned
+    def text(x):
+        return ("text", x)
+
+    of = f"{__name__}:{text.text.__qualname__}"
+    monkeypatch.setattr(table, "TWINS", (
+        Twin(of, f"{__name__}:compiled", "any", compiled=True),
+        Twin(of, f"{__name__}:quick", "numbers that are not negative", given="float"),
+    ))  # fmt: skip
+    return text
+
+
+def compiled(x):
+    return ("compiled", x)
+
+
+def test_a_twin_stands_in_where_it_suits(named):
+    assert named(1.0) == ("quick", 1.0)
+    assert named(-1.0) == ("text", -1.0)  # it declines
+    assert named(1) == ("text", 1)  # another class
+    with twins.taking("plain"):
+        assert named(1.0) == ("text", 1.0)
+    assert named(1.0) == ("quick", 1.0)
+
+
+@pytest.mark.skipif(not twins.compiles(), reason="the extra `fast` is not installed")
+def test_what_is_compiled_stands_in_only_where_it_is_asked_for(named):
+    with twins.taking("compiled"):
+        assert named(1.0) == ("compiled", 1.0)
+    assert named(1.0) == ("quick", 1.0)
+
+
+def test_ways_that_are_none_are_refused(monkeypatch):
+    with pytest.raises(ValueError, match="no way"):
+        twins.take("fast")
+    monkeypatch.setattr(twins, "compiles", lambda: False)
+    with pytest.raises(ModuleNotFoundError, match="extra `fast`"):
+        twins.take("compiled")
+    assert twins.taken() == "quick"
