@@ -321,8 +321,9 @@ def test_position_and_heading_err_together():
     assert driven[1, 1] - driven[1, 2] ** 2 / driven[2, 2] == pytest.approx(0.1**2)
     # where the robot would stand, were the heading at the edge of its cone
     aside = driven[1, 2] / driven[2, 2] * 2 * σ
-    readme = " ".join((folder("commands").parent / "README.md").read_text(encoding="utf-8").split())
-    assert f"stand {aside:.2f} m further left (dashed)" in readme
+    page = folder("commands").parent / "docs" / "position-and-heading.md"
+    told = " ".join(page.read_text(encoding="utf-8").split())
+    assert f"stand {aside:.2f} m further left (dashed)" in told
     (beam,) = senses("theta")
     assert_allclose(beam.correction.H, [[0, -1, 0]], atol=1e-9)
     C = (0.02 * 3) ** 2

@@ -15,7 +15,7 @@ from ekfsim.files.packaged import packaged
 from ekfsim.filters.belief import Refused
 from ekfsim.localization import play
 
-README = Path(__file__).resolve().parents[2] / "README.md"
+SCENARIOS = Path(__file__).resolve().parents[2] / "docs" / "scenarios.md"
 DIVERGE = [name for name in packaged("commands") if name.startswith("diverge-")]
 RUNS = 40
 
@@ -58,7 +58,7 @@ def test_all_inputs_are_run_with_one_seed_and_stand_in_the_readme(monkeypatch, t
     assert all("seed 2, runs 0 to 999" in line["made by"] for line in found)
     told = re.findall(
         r"^\| (\S+) \|.*\| ([\d.]+) \[([\d.]+), ([\d.]+)\] \|",
-        README.read_text(encoding="utf-8"),
+        SCENARIOS.read_text(encoding="utf-8"),
         re.M,
     )
     assert [f"diverge-{name}" for name, *_ in told] == DIVERGE
