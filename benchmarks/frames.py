@@ -25,8 +25,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from timing import optional, ratios
 
+from ekfsim.commands import Move, Sense
 from ekfsim.localization import play
-from ekfsim.records import Move, Sense
 from ekfsim.scene import Scene
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import Frame, Picture

@@ -16,9 +16,9 @@ import numpy as np
 import shapely
 from timing import optional, ratios
 
+from ekfsim.commands import Move, Repeat, Sense
 from ekfsim.geometry import Array
 from ekfsim.localization import play
-from ekfsim.records import Move, Repeat, Sense
 from ekfsim.scene import Scene
 from ekfsim.summary import Summary
 from ekfsim.views.terminal.playback import views

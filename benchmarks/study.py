@@ -23,6 +23,7 @@ import numpy as np
 import shapely
 from timing import Task, optional, ratios
 
+from ekfsim.commands import Move, Repeat, Sense
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.ekf import EKF
@@ -31,7 +32,7 @@ from ekfsim.geometry.angles import wrap_one
 from ekfsim.localization import localize, play
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.landmarks import RangeOnly
-from ekfsim.records import Control, Entry, Log, Move, Reading, Repeat, Sense, Step
+from ekfsim.records import Control, Entry, Log, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.world import Map, Noise, Obstacle, Told, World
 

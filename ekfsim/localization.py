@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ekfsim.consistency import nees
+from ekfsim.diagnostics.ambiguity import remark as remarked
 from ekfsim.errors import UsageError
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Belief, Gaussian
@@ -47,21 +48,21 @@ def advance(
 ) -> Step:
     """What the filter makes of one entry.
 
-    A single run is told all that the sensor knows of a beam; N runs side by side only what the
+    A single run is told all that is to be said of a reading; N runs side by side only what the
     guard needs to know.
     """
-    prediction = correction = sighting = None
+    prediction = correction = remark = None
     posterior = belief
     match entry.given:
         case Control(motion, u):
             posterior, prediction = filter.predict(belief, motion, u)
         case Reading(sensor, z):
             if belief.mean.ndim == 1 or guard == "skip":
-                sighting = sensor.sight(*belief)
-            skip = guard == "skip" and sighting is not None and sighting.ambiguous
+                remark = remarked(sensor, *belief)
+            skip = guard == "skip" and remark is not None and remark.ambiguous
             posterior, correction = filter.update(belief, sensor, z, skip)
     measured = None if entry.truth is None else nees(posterior, entry.truth, layout)
-    return Step(entry, belief, posterior, prediction, correction, sighting, measured, layout)
+    return Step(entry, belief, posterior, prediction, correction, remark, measured, layout)
 
 
 def first_belief(scene: Scene, axes: tuple[int, ...] = ()) -> Gaussian:

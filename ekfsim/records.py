@@ -1,90 +1,18 @@
-"""The two seams: what was asked (Command), what happened (Entry), what the filter made of it
-(Step).
+"""The two seams: what happened (Entry), and what the filter made of it (Step).
 
 A simulation is a log being written, a recording a log already written: both are Entries, and no
 filter can tell them apart. Every output is a function of Steps, and none touches a filter. All
 records are frozen; arrays carry leading axes (…): none for one run, (N,) for a study of N runs.
 """
 
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Protocol
 
+from ekfsim.commands import Plain
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.protocols import Motion, Sensor
-from ekfsim.models.sensors.laser import Sighting
-
-
-@dataclass(frozen=True, slots=True)
-class Move:
-    """Drive `distance` m straight ahead, then turn in place by `angle` rad; slipping wheels move
-    the robot less.
-    """
-
-    distance: float
-    angle: float
-    slip: float = 0.0  # in [0, 1]
-
-
-@dataclass(frozen=True, slots=True)
-class Sense:
-    """Measure the range along `angle` rad from straight ahead, counter-clockwise."""
-
-    angle: float
-
-
-@dataclass(frozen=True, slots=True)
-class Kidnap:
-    """Carry the true robot to x, y (m), θ (rad), and tell the filter nothing."""
-
-    x: float
-    y: float
-    theta: float
-
-
-@dataclass(frozen=True, slots=True)
-class Say:
-    """A sentence for the narrative and the picture."""
-
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class Repeat:
-    """The same commands, `times` times over."""
-
-    times: int
-    commands: tuple["Command", ...]
-
-
-Command = Move | Sense | Kidnap | Say | Repeat
-Plain = Move | Sense | Kidnap | Say  # what is left when every Repeat is expanded
-
-
-def expand(commands: Iterable[Command]) -> Iterator[Plain]:
-    """Every command in the order of its execution, with the repetitions written out.
-
-    >>> [c.angle for c in expand([Sense(0.0), Repeat(2, (Sense(1.0),))])]
-    [0.0, 1.0, 1.0]
-    """
-    for command in commands:
-        if isinstance(command, Repeat):
-            for _ in range(command.times):
-                yield from expand(command.commands)
-        else:
-            yield command
-
-
-def expanded_length(commands: Iterable[Command]) -> int:
-    """How many commands `expand` yields, counted without expanding.
-
-    >>> expanded_length([Repeat(1000, (Repeat(1000, (Sense(0.0),)),))])
-    1000000
-    """
-    return sum(
-        c.times * expanded_length(c.commands) if isinstance(c, Repeat) else 1 for c in commands
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +70,16 @@ class Nees:
     impossible: Booleans  # (…) the error has a part where P claims certainty
 
 
+class Remark(Protocol):
+    """What is to be said of a reading before it is used. What else there is to it, only who made it
+    and who tells it know.
+    """
+
+    @property
+    def ambiguous(self) -> Booleans:
+        """(…) from poses that the filter holds possible, something else would be read."""
+
+
 @dataclass(frozen=True, slots=True)
 class Step:
     """What the filter made of one entry. Every number of every output is read from here."""
@@ -151,6 +89,6 @@ class Step:
     posterior: Belief  # the belief it ended with
     prediction: Prediction | None = None  # F and G, after a motion input
     correction: Correction | None = None  # ν, S, H, K, NIS, refused, after a reading
-    sighting: Sighting | None = None  # what the laser alone knows
+    remark: Remark | None = None  # where there is more to say of the reading
     nees: Nees | None = None  # where the truth is known
     layout: Layout = POSE  # what the entries of its states are

@@ -5,8 +5,9 @@ watches.
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from ekfsim.commands import Command
 from ekfsim.filters.tuning import UNTUNED, Tuning
-from ekfsim.records import Command, Log
+from ekfsim.records import Log
 from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.drives import Drive
 from ekfsim.world import World

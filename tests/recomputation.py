@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 from scipy.stats import chi2
 
-from ekfsim.records import Kidnap, Move, Repeat, Say
+from ekfsim.commands import Kidnap, Move, Repeat, Say
 
 FAR = math.inf
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ekfsim.records import Kidnap, Move, Repeat, Say, Sense
+from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
 from ekfsim.scene import Scene
 from ekfsim.world import Faults, Map, Noise, Obstacle, Told, World
 

@@ -5,11 +5,13 @@ import numpy as np
 import pytest
 from scenes import SILENT, rich, scene, told
 
+from ekfsim.commands import Move, Say, Sense
+from ekfsim.diagnostics.ambiguity import remark
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ekf import EKF
 from ekfsim.localization import advance, first_belief, localize, play
-from ekfsim.records import Control, Entry, Move, Reading, Say, Sense
+from ekfsim.records import Control, Entry, Reading
 from ekfsim.simulation import simulate
 
 
@@ -34,7 +36,7 @@ def test_what_the_filter_is_not_told_leaves_the_belief_alone():
     belief = Gaussian(np.ones(3), np.eye(3))
     step = advance(EKF(), belief, Entry(3, None, np.zeros(3), Say("word")))
     assert step.posterior is belief
-    assert step.prediction is step.correction is step.sighting is None
+    assert step.prediction is step.correction is step.remark is None
     assert step.nees.dof == 3
 
 
@@ -68,24 +70,24 @@ def test_the_steps_carry_what_their_entries_call_for():
         match step.entry.given:
             case Control():
                 assert step.prediction is not None
-                assert step.correction is step.sighting is None
+                assert step.correction is step.remark is None
             case Reading():
                 assert step.correction is not None
-                assert step.sighting is not None
+                assert step.remark is not None
                 assert step.prediction is None
             case None:
-                assert step.prediction is step.correction is step.sighting is None
+                assert step.prediction is step.correction is step.remark is None
 
 
 @pytest.mark.parametrize(("guard", "skipped"), [("off", False), ("warn", False), ("skip", True)])
 def test_the_guard_skips_only_when_told_to(guard, skipped):
     senses = [s for s in play(rich(gate=None, guard=guard)) if s.correction]
-    ambiguous = [s for s in senses if s.sighting.ambiguous]
+    ambiguous = [s for s in senses if s.remark.ambiguous]
     assert ambiguous
     assert any(s.correction.refused == Refused.GUARD for s in senses) == skipped
     for step in senses:
         if step.correction.refused == Refused.GUARD:
-            assert step.sighting.ambiguous
+            assert step.remark.ambiguous
             assert step.posterior.covariance == pytest.approx(step.prior.covariance, abs=0)
 
 
@@ -93,9 +95,9 @@ def test_the_guard_looks_before_the_update():
     """From the prior, not from the posterior."""
     for step in play(rich(gate=None)):
         if step.correction:
-            again = step.entry.given.sensor.sight(*step.prior)
-            assert again.ambiguous == step.sighting.ambiguous
-            assert again.incidence == pytest.approx(float(step.sighting.incidence), nan_ok=True)
+            again = remark(step.entry.given.sensor, *step.prior)
+            assert again.ambiguous == step.remark.ambiguous
+            assert again.incidence == pytest.approx(float(step.remark.incidence), nan_ok=True)
 
 
 @pytest.mark.parametrize("name", FILTERS)
@@ -108,14 +110,14 @@ def test_a_study_has_a_leading_axis(name, shape):
         assert step.nees.value.shape == step.nees.dof.shape == step.nees.impossible.shape == shape
         if step.correction:
             assert step.correction.refused.shape == shape
-            assert step.sighting is None
+            assert step.remark is None
 
 
 def test_a_study_looks_along_a_beam_only_where_the_guard_must_know():
     for step in play(rich(guard="skip"), np.arange(3)):
         if step.correction:
-            assert step.sighting.ambiguous.shape == (3,)
-            assert not (step.sighting.ambiguous & (step.correction.refused == Refused.NOT)).any()
+            assert step.remark.ambiguous.shape == (3,)
+            assert not (step.remark.ambiguous & (step.correction.refused == Refused.NOT)).any()
 
 
 def test_the_gate_of_the_scene_is_the_gate_of_the_filter():

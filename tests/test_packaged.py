@@ -10,13 +10,14 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.stats import chi2
 
+from ekfsim.commands import Sense
 from ekfsim.consistency import Evidence, Verdict
 from ekfsim.files.packaged import description_of, folder, packaged
 from ekfsim.files.scenes.load import check, read_scene
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import cone_halfwidth, ellipse
 from ekfsim.localization import play
-from ekfsim.records import Sense, Step
+from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.study.block import run_block
 from ekfsim.study.expectation import verified
@@ -273,8 +274,8 @@ def test_two_beams_beside_a_corner_have_mirrored_derivatives():
     assert (round(r, 4), round(per, 4), round(r * tangent, 4)) == (5.5607, 1.3902, 5.3699)
     for step, edge in ((left, 2), (right, 1)):
         assert step.correction.predicted[0] == pytest.approx(r)
-        assert step.sighting.ambiguous
-        assert step.entry.given.sensor.walls.name(int(step.sighting.wall)) == ("boundary", edge)
+        assert step.remark.ambiguous
+        assert step.entry.given.sensor.walls.name(int(step.remark.wall)) == ("boundary", edge)
 
 
 def test_without_noise_the_estimate_is_the_truth():
@@ -285,7 +286,7 @@ def test_without_noise_the_estimate_is_the_truth():
     assert senses("proof-no-noise")[0].entry.given.z[0] == pytest.approx(7)
     assert all(np.isnan(step.correction.nis) for step in senses("proof-no-noise"))
     assert {
-        step.entry.given.sensor.walls.name(int(step.sighting.wall))[0]
+        step.entry.given.sensor.walls.name(int(step.remark.wall))[0]
         for step in senses("proof-no-noise")
     } == {
         "boundary",
@@ -346,7 +347,7 @@ def test_the_needle_in_the_corridor_is_the_odometry_alone():
 def test_the_wrong_wall_is_told_before_it_is_believed():
     first_lost = evidence("diverge-01-wrong-wall").lost_from
     step = steps("diverge-01-wrong-wall")[first_lost]
-    assert step.sighting.ambiguous
+    assert step.remark.ambiguous
     assert (
         round(float(step.correction.predicted[0]), 2),
         round(float(step.entry.given.z[0]), 2),

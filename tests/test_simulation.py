@@ -9,12 +9,13 @@ from recomputation import disagreements, true_course
 from scenes import DESK, NOISE, SILENT, rich, scene, told, unbounded
 from systems_scenes import mower
 
+from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
 from ekfsim.errors import UsageError
 from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
-from ekfsim.records import Control, Kidnap, Move, Reading, Repeat, Say, Sense
+from ekfsim.records import Control, Reading
 from ekfsim.simulation import simulate
 from ekfsim.simulation.draws import Draws, particle_generators
 from ekfsim.world import Faults, Noise

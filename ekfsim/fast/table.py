@@ -23,7 +23,9 @@ class Twin:
     compiled: bool = False  # by Numba: only where that is asked for
 
 
-TWINS: tuple[Twin, ...] = ()
+TWINS: tuple[Twin, ...] = (
+    Twin("ekfsim.diagnostics.ambiguity:sighting", "ekfsim.fast.one.ambiguity:sighting", "one pose"),
+)
 
 
 def twins_of(name: str, way: Way, first: type) -> tuple[Callable[..., Any], ...]:

@@ -1,6 +1,6 @@
 """What a filter asks of a motion and of a sensor. All arrays carry leading axes (…)."""
 
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from ekfsim.geometry import Array
 
@@ -66,12 +66,6 @@ class Sensor(Protocol):
     def residual(self, z: Array, h: Array) -> Array:
         """ν = z − h : (…, k), to be wrapped where it is an angle"""
         return z - h
-
-    def sight(self, x: Array, P: Array) -> Any:
-        """What this sensor alone knows of a reading before it is used; None where there is nothing
-        more to know.
-        """
-        return None
 
 
 def angles(quantities: tuple[Quantity, ...]) -> tuple[int, ...]:

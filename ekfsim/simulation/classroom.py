@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from ekfsim.commands import Kidnap, Move, Say, Sense, expand
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.ground import CLEARANCE
@@ -12,7 +13,7 @@ from ekfsim.geometry.lanes import front, lanes
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
-from ekfsim.records import Control, Entry, Kidnap, Move, Reading, Say, Sense, expand
+from ekfsim.records import Control, Entry, Reading
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import Draws, true_start
 from ekfsim.world import World

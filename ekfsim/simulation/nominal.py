@@ -6,10 +6,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ekfsim.commands import Command, Move, expand
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.motions.move_turn import MoveTurn
-from ekfsim.records import Command, Move, expand
 from ekfsim.scene import Scene
 from ekfsim.simulation.driver import ticks_of
 from ekfsim.systems.drives import Course

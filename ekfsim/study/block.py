@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ekfsim.commands import expanded_length
 from ekfsim.consistency import LOST, error
 from ekfsim.filters.belief import Correction, posed
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.backend import used, using
 from ekfsim.localization import play
-from ekfsim.records import Step, expanded_length
+from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.study.counting import (
     SIDES,

@@ -8,10 +8,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scenes import scene
 
+from ekfsim.commands import Move, Sense
 from ekfsim.files.results.trace import Trace
 from ekfsim.filters.tuning import Tuning
 from ekfsim.localization import play
-from ekfsim.records import Move, Sense
 from ekfsim.world import Faults
 
 BY_READING, DROPPED = Tuning(range_variance="reading"), Tuning(cross_covariances="dropped")

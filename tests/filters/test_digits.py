@@ -11,6 +11,7 @@ from problems import begun
 from scenes import DESK, scene
 
 from ekfsim import play
+from ekfsim.commands import Move, Sense
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.conditioning import covariance
 from ekfsim.filters.stretch import stretch
@@ -18,7 +19,6 @@ from ekfsim.geometry.backend import using
 from ekfsim.localization import first_belief
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.protocols import Quantity
-from ekfsim.records import Move, Sense
 from ekfsim.world import Noise
 
 LINEARISED = ["kf", "ekf", "iekf"]

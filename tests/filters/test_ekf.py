@@ -20,6 +20,7 @@ from stonesoup.types.hypothesis import SingleHypothesis
 from stonesoup.types.state import GaussianState
 from stonesoup.updater.kalman import ExtendedKalmanUpdater
 
+from ekfsim.commands import Move, Sense
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ekf import EKF
@@ -27,7 +28,7 @@ from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
-from ekfsim.records import Control, Move, Reading, Sense
+from ekfsim.records import Control, Reading
 
 seeds = st.integers(0, 2**32 - 1)
 LINEAR = EKF(headings=())

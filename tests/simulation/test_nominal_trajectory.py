@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from scenes import SILENT, scene
 
+from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
 from ekfsim.errors import UsageError
 from ekfsim.figures.crowd import crowd_of
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import filter_of, play
-from ekfsim.records import Control, Kidnap, Log, Move, Repeat, Say, Sense
+from ekfsim.records import Control, Log
 from ekfsim.simulation import simulate
 from ekfsim.simulation.nominal import nominal_trajectory
 from ekfsim.systems.drives import Square, Stretch, Stretches

@@ -8,10 +8,10 @@ import pytest
 from numpy.testing import assert_allclose
 from scenes import NOISE, scene
 
+from ekfsim.commands import Move, Sense
 from ekfsim.consistency import LOST, error, nees
 from ekfsim.filters.chi_square import quantile
 from ekfsim.localization import play
-from ekfsim.records import Move, Sense
 from ekfsim.study.block import run_block
 from ekfsim.study.comparison import correlation, of_means, of_shares
 from ekfsim.study.pairs import Pairs, Shared, Sums, run_pairs

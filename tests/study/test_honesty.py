@@ -16,6 +16,7 @@ import pytest
 from scenes import NOISE, scene
 from scipy.stats import binom, chi2, norm
 
+from ekfsim.commands import Move, Sense
 from ekfsim.consistency import inside_cone, inside_ellipse, nees
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.load import read_scene
@@ -26,7 +27,6 @@ from ekfsim.geometry.ellipse import cone_factor
 from ekfsim.models.noise import independent
 from ekfsim.models.protocols import Quantity
 from ekfsim.models.sensors.position import Position
-from ekfsim.records import Move, Sense
 from ekfsim.simulation import simulate
 from ekfsim.study.block import run_block
 from ekfsim.study.plan import Case

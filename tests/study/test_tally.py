@@ -10,10 +10,10 @@ from scenes import rich, scene
 from scipy import stats
 from systems_scenes import gnss, mower
 
+from ekfsim.commands import Move, Sense
 from ekfsim.consistency import Evidence, inside_cone, inside_ellipse, squared_error
 from ekfsim.filters.belief import posed
 from ekfsim.localization import play
-from ekfsim.records import Move, Sense
 from ekfsim.study import block
 from ekfsim.study.block import run_block, steps_told
 from ekfsim.study.counting import IMPOSSIBLE, WIDEST

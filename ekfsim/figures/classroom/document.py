@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from ekfsim.commands import Move
 from ekfsim.consistency import LOST, error, squared_error
 from ekfsim.figures.album import (
     BLACK,
@@ -29,7 +30,7 @@ from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import outline, radius_factor
 from ekfsim.localization import play
 from ekfsim.provenance import told_in_a_line
-from ekfsim.records import Move, Reading, Step
+from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import HANDLERS, Frame, draw

@@ -8,12 +8,14 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from ekfsim.commands import Kidnap, Move, Say, Sense
+from ekfsim.diagnostics.ambiguity import Sighting, sighting_of
 from ekfsim.filters.belief import Belief, Correction, Refused
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import ellipse
-from ekfsim.models.sensors.laser import Laser, Sighting
+from ekfsim.models.sensors.laser import Laser
 from ekfsim.provenance import provenance
-from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense, Step
+from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
 
 FORMAT = 1
@@ -160,7 +162,7 @@ def _sense(step: Step, angle: float, confidence: float) -> dict[str, Any]:
         **_corrected(step.correction),
         **_sighted(
             step.entry.given.sensor,
-            step.sighting,
+            sighting_of(step),
             not np.isnan(step.correction.predicted[0]) and not step.correction.tangent,
         ),
         "prior": _belief(step.prior),

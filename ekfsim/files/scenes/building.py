@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.files.keys.commands import CommandKeys, CommandsKeys, ExpectKeys
 from ekfsim.files.keys.drive import PathKeys, StretchKeys
 from ekfsim.files.keys.fields import PartKeys, Pose, aliases
@@ -17,7 +18,6 @@ from ekfsim.files.keys.world import BeliefKeys, ObstacleKeys, SigmaKeys, WorldKe
 from ekfsim.filters.tuning import Tuning
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
-from ekfsim.records import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.scene import Expect, Scene
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.drives import DRIVES, Drive, Stretch, Stretches

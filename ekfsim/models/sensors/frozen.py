@@ -1,7 +1,6 @@
 """A sensor that keeps being linearised where the robot was (the listing of document 000)."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -37,10 +36,6 @@ class Frozen(Sensor):
     def residual(self, z: Array, h: Array) -> Array:
         """ν = z − h(at), wrapped where it is an angle : (…, k)"""
         return self.sensor.residual(z, h)
-
-    def sight(self, x: Array, P: Array) -> Any:
-        """What the sensor knows of its reading from where the robot is believed to be."""
-        return self.sensor.sight(x, P)
 
     def _held(self, x: Array) -> Array:
         """`at` for every x, of which there may be more than runs: sigma points, particles."""

@@ -9,7 +9,7 @@ import numpy as np
 from ekfsim.geometry import Array
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.protocols import Quantity, Sensor
-from ekfsim.models.sensors.laser import Laser, Sighting
+from ekfsim.models.sensors.laser import Laser
 
 COLOURS: dict[str, float] = {  # reflectances; fig. 4 tells that they matter, and prints no numbers
     "white": 1.0,
@@ -60,10 +60,6 @@ class InfraredBeam(Sensor):
         intensity = np.where(lit, self.reflectance * (self.offset - self.gain * np.log(r)), np.nan)
         H = np.where(lit[..., None], -self.reflectance * self.gain / r[..., None] * H_r, 0.0)
         return intensity, H, np.where(lit, self.sigma**2, np.nan)[..., None]
-
-    def sight(self, x: Array, P: Array) -> Sighting:
-        """Which wall it meets, and whether that is certain; x : (…, 3), P : (…, 3, 3)"""
-        return self._beam().sight(x, P)
 
     def _beam(self) -> Laser:
         return Laser(self.walls, self.bearing, 0.0)

@@ -9,7 +9,7 @@ import numpy as np
 from ekfsim.geometry import Array
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.protocols import Quantity, Sensor
-from ekfsim.models.sensors.laser import Laser, Sighting
+from ekfsim.models.sensors.laser import Laser
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,10 +46,6 @@ class UltrasonicBeam(Sensor):
             np.where(heard[..., None], H, 0.0),
             (self.sigma + self.sigma_per_metre * r[..., None]) ** 2,
         )
-
-    def sight(self, x: Array, P: Array) -> Sighting:
-        """Which wall it meets, and whether that is certain; x : (…, 3), P : (…, 3, 3)"""
-        return self._beam().sight(x, P)
 
     def _beam(self) -> Laser:
         return Laser(self.walls, self.bearing, 0.0)

@@ -5,11 +5,11 @@ their number.
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
+from ekfsim.commands import expanded_length
 from ekfsim.errors import UsageError
 from ekfsim.files.looking import is_folder
 from ekfsim.files.results.writing import refuse_existing, told, whole_file, whole_folder
 from ekfsim.provenance import metadata, told_in_a_line
-from ekfsim.records import expanded_length
 from ekfsim.scene import Scene
 from ekfsim.views.film import gif, video
 from ekfsim.views.film.png import Pixels

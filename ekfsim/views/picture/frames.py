@@ -16,8 +16,9 @@ from matplotlib.figure import Figure
 from matplotlib.legend_handler import HandlerPathCollection, HandlerTuple
 from matplotlib.text import Text
 
+from ekfsim.commands import expanded_length
 from ekfsim.geometry.ellipse import outline
-from ekfsim.records import Step, expanded_length
+from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.views.film.png import Pixels, encode
 from ekfsim.views.picture import limits as limits_of_run

@@ -8,12 +8,12 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from ekfsim.commands import Command, Repeat, Sense
 from ekfsim.geometry.ellipse import ellipse
 from ekfsim.models.protocols import Sensor
 from ekfsim.models.sensors.infrared import InfraredBeam
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
-from ekfsim.records import Command, Repeat, Sense
 from ekfsim.scene import Scene
 from ekfsim.views.picture.artists import BeamArtists, BeliefArtists, WorldArtists
 from ekfsim.views.picture.limits import Limits

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ekfsim.diagnostics.ambiguity import BeamSensor
 from ekfsim.filters.belief import Refused, posed
 from ekfsim.geometry import Array
 from ekfsim.models.protocols import Quantity, Sensor
@@ -29,7 +30,6 @@ ARC = math.radians(25)
 CORNERS = 41  # of an arc, and of the circle about a fix
 NEEDLE = 1.0  # m, of a heading
 FARTHEST = 5.0  # times as far as it is specified for may an intensity seem to come from
-BeamSensor = Laser | UltrasonicBeam | InfraredBeam
 NOWHERE = np.empty((0, 2))
 
 

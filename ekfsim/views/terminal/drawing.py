@@ -7,9 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ekfsim.commands import Kidnap, Move, Say, Sense
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import cone_halfwidth, outline
-from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense
+from ekfsim.records import Control, Reading
 from ekfsim.scene import Scene
 from ekfsim.views.picture.sights import instants
 from ekfsim.views.terminal.braille import (

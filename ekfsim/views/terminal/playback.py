@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ekfsim.commands import Move
 from ekfsim.filters.belief import Belief, Gaussian, posed
 from ekfsim.geometry import Array
 from ekfsim.models.layout import Layout
-from ekfsim.records import Control, Move, Reading, Step
+from ekfsim.records import Control, Reading, Step
 
 GATHERED = 200  # motion inputs of a driven or recorded robot in one view, at most
 

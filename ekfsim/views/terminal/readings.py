@@ -89,7 +89,7 @@ def outcome(step: Step, beam: bool) -> str:
         f"{value[0]:.3f} m" if math.isfinite(value[0]) else "nothing"
         for value in (reading.z, correction.predicted)
     )
-    ambiguous = step.sighting is not None and bool(step.sighting.ambiguous)
+    ambiguous = step.remark is not None and bool(step.remark.ambiguous)
     return f"measured {measured}, predicted {predicted}{', ambiguous' if ambiguous else ''}"
 
 

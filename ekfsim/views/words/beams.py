@@ -10,13 +10,14 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
+from ekfsim.diagnostics.ambiguity import BeamSensor, Sighting, sighting_of
 from ekfsim.filters.belief import Refused, posed
 from ekfsim.geometry import Array
-from ekfsim.models.sensors.laser import Laser, Sighting
+from ekfsim.models.sensors.laser import Laser
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.picture.lettering import shortened
-from ekfsim.views.picture.sights import BeamSensor, beam_length
+from ekfsim.views.picture.sights import beam_length
 from ekfsim.views.words.told_beams import elsewhere, others_met
 from ekfsim.world import BOUNDARY, Map
 
@@ -53,7 +54,7 @@ class Beam:
 
 def beam(step: Step, scene: Scene) -> Beam | None:
     """The beam of a step, None where it is of no sensor that has one."""
-    given, correction, sighting = step.entry.given, step.correction, step.sighting
+    given, correction, sighting = step.entry.given, step.correction, sighting_of(step)
     if not isinstance(given, Reading) or correction is None or sighting is None:
         return None
     sensor = given.sensor

@@ -3,10 +3,11 @@
 import math
 from collections.abc import Iterable, Iterator
 
+from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse, radius_factor
 from ekfsim.models.sensors.infrared import InfraredBeam
-from ekfsim.records import Command, Entry, Kidnap, Move, Reading, Repeat, Say, Sense, Step
+from ekfsim.records import Entry, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.picture.lettering import shortened
 from ekfsim.views.picture.sights import Sight, instants, told

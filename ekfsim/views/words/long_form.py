@@ -7,9 +7,9 @@ from typing import Self
 
 import numpy as np
 
+from ekfsim.diagnostics.ambiguity import REACH, sighting_of
 from ekfsim.filters.belief import Correction, posed
 from ekfsim.geometry import Array
-from ekfsim.models.sensors.laser import REACH
 from ekfsim.records import Control, Step
 from ekfsim.scene import Scene
 from ekfsim.views.terminal.playback import View
@@ -120,7 +120,7 @@ class LongForm(Form):
         """Of an ambiguous beam the poses that disagree, and the walls that it would meet from
         there.
         """
-        sighting = step.sighting
+        sighting = sighting_of(step)
         if sighting is None or not sighting.ambiguous:
             return ""
         told, (x, P) = "", posed(step.prior, step.layout)
@@ -149,7 +149,8 @@ class LongForm(Form):
         none.
         """
         tangent = step.correction is not None and step.correction.tangent
-        if tangent or step.sighting is None or (wall := int(step.sighting.wall)) < 0:
+        sighting = sighting_of(step)
+        if tangent or sighting is None or (wall := int(sighting.wall)) < 0:
             return ""
         return f"That edge, counted from 1 in the file's order, goes {corners(step, wall)}\n"
 

@@ -4,9 +4,10 @@ leaves out.
 
 import math
 
+from ekfsim.commands import Kidnap, Move, Say, Sense
 from ekfsim.filters.belief import Correction, Refused
 from ekfsim.printable import shown
-from ekfsim.records import Control, Kidnap, Move, Reading, Say, Sense, Step
+from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.terminal.playback import View
 from ekfsim.views.words import driven as driven_narrative
@@ -142,7 +143,7 @@ def _update(view: View, probability: float, form: Form) -> str:
 
 def _expected(step: Step, c: Correction, form: Form) -> str:
     h = float(c.predicted[0])
-    if math.isnan(h) or step.sighting is None:
+    if math.isnan(h) or step.remark is None:
         return "No range was predicted: no wall of the filter's map lies that way\n"
     return (
         f"The predicted range was {fine(h)}{form.by('predicted')}\n"

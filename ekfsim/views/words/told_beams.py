@@ -8,10 +8,10 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from ekfsim.diagnostics.ambiguity import GRAZING, Sighting, sighting_of
 from ekfsim.filters.belief import posed
 from ekfsim.geometry import Array
 from ekfsim.geometry.walls import Walls
-from ekfsim.models.sensors.laser import GRAZING, Sighting
 from ekfsim.records import Reading, Step
 from ekfsim.views.words.numbers import number, point, turn
 
@@ -41,7 +41,7 @@ def doubts(step: Step, guarded: bool) -> str:
     """What is doubtful about a beam before its reading is used; nothing of a sensor that sends
     none.
     """
-    sighting = step.sighting
+    sighting = sighting_of(step)
     if sighting is None:
         return ""
     told = ""
@@ -75,14 +75,15 @@ def expected_wall(step: Step) -> str:
     """Which wall the beam was expected to meet, and at which angle; nothing of a sensor that sends
     none.
     """
-    if step.sighting is None or step.correction is None:
+    sighting = sighting_of(step)
+    if sighting is None or step.correction is None:
         return ""
     if step.correction.tangent:
         return TANGENT + (NEGATIVE if np.any(step.correction.predicted < 0) else "")
-    if step.sighting.wall < 0:
+    if sighting.wall < 0:
         return MISSED
-    incidence = number(math.degrees(float(step.sighting.incidence)))
-    wall = wall_name(step, int(step.sighting.wall))
+    incidence = number(math.degrees(float(sighting.incidence)))
+    wall = wall_name(step, int(sighting.wall))
     return (
         f"It was expected to meet {wall}; the angle between beam and wall is {incidence} degrees\n"
     )

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from log_worlds import CLOSET, MARKS, PYLON, read, world
 
+from ekfsim.commands import Sense
 from ekfsim.errors import UsageError
 from ekfsim.files.logs import WRITERS, read_log, write_log
 from ekfsim.localization import play
-from ekfsim.records import Control, Sense
+from ekfsim.records import Control
 from ekfsim.scene import Scene
 from ekfsim.simulation import simulate
 from ekfsim.systems.drives import Circle, Square

@@ -10,11 +10,11 @@ from recomputation import Edges, believed, disagreements, true_course
 from recordings import MOWER, recording, speeds
 from scenes import ROOM, rich, scene, told, unbounded
 
+from ekfsim.commands import Kidnap, Move, Say, Sense
 from ekfsim.files.packaged import packaged
 from ekfsim.files.results.trace import Trace
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
-from ekfsim.records import Kidnap, Move, Say, Sense
 from ekfsim.world import Noise
 
 CONFIDENCE = 0.954

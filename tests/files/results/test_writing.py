@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from scenes import scene
 
+from ekfsim.commands import Move
 from ekfsim.errors import RunError, UsageError
 from ekfsim.files.results.outputs import Outputs
 from ekfsim.files.results.partial import HOST
 from ekfsim.files.results.writing import whole_file, whole_folder, whole_text
 from ekfsim.localization import play
-from ekfsim.records import Move
 from ekfsim.summary import Summary
 
 FULL = Path("/dev/full")

@@ -6,10 +6,10 @@ import os
 import numpy as np
 import pytest
 
+from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense, expanded_length
 from ekfsim.errors import InputError
 from ekfsim.files.packaged import resolve
 from ekfsim.files.scenes.load import check, kind_of, load_scene, load_world, read_scene, read_world
-from ekfsim.records import Kidnap, Move, Repeat, Say, Sense, expanded_length
 from ekfsim.scene import Expect
 from ekfsim.world import Faults, Landmark, Noise
 

@@ -8,6 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numerics import jacobian
 
+from ekfsim.diagnostics.ambiguity import sighting
 from ekfsim.geometry.walls import Walls
 from ekfsim.models.sensors.infrared import COLOURS, InfraredBeam
 from ekfsim.models.sensors.laser import Laser
@@ -27,9 +28,9 @@ EVERY = pytest.mark.parametrize("beam", BEAMS.values(), ids=BEAMS)
 @given(poses, bearings)
 def test_H_equals_central_differences(beam, x, bearing):
     sensor = beam(bearing)
-    sighting = sensor.sight(x, np.eye(3) * 1e-10)
-    assume(not sighting.ambiguous)
-    assume(sighting.incidence > 0.05)
+    seen = sighting(sensor, x, np.eye(3) * 1e-10)
+    assume(not seen.ambiguous)
+    assume(seen.incidence > 0.05)
     h, H, _ = sensor.linearize(x)
     r = Laser(WALLS, bearing, 0.0).h(x)[0]
     assume(min(abs(r - sensor.nearest), abs(r - sensor.farthest)) > 1e-4)
@@ -72,8 +73,8 @@ def test_where_there_are_no_walls_there_is_no_echo(beam):
 @EVERY
 def test_it_knows_when_it_may_meet_another_wall(beam):
     x, P = np.array([3.0, 3.0, math.pi / 4]), np.eye(3) * 1e-4
-    assert beam(0.0).sight(x, P).ambiguous
-    assert not beam(math.pi / 4).sight(x, P).ambiguous
+    assert sighting(beam(0.0), x, P).ambiguous
+    assert not sighting(beam(math.pi / 4), x, P).ambiguous
     assert len(beam(0.0).outputs) == 1
     assert beam(0.0).residual(np.array([2.0]), np.array([0.5])) == [1.5]
 

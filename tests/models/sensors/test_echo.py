@@ -4,6 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numerics import jacobian
 
+from ekfsim.diagnostics.ambiguity import remark
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.ekf import EKF
 from ekfsim.models.motions.constant import Constant
@@ -47,7 +48,7 @@ def test_H_equals_central_differences(seed):
     np.testing.assert_array_equal(h, ECHO.h(x))
     assert np.array_equal(R, 0.02**2 * np.eye(101))
     assert len(ECHO.outputs) == 101
-    assert ECHO.sight(x, np.eye(4)) is None
+    assert remark(ECHO, x, np.eye(4)) is None
 
 
 @pytest.mark.parametrize("axes", [(1,), (9,), (3, 2)])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numerics import jacobian
 
+from ekfsim.diagnostics.ambiguity import remark
 from ekfsim.models.layout import INERTIAL, POSE, SPEED_POSE
 from ekfsim.models.protocols import angles
 from ekfsim.models.sensors.frozen import Frozen
@@ -72,7 +73,7 @@ def test_one_robot(sensor, layout):
     x, k, n = drawn(layout, 1), len(sensor.outputs), len(layout.names)
     assert [values.shape for values in sensor.linearize(x)] == [(k,), (k, n), (k, k)]
     assert sensor.h(x).shape == (k,)
-    assert sensor.sight(x, np.eye(n)) is None
+    assert remark(sensor, x, np.eye(n)) is None
 
 
 @EVERY
@@ -132,7 +133,7 @@ def test_frozen_it_stays_where_it_was(sensor, layout):
     np.testing.assert_array_equal(
         frozen.residual(sensor.h(x), sensor.h(at)), sensor.residual(sensor.h(x), sensor.h(at))
     )
-    assert frozen.sight(x, np.eye(len(x))) is None
+    assert remark(frozen, x, np.eye(len(x))) is None
 
 
 @EVERY

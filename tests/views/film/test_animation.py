@@ -8,10 +8,10 @@ import pytest
 from PIL import Image
 from scenes import DESK, scene
 
+from ekfsim.commands import Move, Repeat, Sense
 from ekfsim.errors import RunError, UsageError
 from ekfsim.localization import play
 from ekfsim.provenance import metadata, told_in_a_line
-from ekfsim.records import Move, Repeat, Sense
 from ekfsim.views.film import animation, gif, video
 from ekfsim.views.film.animation import render
 from ekfsim.views.picture import limits

@@ -12,9 +12,9 @@ from matplotlib.text import Text
 from PIL import Image
 from scenes import DESK, NOISE, ROOM, SILENT, START, rich, scene, told, unbounded
 
+from ekfsim.commands import Kidnap, Move, Say, Sense
 from ekfsim.geometry.ellipse import conditioned, radius_factor
 from ekfsim.localization import play
-from ekfsim.records import Kidnap, Move, Say, Sense
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import Frame, Picture, draw
 from ekfsim.views.picture.look import Look

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from scenes import ROOM, rich, scene, told, unbounded
 
+from ekfsim.commands import Kidnap, Move
 from ekfsim.filters.belief import Gaussian
 from ekfsim.localization import play
-from ekfsim.records import Kidnap, Move
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.limits import Limits, including
 from ekfsim.views.terminal.playback import views

@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from numpy.testing import assert_allclose
 from scenes import DESK, scene
 
+from ekfsim.commands import Move, Sense
 from ekfsim.geometry.ellipse import outline
 from ekfsim.localization import play
-from ekfsim.records import Move, Sense
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import Picture
 from ekfsim.views.picture.other_artists import STYLES

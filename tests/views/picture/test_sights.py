@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from scenes import rich, scene
 from systems_scenes import SCENES, SQUARE
 
+from ekfsim.commands import Move, Sense
 from ekfsim.filters.belief import Correction, Gaussian, Particles, Refused
 from ekfsim.localization import first_belief, play
 from ekfsim.models.layout import INERTIAL, POSE, SPEED_POSE
@@ -23,7 +24,7 @@ from ekfsim.models.sensors.landmarks import BearingOnly, MarkerAngles, RangeBear
 from ekfsim.models.sensors.lidar import LidarOffset
 from ekfsim.models.sensors.offset import LandmarkOffset
 from ekfsim.models.sensors.position import Position
-from ekfsim.records import Entry, Log, Move, Reading, Sense, Step
+from ekfsim.records import Entry, Log, Reading, Step
 from ekfsim.systems.instruments import Landmark
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.artists import BLUE, CROWD, MEANT, VERMILLION

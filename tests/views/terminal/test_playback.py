@@ -6,10 +6,11 @@ import pytest
 from recordings import recording, speeds
 from scenes import rich, scene, unbounded
 
+from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
 from ekfsim.files.results.outputs import kept
 from ekfsim.filters.belief import posed
 from ekfsim.localization import play
-from ekfsim.records import Control, Kidnap, Move, Reading, Repeat, Say, Sense, Step
+from ekfsim.records import Control, Reading, Step
 from ekfsim.views.terminal.playback import GATHERED, Playback, Tally, views
 
 COURSE = (

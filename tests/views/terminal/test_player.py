@@ -4,8 +4,8 @@ import pytest
 from recordings import recording, speeds
 from scenes import scene
 
+from ekfsim.commands import Move, Sense
 from ekfsim.localization import play
-from ekfsim.records import Move, Sense
 from ekfsim.summary import Summary
 from ekfsim.views.terminal.keyboard import HELP, Action
 from ekfsim.views.terminal.playback import views

@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from ekfsim.commands import Command, Kidnap, Move, Say, Sense
 from ekfsim.filters.belief import Gaussian
 from ekfsim.localization import play
-from ekfsim.records import Command, Entry, Kidnap, Move, Say, Sense
+from ekfsim.records import Entry
 from ekfsim.scene import Scene
 from ekfsim.views.terminal.braille import cells
 from ekfsim.views.terminal.drawing import draw

@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 from scenes import DESK, NOISE, ROOM, SILENT, rich, scene, told, unbounded
 
+from ekfsim.commands import Kidnap, Move, Say, Sense
+from ekfsim.diagnostics.ambiguity import Sighting
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Correction, Gaussian, Prediction, Refused
 from ekfsim.filters.tuning import Tuning
 from ekfsim.localization import play
 from ekfsim.models.motions.move_turn import MoveTurn
-from ekfsim.models.sensors.laser import Laser, Sighting
+from ekfsim.models.sensors.laser import Laser
 from ekfsim.provenance import VERSION
-from ekfsim.records import Control, Entry, Kidnap, Move, Nees, Reading, Say, Sense, Step
+from ekfsim.records import Control, Entry, Nees, Reading, Step
 from ekfsim.views.terminal.playback import View, views
 from ekfsim.views.words.narrative import narrate
 from ekfsim.views.words.numbers import heading
@@ -55,12 +57,12 @@ def sensed(
         np.array([h]), np.array([z - h]), number, number, np.array([[0, 1.00059, 0.0689879]]),
         np.array([[0.5], [-0.25], [0.125]]), np.array(nis), np.array(int(refused)),
     )  # fmt: skip
-    sighting = Sighting(
+    seen = Sighting(
         np.array(wall), np.radians(incidence), BEFORE.mean + ASKED, np.ones(6), np.array(probes),
         np.array(probes) != wall,
     )  # fmt: skip
     entry = Entry(2, Reading(Laser(WALLS, TURN, 0.01), np.array([z])), TRUTH, Sense(TURN))
-    return Step(entry, BEFORE, AFTER, correction=correction, sighting=sighting, nees=nees())
+    return Step(entry, BEFORE, AFTER, correction=correction, remark=seen, nees=nees())
 
 
 MOVED = """\
