@@ -25,6 +25,11 @@ class Twin:
 
 TWINS: tuple[Twin, ...] = (
     Twin("ekfsim.diagnostics.ambiguity:sighting", "ekfsim.fast.one.ambiguity:sighting", "one pose"),
+    Twin(
+        of="ekfsim.filters.chi_square:quantile",
+        form="ekfsim.fast.chi_square:quantile",
+        when="up to 5 000 degrees of freedom, and a probability that is neither 0 nor 1",
+    ),
 )
 
 

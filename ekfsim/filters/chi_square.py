@@ -2,7 +2,10 @@
 
 from functools import lru_cache
 
+from ekfsim.twins import twinned
 
+
+@twinned
 @lru_cache(maxsize=4096)
 def quantile(probability: float, dof: int) -> float:
     """The value that a χ² variable of `dof` degrees of freedom stays below with this probability; 0
