@@ -16,6 +16,7 @@ from ekfsim.options import (
     DOCUMENTS,
     EXPLAIN,
     FORCE,
+    PLAIN,
     READING,
     Result,
     Seed,
@@ -295,6 +296,7 @@ def new(file: Path, kind: str | None, force: bool) -> None:
 )
 @READING
 @click.option("--seed", type=Seed(), help="In place of the scene's seed.")
+@PLAIN
 @FORCE
 def figures(
     name: str,

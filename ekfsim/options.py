@@ -8,7 +8,9 @@ from typing import Any
 
 import click
 
+from ekfsim.errors import UsageError
 from ekfsim.seeds import MOST_SEED, REPEATS
+from ekfsim.twins import taking
 
 MOST = 2**63 - 1  # of runs' numbers
 MOST_RUNS = 10**9  # of a study
@@ -31,8 +33,30 @@ SET = click.option(
     "the filter, e.g. "
     "filter.alpha=0.5; repeatable.",
 )
+
+
+def _one_way(ctx: click.Context, param: click.Parameter, value: bool) -> bool:
+    """Whether a way to calculate was chosen. Fails where another was chosen, too."""
+    if value and ctx.meta.setdefault(__name__, param.name) != param.name:
+        raise UsageError("--plain and --fast are two ways to calculate; choose one")
+    if value and param.name == "plain":
+        ctx.with_resource(taking("plain"))
+    return value
+
+
 FAST = click.option(
-    "--fast", is_flag=True, help="Calculate with code that Numba compiles (the extra `fast`)."
+    "--fast",
+    is_flag=True,
+    callback=_one_way,
+    help="Calculate with code that Numba compiles (the extra `fast`).",
+)
+PLAIN = click.option(
+    "--plain",
+    is_flag=True,
+    callback=_one_way,
+    expose_value=False,
+    help="Calculate as the readable code stands, without its quicker twins: slow, and alike but "
+    "for the last digits.",
 )
 EXPLAIN = click.option(
     "--explain", is_flag=True, help="Narrate in the long form: every matrix, every equation."
@@ -194,6 +218,7 @@ MADE_WHERE = (
         help="The scheduler of a Dask cluster, e.g. tcp://10.0.0.1:8786.",
     ),
     FAST,
+    PLAIN,
 )
 
 
@@ -235,6 +260,7 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 show_default=True,
                 help="Probability of the ellipse and the cone.",
             ),
+            PLAIN,
         ],
     )
 

@@ -46,7 +46,10 @@ def twins_of(name: str, way: Way, first: type) -> tuple[Callable[..., Any], ...]
 
 
 def function(name: str) -> Callable[..., Any]:
-    """The function of a name "module:function"."""
+    """The function of a name "module:function" or "module:Class.method"."""
     module, _, path = name.partition(":")
-    found: Callable[..., Any] = getattr(import_module(module), path)
-    return found
+    found: Any = import_module(module)
+    for part in path.split("."):
+        found = getattr(found, part)
+    made: Callable[..., Any] = found
+    return made

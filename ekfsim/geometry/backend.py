@@ -1,52 +1,32 @@
-"""What follows many beams, and filters and judges many runs: NumPy, or code compiled by Numba,
-where that is asked for.
+"""What is compiled by Numba, or not, as rooms ask that do not yet stand in the table of twins."""
 
-    backend.use("numba")
-
-NumPy is the default even where Numba is installed: what a study answers must not depend on what
-else is installed, and Numba takes a second to import and, the first time, some to compile. Both
-find the same walls, and the same ranges and beliefs but for the last digits.
-"""
-
-import importlib.util
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Literal, get_args
 
+from ekfsim import twins
+from ekfsim.twins import Way
+from ekfsim.twins import compiles as compiles
+
 Backend = Literal["numpy", "numba"]
 BACKENDS: tuple[Backend, ...] = get_args(Backend)
-
-_used: Backend = "numpy"
+_WAYS: dict[Backend, Way] = {"numpy": "quick", "numba": "compiled"}
 
 
 def use(backend: Backend) -> None:
-    """Choose for all casts of this process that are still to come."""
-    global _used
+    """Choose for all that this process has still to calculate."""
     if backend not in BACKENDS:
         raise ValueError(f"{backend!r} is no backend; there are {' and '.join(BACKENDS)}")
-    if backend == "numba" and not compiles():
-        raise ModuleNotFoundError(
-            "numba is not installed; it comes with ekfsim's extra `fast`", name="numba"
-        )
-    _used = backend
-
-
-def compiles() -> bool:
-    """Whether Numba is installed."""
-    return importlib.util.find_spec("numba") is not None
+    twins.take(_WAYS[backend])
 
 
 @contextmanager
 def using(backend: Backend) -> Iterator[None]:
-    """Choose for the casts of a block alone."""
-    before = used()
-    use(backend)
-    try:
+    """Choose for a block of code alone."""
+    with twins.taking(_WAYS[backend]):
         yield
-    finally:
-        use(before)
 
 
 def used() -> Backend:
     """What is in use."""
-    return _used
+    return "numba" if twins.taken() == "compiled" else "numpy"

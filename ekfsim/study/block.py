@@ -13,7 +13,6 @@ from ekfsim.commands import expanded_length
 from ekfsim.consistency import LOST, error
 from ekfsim.filters.belief import Correction, posed
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.geometry.backend import used, using
 from ekfsim.localization import play
 from ekfsim.records import Step
 from ekfsim.scene import Scene
@@ -29,6 +28,7 @@ from ekfsim.study.counting import (
     spread,
 )
 from ekfsim.study.tally import AtSteps, Extreme, OfRuns, Tally, dtype_of
+from ekfsim.twins import Way, taken, taking
 
 MOST_PARTICLES = 2_000_000  # of all runs that are watched at once: they take some 400 bytes each
 MOST_STEPS = 1000  # of a longer run so many are told of, evenly spaced, and the last
@@ -44,11 +44,12 @@ class Ends(NamedTuple):
     heading: Array  # rad, without its sign
 
 
-def run_block(scene: Scene, first: int, runs: int, fast: bool = False) -> Tally:
-    """What becomes of the runs first … first + runs − 1 of a scene; fast : by code that Numba
-    compiles
+def run_block(scene: Scene, first: int, runs: int, way: Way | None = None) -> Tally:
+    """What becomes of the runs first … first + runs − 1 of a scene.
+
+    way : of twins.py; None: as all else in this process
     """
-    with using("numba" if fast else used()):
+    with taking(way or taken()):
         return functools.reduce(
             operator.add, (watched(scene, *some).tally() for some in at_once(scene, first, runs))
         )

@@ -13,7 +13,7 @@ from ekfsim.files.scenes.filter_checks import refuse_unread
 from ekfsim.files.scenes.load_study import FILTER, Request
 from ekfsim.files.scenes.settings import Setting, filters_in, setting
 from ekfsim.study.pairs import Pairs, Shared, Sums, run_pairs
-from ekfsim.study.plan import Plan, Task
+from ekfsim.study.plan import Plan, Task, way_of
 from ekfsim.study.results import Share, Z
 
 
@@ -51,7 +51,7 @@ class Comparison:
     def block(self, case: int) -> Callable[[int, int], Pairs]:
         """What becomes of pairs of runs: a function of the first and of how many."""
         a, b = self.a.cases[case].scene, self.b.cases[case].scene
-        return functools.partial(run_pairs, a, b, fast=self.a.request.fast)
+        return functools.partial(run_pairs, a, b, way=way_of(self.a.request))
 
     def tasks(self) -> Iterator[Task]:
         """Every block, in order."""

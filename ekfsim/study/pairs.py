@@ -12,10 +12,10 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from ekfsim.geometry import Array, Booleans
-from ekfsim.geometry.backend import used, using
 from ekfsim.scene import Scene
 from ekfsim.study.block import at_once, watched
 from ekfsim.study.tally import Tally
+from ekfsim.twins import Way, taken, taking
 
 PER_OCTAVE = 4  # bins of the logarithm of the position error
 NARROWEST = -40  # octaves of a metre: what is smaller belongs to the first bin
@@ -91,13 +91,13 @@ class Pairs:
         )
 
 
-def run_pairs(a: Scene, b: Scene, first: int, runs: int, fast: bool = False) -> Pairs:
+def run_pairs(a: Scene, b: Scene, first: int, runs: int, way: Way | None = None) -> Pairs:
     """What becomes of the runs first … first + runs − 1 under either of two settings, on the same
     draws.
 
-    fast : by code that Numba compiles
+    way : of twins.py; None: as all else in this process
     """
-    with using("numba" if fast else used()):
+    with taking(way or taken()):
         portions = min(
             at_once(a, first, runs), at_once(b, first, runs), key=lambda some: some[0][1]
         )

@@ -18,11 +18,11 @@ from ekfsim.files.scenes.load_study import Request
 from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.source import bytes_of, text_of
 from ekfsim.files.yaml.marked import parse
-from ekfsim.geometry import backend
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import BLOCK
 from ekfsim.study.block import run_block
 from ekfsim.study.tally import Tally
+from ekfsim.twins import Way, compiles, taken
 from ekfsim.version import VERSION
 
 
@@ -65,7 +65,7 @@ class Plan:
             raise UsageError(
                 f"{request.name}: puts two settings side by side; run it with `ekfsim compare`"
             )
-        if request.fast and not backend.compiles():
+        if request.fast and not compiles():
             raise UsageError("--fast needs Numba; install it with: pip install 'ekfsim[fast]'")
         keys = read(request.commands, str(request.commands), "commands").keys
         if isinstance(keys, CommandsKeys) and keys.recording is not None:
@@ -125,7 +125,7 @@ class Plan:
 
     def block(self, case: int) -> Callable[[int, int], Tally]:
         """What becomes of runs of a case: a function of the first and of how many."""
-        return functools.partial(run_block, self.cases[case].scene, fast=self.request.fast)
+        return functools.partial(run_block, self.cases[case].scene, way=way_of(self.request))
 
     @property
     def blocks(self) -> int:
@@ -148,8 +148,19 @@ class Plan:
             ),
             "set": " ".join(map(str, request.settings)),
             "reading": request.reading,
-            "fast": request.fast,
+            "fast": way_of(request) == "compiled",
+            "plain": way_of(request) == "plain",
         }
+
+
+def way_of(request: Request) -> Way:
+    """How the blocks of a study are calculated, wherever that is done: plain where all is."""
+    return "compiled" if request.fast and taken() != "plain" else taken()
+
+
+def as_option(way: Way) -> str:
+    """How a command line asks for a way that no study file asks for: "", or " --plain"."""
+    return " --plain" if way == "plain" else ""
 
 
 def world_of(request: Request) -> Path:

@@ -28,7 +28,6 @@ from program import (
 from ekfsim.errors import RunError, UsageError
 from ekfsim.files.scenes.load_study import read_request
 from ekfsim.filters import FILTERS
-from ekfsim.geometry import backend
 from ekfsim.study import engines, journal
 from ekfsim.study.plan import Plan
 from ekfsim.views.study import folder as study_folder
@@ -655,8 +654,29 @@ def test_a_fast_study_says_the_same(place):
     assert rows("again/summary.csv") == [fast]
 
 
+def test_a_plain_study_says_the_same_wherever_it_is_done(place):
+    """In worker processes too: the way travels with the block."""
+    for out, more in (("quick", ()), ("plain", ("--plain",)), ("two", ("--plain", "--workers", 2))):
+        assert ekfsim("study", "short.yaml", "--runs", 1100, *more, "-o", out).status == 0
+    (quick,), (plain,) = rows("quick/summary.csv"), rows("plain/summary.csv")
+    for name, value in quick.items():
+        assert plain[name] == value or float(plain[name]) == pytest.approx(float(value), rel=1e-9)
+    assert (place / "two/steps.csv").read_bytes() == (place / "plain/steps.csv").read_bytes()
+    told = "`ekfsim study study.yaml -o FOLDER --plain` makes this study again"
+    assert told in (place / "plain" / "study.yaml").read_text()
+    assert ekfsim("study", "plain/study.yaml", "-o", "again", "--plain").status == 0
+    assert rows("again/summary.csv") == [plain]
+
+
+def test_there_is_one_way_to_calculate():
+    for command in ("study", "compare"):
+        failed = ekfsim(command, "tour", "--plain", "--fast")
+        assert failed.status == 2
+        assert failed.err == ("ekfsim: --plain and --fast are two ways to calculate; choose one\n")
+
+
 def test_a_fast_study_without_numba_says_what_to_install(monkeypatch):
-    monkeypatch.setattr(backend, "compiles", lambda: False)
+    monkeypatch.setattr("ekfsim.study.plan.compiles", lambda: False)
     with pytest.raises(
         UsageError, match=r"--fast needs Numba; install it with: pip install 'ekfsim\[fast\]'"
     ):

@@ -10,6 +10,7 @@ from ekfsim.files.results.writing import whole_folder
 from ekfsim.files.scenes.load_study import FILTER
 from ekfsim.study.comparison import Comparison
 from ekfsim.study.pairs import Pairs
+from ekfsim.study.plan import as_option, way_of
 from ekfsim.version import VERSION
 from ekfsim.views.study.compare_picture import draw_comparison
 from ekfsim.views.study.compare_words import measures, settings
@@ -44,7 +45,8 @@ def write_table(file: TextIO, comparison: Comparison, found: Pairs) -> None:
 def lines(comparison: Comparison) -> Iterator[str]:
     """A file of this comparison."""
     request = comparison.request
-    yield "# `ekfsim compare compare.yaml` makes this comparison again."
+    plain = as_option(way_of(request))
+    yield f"# `ekfsim compare compare.yaml{plain}` makes this comparison again."
     yield from first_lines(request, comparison.a.seed)
     for name, plan, told in (("a", comparison.a, request.a), ("b", comparison.b, request.b)):
         yield f"{name}:"

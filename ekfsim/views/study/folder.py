@@ -8,7 +8,7 @@ from ekfsim.files.scenes.load_study import Request
 from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.source import bytes_of
 from ekfsim.files.yaml.marked import scalar
-from ekfsim.study.plan import Plan, world_of
+from ekfsim.study.plan import Plan, as_option, way_of, world_of
 from ekfsim.study.results import Result
 from ekfsim.study.tables import write_steps, write_summary
 from ekfsim.version import VERSION
@@ -42,7 +42,8 @@ def write_to_repeat(request: Request, file: Path, lines: Iterable[str]) -> None:
 def study_lines(plan: Plan) -> Iterator[str]:
     """A study file of this study."""
     request = plan.request
-    yield "# `ekfsim study study.yaml -o FOLDER` makes this study again."
+    plain = as_option(way_of(request))
+    yield f"# `ekfsim study study.yaml -o FOLDER{plain}` makes this study again."
     yield from first_lines(request, plan.seed)
     yield f"filters: [{', '.join(plan.filters)}]"
     if request.sweep:
