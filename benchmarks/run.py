@@ -17,10 +17,10 @@ import shapely
 from timing import optional, ratios
 
 from ekfsim.commands import Move, Repeat, Sense
+from ekfsim.diagnostics.summary import Summary
 from ekfsim.geometry import Array
 from ekfsim.localization import play
 from ekfsim.scene import Scene
-from ekfsim.summary import Summary
 from ekfsim.views.terminal.playback import views
 from ekfsim.views.words.closing import conclude
 from ekfsim.views.words.narrative import narrate

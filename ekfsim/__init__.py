@@ -51,9 +51,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ekfsim.consistency import Evidence as Evidence
-    from ekfsim.consistency import Verdict as Verdict
-    from ekfsim.consistency import nees as nees
+    from ekfsim.diagnostics.nees import nees as nees
+    from ekfsim.diagnostics.summary import Summary as Summary
+    from ekfsim.diagnostics.verdict import Evidence as Evidence
+    from ekfsim.diagnostics.verdict import Verdict as Verdict
     from ekfsim.errors import EkfsimError as EkfsimError
     from ekfsim.errors import InputError as InputError
     from ekfsim.errors import UsageError as UsageError
@@ -74,7 +75,6 @@ if TYPE_CHECKING:
     from ekfsim.records import Step as Step
     from ekfsim.scene import Scene as Scene
     from ekfsim.simulation import simulate as simulate
-    from ekfsim.summary import Summary as Summary
     from ekfsim.views.picture.frames import draw as draw
     from ekfsim.views.picture.look import Look as Look
     from ekfsim.views.terminal.playback import Playback as Playback
@@ -84,7 +84,9 @@ if TYPE_CHECKING:
 
 # Where each name lives. They are imported when first used: `ekfsim --help` must not wait for numpy.
 _HOMES = {
-    "consistency": ("Evidence", "Verdict", "nees"),
+    "diagnostics.nees": ("nees",),
+    "diagnostics.summary": ("Summary",),
+    "diagnostics.verdict": ("Evidence", "Verdict"),
     "errors": ("EkfsimError", "InputError", "UsageError"),
     "files.scenes.load": ("load_scene", "load_world"),
     "filters": ("FILTERS",),
@@ -99,7 +101,6 @@ _HOMES = {
     "records": ("Entry", "Step"),
     "scene": ("Scene",),
     "simulation": ("simulate",),
-    "summary": ("Summary",),
     "views.words.closing": ("conclude",),
     "views.picture.frames": ("draw",),
     "views.picture.look": ("Look",),

@@ -147,9 +147,9 @@ def run(
     force: bool, confidence: float, **chosen: Any,
 ) -> None:  # fmt: skip
     """Narrate COMMANDS from the first step to the last, and sum up."""
+    from ekfsim.diagnostics.summary import Summary
     from ekfsim.files.results.outputs import Outputs, kept
     from ekfsim.localization import play as steps_of
-    from ekfsim.summary import Summary
     from ekfsim.views.terminal.playback import together
     from ekfsim.views.words.closing import conclude_all
     from ekfsim.views.words.narrative import narrate

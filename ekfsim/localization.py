@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ekfsim.consistency import nees
 from ekfsim.diagnostics.ambiguity import remark as remarked
+from ekfsim.diagnostics.nees import nees
 from ekfsim.errors import UsageError
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Belief, Gaussian

@@ -68,7 +68,7 @@ def twinned(text: Callable[P, R]) -> Callable[P, R]:
     """A function of the text, stood in for by the first of its twins that suits the arguments.
 
     A twin that sees only on its way that it cannot answer returns None, and the next is asked. What
-    the function does as it is written is its attribute `text`.
+    the function does as it is written is its attribute `text`; see `as_written`.
     """
     name = f"{text.__module__}:{text.__qualname__}"
     found: dict[tuple[Way, type], tuple[Callable[..., R | None], ...]] = {}
@@ -87,6 +87,12 @@ def twinned(text: Callable[P, R]) -> Callable[P, R]:
 
     quickest.text = text  # type: ignore[attr-defined]
     return quickest
+
+
+def as_written(function: Callable[P, R]) -> Callable[P, R]:
+    """The text of a function that may have twins, for those who want no other."""
+    text: Callable[P, R] = function.text  # type: ignore[attr-defined]
+    return text
 
 
 def _twins(name: str, way: Way, first: type) -> tuple[Callable[..., R | None], ...]:

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.stats import chi2
 
 from ekfsim.commands import Sense
-from ekfsim.consistency import Evidence, Verdict
+from ekfsim.diagnostics.verdict import Evidence, Verdict
 from ekfsim.files.packaged import description_of, folder, packaged
 from ekfsim.files.scenes.load import check, read_scene
 from ekfsim.geometry import Array

@@ -1,1 +1,8 @@
-"""Whether to believe the filter, and what should be known of a reading before it is used."""
+"""Whether to believe a filter, and what should be known of a reading before it is used.
+
+nees.py       normalised estimation error squared, aware of the rank of P
+coverage.py   whether the truth is inside the ellipse and the cone
+ambiguity.py  whether a beam may meet another wall than the one predicted
+verdict.py    what one run says: ΣNIS against its band, lost or not
+summary.py    what is left of one run: errors, NIS, dead reckoning, the verdict
+"""

@@ -23,8 +23,17 @@ class Twin:
     compiled: bool = False  # by Numba: only where that is asked for
 
 
+MANY = "ekfsim.fast.many"
+NEES = "ekfsim.diagnostics.nees"
 TWINS: tuple[Twin, ...] = (
     Twin("ekfsim.diagnostics.ambiguity:sighting", "ekfsim.fast.one.ambiguity:sighting", "one pose"),
+    Twin(f"{NEES}:nees", "ekfsim.fast.one.nees:nees", "one pose, its P clearly of full rank"),
+    Twin(f"{NEES}:nees", f"{MANY}.nees:nees", "64 runs or more"),
+    Twin(
+        f"{NEES}:squared_mahalanobis",
+        "ekfsim.fast.many.nees:squared_mahalanobis",
+        "64 runs or more",
+    ),
     Twin(
         of="ekfsim.filters.chi_square:quantile",
         form="ekfsim.fast.chi_square:quantile",

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ekfsim.consistency import LOST
+from ekfsim.diagnostics.verdict import LOST
 from ekfsim.filters.belief import Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.protocol import Filter

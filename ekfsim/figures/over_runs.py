@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ekfsim.consistency import LOST
+from ekfsim.diagnostics.verdict import LOST
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.layout import Layout

@@ -42,7 +42,7 @@ def sound(P: Array) -> bool:
 
 def squares(e: Array, P: Array, tiny: float, sure: float) -> tuple[Array, Booleans]:
     """eᵀ P⁻¹ e of three entries : (N,), and where P is clearly of full rank, as in
-    consistency.py
+    fast/nees.py
     """
     value, clear = np.empty(e.shape[1:]), np.empty(e.shape[1:], bool)
     _square(np.ascontiguousarray(e), np.ascontiguousarray(P), tiny, sure, value, clear)

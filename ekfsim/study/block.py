@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ekfsim.commands import expanded_length
-from ekfsim.consistency import LOST, error
+from ekfsim.diagnostics.nees import error
+from ekfsim.diagnostics.verdict import LOST
 from ekfsim.filters.belief import Correction, posed
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.localization import play
@@ -28,7 +29,7 @@ from ekfsim.study.counting import (
     spread,
 )
 from ekfsim.study.tally import AtSteps, Extreme, OfRuns, Tally, dtype_of
-from ekfsim.twins import Way, taken, taking
+from ekfsim.twins import Way, taken, taking, twinned
 
 MOST_PARTICLES = 2_000_000  # of all runs that are watched at once: they take some 400 bytes each
 MOST_STEPS = 1000  # of a longer run so many are told of, evenly spaced, and the last
@@ -51,8 +52,14 @@ def run_block(scene: Scene, first: int, runs: int, way: Way | None = None) -> Ta
     """
     with taking(way or taken()):
         return functools.reduce(
-            operator.add, (watched(scene, *some).tally() for some in at_once(scene, first, runs))
+            operator.add, (tally_of(scene, *some) for some in at_once(scene, first, runs))
         )
+
+
+@twinned
+def tally_of(scene: Scene, first: int, runs: int) -> Tally:
+    """The same, all of them side by side."""
+    return watched(scene, first, runs).tally()
 
 
 def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
@@ -66,7 +73,7 @@ def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
 
 
 def watched(scene: Scene, first: int, runs: int) -> "Watch":
-    """The same, each run told apart at its end."""
+    """These runs, each told apart at its end."""
     watch = Watch(scene, np.arange(first, first + runs))
     before: Step | None = None
     for step in play(scene, watch.numbers):

@@ -6,7 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ekfsim.consistency import LOST, OUTSIDE, ROUNDING, error, inside_cone, squared_error
+from ekfsim.diagnostics.coverage import inside_cone
+from ekfsim.diagnostics.nees import OUTSIDE, ROUNDING, error, squared_mahalanobis
+from ekfsim.diagnostics.verdict import LOST
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array, Booleans, Integers
@@ -85,7 +87,7 @@ def covered(e: Array, P: Array) -> tuple[Booleans, Booleans]:
     """Which runs are inside their ellipse, and which have one that has an area, or are impossible :
     (N,) each
     """
-    square, rank, off = squared_error(e[..., :2], P[..., :2, :2])
+    square, rank, off = squared_mahalanobis(e[..., :2], P[..., :2, :2])
     off = off | ~np.isfinite(square) | ~np.isfinite(e[..., :2]).all(axis=-1)
     drawn: Booleans = (rank == 2) | off
     return drawn & ~off & (square <= radius_factor(COVERAGE) ** 2), drawn

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from ekfsim.consistency import Evidence
+from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.figures.album import Album
 from ekfsim.figures.classroom import gallery
 from ekfsim.figures.classroom.proofs import shipped

@@ -9,7 +9,7 @@ from numerics import covariance, definite
 from problems import ROOM, begun, classroom, landmark, problem
 from scipy.stats import chi2
 
-from ekfsim.consistency import Evidence, Verdict
+from ekfsim.diagnostics.verdict import Evidence, Verdict
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian, Particles, Refused

@@ -10,7 +10,7 @@ from numerics import covariance, definite
 from problems import ROOM, classroom
 from scenes import rich, unbounded
 
-from ekfsim.consistency import nees, squared_error
+from ekfsim.diagnostics.nees import nees, squared_mahalanobis
 from ekfsim.filters import unrolled
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.correcting import Linearized, corrected
@@ -164,9 +164,9 @@ def test_the_nees_of_many_runs_is_that_of_each(name, random):
     e[::2] = np.matvec(P[::2], e[::2])
     for n in (3, 2):
         with using(name):
-            value, rank, impossible = squared_error(e[:, :n], P[:, :n, :n])
+            value, rank, impossible = squared_mahalanobis(e[:, :n], P[:, :n, :n])
         for k in range(RUNS):
-            one = squared_error(e[k : k + 1, :n], P[k : k + 1, :n, :n])
+            one = squared_mahalanobis(e[k : k + 1, :n], P[k : k + 1, :n, :n])
             assert (rank[k], impossible[k]) == (one[1][0], one[2][0])
             assert impossible[k] or value[k] == pytest.approx(float(one[0][0]), rel=1e-9, abs=1e-12)
         assert set(rank.tolist()) == set(range(n + 1))

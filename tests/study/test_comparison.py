@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose
 from scenes import NOISE, scene
 
 from ekfsim.commands import Move, Sense
-from ekfsim.consistency import LOST, error, nees
+from ekfsim.diagnostics.nees import error, nees
+from ekfsim.diagnostics.verdict import LOST
 from ekfsim.filters.chi_square import quantile
 from ekfsim.localization import play
 from ekfsim.study.block import run_block

@@ -17,7 +17,8 @@ from scenes import NOISE, scene
 from scipy.stats import binom, chi2, norm
 
 from ekfsim.commands import Move, Sense
-from ekfsim.consistency import inside_cone, inside_ellipse, nees
+from ekfsim.diagnostics.coverage import inside_cone, inside_ellipse
+from ekfsim.diagnostics.nees import nees
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.load import read_scene
 from ekfsim.filters.belief import Gaussian

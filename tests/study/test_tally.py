@@ -11,7 +11,9 @@ from scipy import stats
 from systems_scenes import gnss, mower
 
 from ekfsim.commands import Move, Sense
-from ekfsim.consistency import Evidence, inside_cone, inside_ellipse, squared_error
+from ekfsim.diagnostics.coverage import inside_cone, inside_ellipse
+from ekfsim.diagnostics.nees import squared_mahalanobis
+from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.filters.belief import posed
 from ekfsim.localization import play
 from ekfsim.study import block
@@ -68,7 +70,7 @@ def test_a_tally_counts_what_each_run_alone_says(name):
             inside_ellipse(pose, truth, 0.954) for pose, truth in zip(poses, truths, strict=True)
         ]
         blocks = [
-            squared_error(pose.mean[:2] - truth[:2], pose.covariance[:2, :2])
+            squared_mahalanobis(pose.mean[:2] - truth[:2], pose.covariance[:2, :2])
             for pose, truth in zip(poses, truths, strict=True)
         ]
         drawn = [rank == 2 or impossible for _, rank, impossible in blocks]

@@ -10,7 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ekfsim.commands import Move
-from ekfsim.consistency import LOST, error, squared_error
+from ekfsim.diagnostics.nees import error, squared_mahalanobis
+from ekfsim.diagnostics.verdict import LOST
 from ekfsim.figures.album import (
     BLACK,
     GREEN,
@@ -359,7 +360,8 @@ def _holds(k: float) -> float:
 def _deviations(step: Step) -> Array:
     """How many standard deviations each run's true position lies from its estimate : (N,)"""
     assert step.entry.truth is not None
-    square, _, _ = squared_error(
+    square, _, _ = squared_mahalanobis(
         error(step.posterior, step.entry.truth)[:, :2], step.posterior.covariance[:, :2, :2]
     )
-    return np.sqrt(square)
+    deviations: Array = np.sqrt(square)
+    return deviations

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ekfsim.consistency import error, inside_cone, inside_ellipse
+from ekfsim.diagnostics.coverage import inside_cone, inside_ellipse
+from ekfsim.diagnostics.nees import error
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.load import read_scene
 from ekfsim.filters.belief import posed

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ekfsim.consistency import nees
+from ekfsim.diagnostics.nees import nees
 from ekfsim.figures.mower.told import as_told_by, with_angles_of
 from ekfsim.figures.track import Track
 from ekfsim.filters.belief import Gaussian

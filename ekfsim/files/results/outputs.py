@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
+from ekfsim.diagnostics.summary import Summary
 from ekfsim.errors import UsageError
 from ekfsim.files.looking import exists, is_folder
 from ekfsim.files.results.trace import Trace
@@ -16,7 +17,6 @@ from ekfsim.files.results.writing import refuse_existing, special, told, whole_t
 from ekfsim.provenance import provenance
 from ekfsim.records import Step
 from ekfsim.scene import Scene
-from ekfsim.summary import Summary
 
 
 class Sink(Protocol):

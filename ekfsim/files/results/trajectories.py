@@ -6,6 +6,7 @@ from typing import TextIO
 
 import numpy as np
 
+from ekfsim.diagnostics.summary import Instants
 from ekfsim.files.results.trace import ODOMETRY
 from ekfsim.filters.belief import Refused, posed
 from ekfsim.geometry import Array
@@ -14,7 +15,6 @@ from ekfsim.printable import cell
 from ekfsim.provenance import provenance, told_in_a_line
 from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
-from ekfsim.summary import Instants
 
 
 class Tum:

@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterable
 from dataclasses import InitVar, dataclass, field
 from typing import Protocol, TextIO
 
+from ekfsim.diagnostics.summary import Summary
 from ekfsim.files.results.outputs import kept
 from ekfsim.localization import play
 from ekfsim.records import Step
 from ekfsim.scene import Scene
-from ekfsim.summary import Summary
 from ekfsim.views.terminal.keyboard import HELP, Action, Counted, Key
 from ekfsim.views.terminal.playback import Playback, View
 from ekfsim.views.words.closing import conclude_all

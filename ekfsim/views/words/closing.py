@@ -5,12 +5,12 @@ its evidence.
 import math
 from collections.abc import Sequence
 
-from ekfsim.consistency import BAND, LOST, Evidence, Verdict
+from ekfsim.diagnostics.summary import Errors, Summary
+from ekfsim.diagnostics.verdict import BAND, LOST, Evidence, Verdict
 from ekfsim.filters.belief import Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.records import Nees
 from ekfsim.scene import Scene
-from ekfsim.summary import Errors, Summary
 from ekfsim.views.words.numbers import number, turn
 from ekfsim.views.words.text_table import aligned
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ekfsim.consistency import SURPRISING, inside_cone, inside_ellipse
+from ekfsim.diagnostics.coverage import inside_cone, inside_ellipse
+from ekfsim.diagnostics.verdict import SURPRISING
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Particles
 from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse

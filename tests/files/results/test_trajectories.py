@@ -11,13 +11,13 @@ from scenes import rich, scene
 from systems_scenes import gnss, mower
 
 from ekfsim.commands import Kidnap, Move, Say, Sense
+from ekfsim.diagnostics.summary import Summary
 from ekfsim.files.results.trajectories import COLUMNS, DRIVEN_COLUMNS, Table, Tum
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry.ellipse import ellipse
 from ekfsim.localization import play
 from ekfsim.provenance import provenance
-from ekfsim.summary import Summary
 from ekfsim.systems.drives import Stretch, Stretches
 
 

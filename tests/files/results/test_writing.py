@@ -9,12 +9,12 @@ import pytest
 from scenes import scene
 
 from ekfsim.commands import Move
+from ekfsim.diagnostics.summary import Summary
 from ekfsim.errors import RunError, UsageError
 from ekfsim.files.results.outputs import Outputs
 from ekfsim.files.results.partial import HOST
 from ekfsim.files.results.writing import whole_file, whole_folder, whole_text
 from ekfsim.localization import play
-from ekfsim.summary import Summary
 
 FULL = Path("/dev/full")
 needs_full = pytest.mark.skipif(not FULL.exists(), reason="no /dev/full here")

@@ -5,8 +5,8 @@ from recordings import recording, speeds
 from scenes import scene
 
 from ekfsim.commands import Move, Sense
+from ekfsim.diagnostics.summary import Summary
 from ekfsim.localization import play
-from ekfsim.summary import Summary
 from ekfsim.views.terminal.keyboard import HELP, Action
 from ekfsim.views.terminal.playback import views
 from ekfsim.views.terminal.player import Player

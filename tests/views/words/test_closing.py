@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from ekfsim.consistency import Evidence
+from ekfsim.diagnostics.summary import Errors, Summary
+from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.filters.belief import Refused
 from ekfsim.records import Nees
-from ekfsim.summary import Errors, Summary
 from ekfsim.views.words.closing import conclude, sentence
 
 IMPOSSIBLE = "the belief is impossible: the error has a part where the covariance claims certainty"

@@ -11,11 +11,11 @@ from scenes import rich, scene, unbounded
 from scipy.stats import chi2
 
 from ekfsim.commands import Kidnap, Move, Say, Sense
+from ekfsim.diagnostics.summary import Errors, Summary
 from ekfsim.files.results.outputs import Outputs
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.geometry.outline import path_error
 from ekfsim.localization import play
-from ekfsim.summary import Errors, Summary
 
 FOUR = {"rmse", "mean", "sd", "max"}
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Any, Self
 
-from ekfsim.consistency import Evidence
+from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap_one

@@ -1,0 +1,23 @@
+"""Whether the truth is inside what is drawn of a belief."""
+
+from ekfsim.diagnostics.nees import OUTSIDE, error, squared_mahalanobis
+from ekfsim.filters.belief import Gaussian
+from ekfsim.geometry import Array, Booleans
+from ekfsim.geometry.ellipse import cone_factor, radius_factor
+
+
+def inside_ellipse(belief: Gaussian, truth: Array, probability: float) -> Booleans:
+    """Whether the true position lies inside the ellipse : (…)
+
+    eᵀ P⁺ e ≤ k² on the position's block
+    """
+    e, P = error(belief, truth)[..., :2], belief.covariance[..., :2, :2]
+    value, _, impossible = squared_mahalanobis(e, P)
+    return ~impossible & (value <= radius_factor(probability) ** 2)
+
+
+def inside_cone(belief: Gaussian, truth: Array, probability: float) -> Booleans:
+    """Whether the true heading lies inside the cone : (…)"""
+    e, variance = error(belief, truth)[..., 2], belief.covariance[..., 2, 2]
+    squared_reach = cone_factor(probability) ** 2 * variance
+    return (e * e <= squared_reach) | ((variance <= 0) & (abs(e) <= OUTSIDE))

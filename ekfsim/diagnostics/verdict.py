@@ -1,0 +1,78 @@
+"""What one run says of its filter: lost or not, and ΣNIS against its band.
+
+Of many runs more can be said: `ekfsim.study.verdict`.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from ekfsim.filters.belief import Refused
+from ekfsim.filters.chi_square import band, quantile
+from ekfsim.records import Nees, Step
+
+LOST = 0.999  # NEES beyond this χ² quantile: lost
+BAND = 0.99  # the two-sided band that ΣNIS is held against
+# a single NIS or NEES beyond this χ² quantile is called so; below no quantile is it surprising
+SURPRISING = 0.99
+
+
+def lost(measured: Nees) -> bool:
+    """Whether one run's NEES lies beyond its χ² 99.9 % quantile, or its belief is impossible."""
+    return bool(measured.impossible) or float(measured.value) > quantile(LOST, int(measured.dof))
+
+
+class Verdict(Enum):
+    """What can be said of one run. The value is the word; `Evidence.sentence` gives its reason."""
+
+    LOST = "lost"
+    OVER_CONFIDENT = "over-confident"
+    OVER_CAUTIOUS = "over-cautious"
+    CONSISTENT = "consistent"
+    NO_EVIDENCE = "no evidence"
+
+
+@dataclass
+class Evidence:
+    """What the steps of one run say for and against its filter, gathered one at a time."""
+
+    nis_sum: float = 0.0
+    nis_dof: int = 0  # of the readings that had a NIS together, refused ones included
+    lost_from: int | None = None  # index of the step from which on the run is lost without a gap
+    last_nees: Nees | None = None
+    nis_refused: int = 0  # how many readings of the sum were refused
+    nis_readings: int = 0  # how many readings it sums
+
+    def add(self, step: Step) -> None:
+        """Take one more step into account."""
+        if step.correction is not None and not np.isnan(step.correction.nis):
+            self.nis_sum += float(step.correction.nis)
+            self.nis_dof += step.correction.innovation.shape[-1]
+            self.nis_readings += 1
+            self.nis_refused += int(step.correction.refused != Refused.NOT)
+        if step.nees is not None:
+            self.last_nees = step.nees
+            if not lost(step.nees):
+                self.lost_from = None
+            elif self.lost_from is None:
+                self.lost_from = step.entry.index
+
+    @property
+    def nis_band(self) -> tuple[float, float]:
+        """The two-sided 99 % band of χ² for ΣNIS."""
+        return band(BAND, self.nis_dof)
+
+    @property
+    def verdict(self) -> Verdict:
+        """Lost, else by ΣNIS against its band. NEES over time is correlated and never summed into a
+        verdict.
+        """
+        low, high = self.nis_band
+        if self.lost_from is not None:
+            return Verdict.LOST
+        if self.nis_dof == 0:
+            return Verdict.NO_EVIDENCE
+        if self.nis_sum > high:
+            return Verdict.OVER_CONFIDENT
+        return Verdict.OVER_CAUTIOUS if self.nis_sum < low else Verdict.CONSISTENT

@@ -1,0 +1,1 @@
+"""Twins for many runs side by side, in NumPy."""
