@@ -20,10 +20,11 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 import shapely
-from timing import Task, optional, ratios
+from timing import WAYS, Task, optional, ratios
 
-from ekfsim.geometry import Array, backend
-from ekfsim.geometry.walls import Walls
+from ekfsim import twins
+from ekfsim.geometry import Array
+from ekfsim.raycast.walls import Walls
 
 SIDE = 100.0  # m
 REACH = 150.0  # m, more than the map's diagonal: the peers' beams have an end
@@ -142,12 +143,12 @@ def compare(
     calls: Mapping[str, float],
     effort: tuple[int, float],
 ) -> None:
-    """Print how both backends fare; first that they answer alike."""
+    """Print how NumPy and Numba fare; first that they answer alike."""
     plain = walls.cast(origins, angles)
-    for name in backend.BACKENDS:
-        if name == "numba" and optional("numba") is None:
+    for name, way in WAYS.items():
+        if way == "compiled" and optional("numba") is None:
             continue
-        backend.use(name)
+        twins.take(way)
         hit = walls.cast(origins, angles)
         np.testing.assert_allclose(hit.range, plain.range, rtol=1e-12, atol=1e-12)
         print(f"{title}, {name}")
@@ -155,7 +156,7 @@ def compare(
             lambda: walls.cast(origins, angles), peers, *effort, calls, len(angles)
         ):
             print(ratio)
-    backend.use("numpy")
+    twins.take("quick")
 
 
 def agree(ours: Array, theirs: Array) -> None:

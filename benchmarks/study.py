@@ -21,13 +21,14 @@ from typing import Any
 
 import numpy as np
 import shapely
-from timing import Task, optional, ratios
+from timing import WAYS, Task, optional, ratios
 
+from ekfsim import twins
 from ekfsim.commands import Move, Repeat, Sense
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.ekf import EKF
-from ekfsim.geometry import Array, backend
+from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap_one
 from ekfsim.localization import localize, play
 from ekfsim.models.motions.move_turn import MoveTurn
@@ -54,10 +55,10 @@ def main() -> None:
         return
     log, scene, some = recorded(), among_pillars(), list(range(10 if quick else 25))
     trees, all_runs = Trees(scene.world.map), np.arange(RUNS)
-    for name in ("numpy", "numba"):
-        if name == "numba" and optional("numba") is None:
+    for name, way in WAYS.items():
+        if way == "compiled" and optional("numba") is None:
             continue
-        backend.use(name)
+        twins.take(way)
         *_, last = localize(log.entries, EKF(), log.first)
         difference = max(
             np.abs(last.posterior.mean[run] - filtered(log, run)[0]).max() for run in some

@@ -12,11 +12,16 @@ from statistics import median
 from time import process_time
 from types import MappingProxyType, ModuleType
 
+from ekfsim.twins import Way
+
 # s that a candidate runs in each round: long against the clock's tick, short against a neighbour's
 # burst
 SLICE = 0.02
 
 Task = Callable[[], object]
+
+# what many beams and many runs are calculated with, and how the program is told to
+WAYS: Mapping[str, Way] = MappingProxyType({"numpy": "quick", "numba": "compiled"})
 
 
 @dataclass(frozen=True, slots=True)

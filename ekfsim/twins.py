@@ -17,7 +17,7 @@ import importlib.util
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
-from typing import Literal, ParamSpec, TypeVar, get_args
+from typing import Literal, ParamSpec, TypeVar, cast, get_args
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -93,6 +93,22 @@ def as_written(function: Callable[P, R]) -> Callable[P, R]:
     """The text of a function that may have twins, for those who want no other."""
     text: Callable[P, R] = function.text  # type: ignore[attr-defined]
     return text
+
+
+def compiled(function: Callable[P, R]) -> Callable[P, R]:
+    """A function that Numba compiles at its first call, and keeps for later processes where there
+    is a folder to keep it in.
+
+    What is kept is thrown away when the function's own file changes, and only then: what another
+    file fixes, a tolerance say, comes as an argument.
+    """
+    from numba import njit  # the extra `fast`: modules that are made by it alone come here
+
+    try:
+        made = njit(cache=True, nogil=True, error_model="numpy")(function)
+    except RuntimeError:  # no folder that can be written
+        made = njit(nogil=True, error_model="numpy")(function)
+    return cast("Callable[P, R]", made)
 
 
 def _twins(name: str, way: Way, first: type) -> tuple[Callable[..., R | None], ...]:

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ekfsim.geometry import Array
-from ekfsim.geometry.walls import BOUNDARY as BOUNDARY
-from ekfsim.geometry.walls import Walls
 from ekfsim.models.layout import POSE, Layout
+from ekfsim.raycast.walls import BOUNDARY as BOUNDARY
+from ekfsim.raycast.walls import Walls
 from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.faults import NOTHING_WRONG, DriveFaults
 from ekfsim.systems.instruments import Instrument, Surroundings, Target

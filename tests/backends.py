@@ -1,5 +1,5 @@
-"""The backends that are installed."""
+"""The ways to calculate quickly that are installed here."""
 
-from ekfsim.geometry import backend
+from ekfsim import twins
 
-BACKENDS = backend.BACKENDS if backend.compiles() else ("numpy",)
+BACKENDS = ("quick", "compiled") if twins.compiles() else ("quick",)

@@ -7,13 +7,13 @@ import numpy as np
 from scenes import ROOM, world
 
 from ekfsim.filters.belief import Gaussian
-from ekfsim.geometry.walls import Walls
 from ekfsim.models.layout import SPEED_POSE
 from ekfsim.models.motions.wheel_speeds import WheelSpeeds
 from ekfsim.models.motions.wheels import GyroWheels
 from ekfsim.models.sensors.landmarks import MarkerAngles, RangeOnly
 from ekfsim.models.sensors.position import Position
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
+from ekfsim.raycast.walls import Walls
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.scene import Scene
 from ekfsim.systems import SYSTEMS

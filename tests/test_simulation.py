@@ -11,10 +11,10 @@ from systems_scenes import mower
 
 from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
 from ekfsim.errors import UsageError
-from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.raycast.walls import Walls
 from ekfsim.records import Control, Reading
 from ekfsim.simulation import simulate
 from ekfsim.simulation.draws import Draws, particle_generators

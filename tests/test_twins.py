@@ -53,3 +53,11 @@ def test_ways_that_are_none_are_refused(monkeypatch):
     with pytest.raises(ModuleNotFoundError, match="extra `fast`"):
         twins.take("compiled")
     assert twins.taken() == "quick"
+
+
+@pytest.mark.skipif(not twins.compiles(), reason="the extra `fast` is not installed")
+def test_where_no_folder_can_be_written_a_function_is_compiled_anew(monkeypatch):
+    from numba.core import caching
+
+    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
+    assert twins.compiled(lambda x: x + 1)(1) == 2

@@ -26,6 +26,17 @@ class Twin:
 MANY = "ekfsim.fast.many"
 NEES = "ekfsim.diagnostics.nees"
 TWINS: tuple[Twin, ...] = (
+    Twin(
+        "ekfsim.raycast.walls:Walls.cast",
+        "ekfsim.raycast.searches.compiled:cast",
+        "many beams",
+        compiled=True,
+    ),
+    Twin("ekfsim.raycast.walls:Walls.cast", "ekfsim.raycast.searches.choice:cast", "any beams"),
+    Twin(
+        "ekfsim.raycast.walls:Walls.first", "ekfsim.raycast.searches.single_beam:first", "any beam"
+    ),
+    Twin("ekfsim.raycast.ground:Ground.reach", "ekfsim.fast.one.ground:reach", "from one place"),
     Twin("ekfsim.diagnostics.ambiguity:sighting", "ekfsim.fast.one.ambiguity:sighting", "one pose"),
     Twin(f"{NEES}:nees", "ekfsim.fast.one.nees:nees", "one pose, its P clearly of full rank"),
     Twin(f"{NEES}:nees", f"{MANY}.nees:nees", "64 runs or more"),

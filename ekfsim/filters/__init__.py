@@ -25,7 +25,7 @@ have:
     conditioning_one.py  one robot, in plain floats
     unrolled.py
     many runs side by side, a state of three and a reading of one number: entry by entry
-    compiled.py    the same by Numba, where geometry/backend.py has been told to use it
+    compiled.py    the same by Numba, where twins.py has been told to take it
     stretch.py     many predictions of one run in a row, for planar odometry
 """
 

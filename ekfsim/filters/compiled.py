@@ -1,6 +1,6 @@
 """What unrolled.py does, and the NEES, compiled by Numba: the extra `fast`.
 
-Imported only where geometry/backend.py has been told to use it. All arrays have their entries in
+Imported only where twins.py has been told to take it. All arrays have their entries in
 front and the runs behind, (3, 3, N), one stretch of memory. Most loops are short on purpose: then
 several runs are taken at once.
 """
@@ -8,7 +8,7 @@ several runs are taken at once.
 import numpy as np
 
 from ekfsim.geometry import Array, Booleans
-from ekfsim.geometry.compiled import compiled
+from ekfsim.twins import compiled
 
 
 def propagated(P: Array, F: Array, G: Array, M: Array) -> Array | None:

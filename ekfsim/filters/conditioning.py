@@ -13,7 +13,7 @@ import numpy as np
 from ekfsim.filters.algebra import ROUNDING, symmetric
 from ekfsim.filters.conditioning_one import conditioned_one, is_covariance_one
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.lanes import back, front
+from ekfsim.geometry.soa import back, front
 
 
 class Conditioned(NamedTuple):

@@ -9,14 +9,15 @@ those runs alone. A test holds the two equal.
 
 import numpy as np
 
+from ekfsim import twins
 from ekfsim.filters.algebra import SHARP
 from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.conditioning import covariance as as_covariance
 from ekfsim.filters.correcting import Linearized, corrected
-from ekfsim.geometry import Array, Booleans, backend
+from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap
-from ekfsim.geometry.lanes import back, front
+from ekfsim.geometry.soa import back, front
 
 MANY = 64  # runs from which on this pays
 # what the first two columns of F are where no motion depends on the place
@@ -32,7 +33,7 @@ def predicted(P: Array, F: Array, G: Array, M: Array, Q: Array | float) -> Array
     if F.shape[-1] != 3 or len(F) < MANY or not len(P) == len(G) == len(M) == len(F):
         return None
     propagated = _propagated
-    if backend.used() == "numba":
+    if twins.taken() == "compiled":
         from ekfsim.filters.compiled import propagated
     new = propagated(front(P), front(F), front(G), front(M))
     if new is None:
@@ -86,7 +87,7 @@ def updated(
 ) -> tuple[Gaussian, Correction]:
     """K = P⁻ Hᵀ/S      x = x⁻ + K ν      P = P⁻ − P⁻ Hᵀ H P⁻/S          of one number in N runs"""
     revised = _revised
-    if backend.used() == "numba":
+    if twins.taken() == "compiled":
         from ekfsim.filters.compiled import revised
     _, h, ν, H, R = reading
     x, P = front(prior.mean, 1), front(prior.covariance)
@@ -129,7 +130,7 @@ def _forced(P: Array) -> Array:
     soon seen.
     """
     sound = _sound
-    if backend.used() == "numba":
+    if twins.taken() == "compiled":
         from ekfsim.filters.compiled import sound
     with np.errstate(invalid="ignore"):
         return P if sound(P) else front(as_covariance(back(P)))

@@ -1,6 +1,6 @@
 """The classroom's motion and sensor, linearised for many runs by Numba: the extra `fast`.
 
-Imported only where geometry/backend.py has been told to use it. All arrays have their entries in
+Imported only where twins.py has been told to take it. All arrays have their entries in
 front and the runs behind: x : (3, N), F : (3, 3, N).
 """
 
@@ -9,8 +9,8 @@ import math
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.compiled import compiled
-from ekfsim.geometry.lanes import back, front, lanes
+from ekfsim.geometry.soa import back, front, lanes
+from ekfsim.twins import compiled
 
 
 def moved(

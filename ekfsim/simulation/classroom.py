@@ -8,11 +8,11 @@ import numpy as np
 from ekfsim.commands import Kidnap, Move, Say, Sense, expand
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
-from ekfsim.geometry.ground import CLEARANCE
-from ekfsim.geometry.lanes import front, lanes
-from ekfsim.geometry.walls import Walls
+from ekfsim.geometry.soa import front, lanes
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.raycast.ground import CLEARANCE
+from ekfsim.raycast.walls import Walls
 from ekfsim.records import Control, Entry, Reading
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import Draws, true_start

@@ -13,7 +13,6 @@ import numpy as np
 
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap
-from ekfsim.geometry.walls import Walls
 from ekfsim.models.layout import Layout
 from ekfsim.models.protocols import Sensor
 from ekfsim.models.sensors.infrared import COLOURS, InfraredBeam
@@ -23,6 +22,7 @@ from ekfsim.models.sensors.offset import LandmarkOffset
 from ekfsim.models.sensors.position import Position
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
 from ekfsim.models.sensors.yaw import Yaw
+from ekfsim.raycast.walls import Walls
 from ekfsim.systems.document import DocumentReading
 
 ALL_ROUND = ((-math.pi, math.pi),)

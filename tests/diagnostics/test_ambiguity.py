@@ -10,11 +10,11 @@ from ekfsim.diagnostics.ambiguity import GRAZING, remark, sighting
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.load import load_scene, load_world
 from ekfsim.geometry.angles import wrap
-from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
 from ekfsim.models.sensors.frozen import Frozen
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.yaw import Yaw
+from ekfsim.raycast.walls import Walls
 
 ROOM = np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])
 KITE = np.array([[4, 3], [6, 2.5], [6.5, 4], [5, 5.5]])

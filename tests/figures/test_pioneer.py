@@ -17,10 +17,10 @@ from ekfsim.figures.pioneer import filters as pioneer_filters
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.ukf import UKF
-from ekfsim.geometry.walls import Walls
 from ekfsim.models.sensors.infrared import COLOURS
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.polar import cartesian, cartesian_jacobian, cartesian_moments
+from ekfsim.raycast.walls import Walls
 from ekfsim.records import Log
 from ekfsim.simulation.bench import gaussian, readings
 from ekfsim.systems.instruments import Infrared, Ultrasonic

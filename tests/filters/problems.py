@@ -10,11 +10,11 @@ from numerics import covariance
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.protocol import Beginning
-from ekfsim.geometry.walls import Walls
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.protocols import Quantity
 from ekfsim.models.sensors.landmarks import RangeBearing
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.raycast.walls import Walls
 
 ROOM = Walls.of({"boundary": np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])})
 

@@ -15,10 +15,10 @@ from ekfsim.commands import Move, Sense
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.conditioning import covariance
 from ekfsim.filters.stretch import stretch
-from ekfsim.geometry.backend import using
 from ekfsim.localization import first_belief
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.protocols import Quantity
+from ekfsim.twins import taking
 from ekfsim.world import Noise
 
 LINEARISED = ["kf", "ekf", "iekf"]
@@ -157,7 +157,7 @@ def test_the_twin_of_many_runs_is_right_to_six_digits(backend):
     problems = [problem(random, 3, 1) for _ in range(MANY)]
     P, H, R = (np.stack(each) for each in zip(*problems, strict=True))
     first = Gaussian(np.zeros((MANY, 3)), P)
-    with using(backend):
+    with taking(backend):
         posterior, correction = begun("ekf", first).update(
             first, Straight(H, R), np.zeros((MANY, 1))
         )
@@ -266,7 +266,7 @@ def test_a_covariance_stays_one_in_every_world(name, hard):
 
 
 @pytest.mark.parametrize(
-    ("name", "backend"), [*((name, "numpy") for name in EXACT), ("ekf", BACKENDS[-1])]
+    ("name", "backend"), [*((name, "quick") for name in EXACT), ("ekf", BACKENDS[-1])]
 )
 @pytest.mark.parametrize("off", [1e-3, 1e-6, 1e-8])
 def test_the_way_back_leaves_a_covariance(name, backend, off):
@@ -284,7 +284,7 @@ def test_the_way_back_leaves_a_covariance(name, backend, off):
     made = replace(
         made, world=replace(made.world, told=replace(made.world.told, sigma=np.array([0, 0, 1.0])))
     )
-    with using(backend):
+    with taking(backend):
         for step in play(made, np.arange(MANY)):
             sound(step.posterior.covariance)
     for step in play(made):

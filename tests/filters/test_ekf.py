@@ -24,10 +24,10 @@ from ekfsim.commands import Move, Sense
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ekf import EKF
-from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.raycast.walls import Walls
 from ekfsim.records import Control, Reading
 
 seeds = st.integers(0, 2**32 - 1)

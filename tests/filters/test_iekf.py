@@ -15,10 +15,10 @@ from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.iekf import IEKF
-from ekfsim.geometry.walls import Walls
 from ekfsim.localization import first_belief, localize, play
 from ekfsim.models.protocols import Quantity
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.raycast.walls import Walls
 from ekfsim.simulation import simulate
 
 seeds = st.integers(0, 2**32 - 1)

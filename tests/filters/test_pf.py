@@ -9,11 +9,11 @@ from scipy.stats import multivariate_normal
 from ekfsim.filters.belief import Gaussian, Particles, Refused
 from ekfsim.filters.pf import PF, systematic
 from ekfsim.filters.protocol import Beginning
-from ekfsim.geometry.walls import Walls
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.motions.wheels import GyroWheels
 from ekfsim.models.protocols import Quantity
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.raycast.walls import Walls
 
 POST = Walls.of({"post": np.array([[5, -0.2], [5.4, -0.2], [5.4, 0.2], [5, 0.2]])})
 

@@ -15,11 +15,11 @@ from ekfsim.filters.conditioning import square_root
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.ukf import UKF
 from ekfsim.filters.unscented import reach
-from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.protocols import Quantity
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.raycast.walls import Walls
 
 
 class Bent:

@@ -9,10 +9,10 @@ from test_ukf import Bent
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ukf import UKF
 from ekfsim.filters.ukf_augmented import AugmentedUKF, augmented
-from ekfsim.geometry.walls import Walls
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.yaw import Yaw
+from ekfsim.raycast.walls import Walls
 
 
 def by_hand(mean, P, function):

@@ -15,13 +15,13 @@ from ekfsim.filters import unrolled
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.correcting import Linearized, corrected
 from ekfsim.filters.ekf import EKF
-from ekfsim.geometry.backend import using
-from ekfsim.geometry.lanes import lanes
-from ekfsim.geometry.walls import Walls
+from ekfsim.geometry.soa import lanes
 from ekfsim.localization import play
 from ekfsim.models.motions.wheels import GyroWheels
 from ekfsim.models.sensors.landmarks import BearingOnly, RangeOnly
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.raycast.walls import Walls
+from ekfsim.twins import taking
 
 RUNS = 200
 NEAR = {"rtol": 1e-12, "atol": 1e-12}
@@ -39,7 +39,7 @@ def test_a_prediction_is_that_of_the_matrices(name, process, random):
     (x, P), _, motion = classroom(random, (RUNS,))
     u = random.uniform(-1, 1, (RUNS, 2))
     for F, G, M in (motion.linearize(x, u)[1:4], (motion.F(x, u), motion.G(x, u), motion.M(u))):
-        with using(name):
+        with taking(name):
             new = unrolled.predicted(P, F, G, M, process)
         np.testing.assert_allclose(new, F @ P @ F.mT + G @ M @ G.mT + process, **NEAR)
         np.testing.assert_array_equal(new, new.mT)
@@ -52,7 +52,7 @@ def test_wheels_with_a_gyro_and_a_clock_are_predicted_so_too(name, random):
     u = np.concatenate([random.uniform(-1, 1, (RUNS, 3)), np.full((RUNS, 1), 0.1)], axis=-1)
     _, F, G, M, Q = motion.linearize(x, u)
     M = np.broadcast_to(M, (RUNS, *M.shape[-2:]))
-    with using(name):
+    with taking(name):
         new = unrolled.predicted(P, F, G, M, Q)
     np.testing.assert_allclose(new, F @ P @ F.mT + G @ M @ G.mT + Q, **NEAR)
 
@@ -61,7 +61,7 @@ def test_wheels_with_a_gyro_and_a_clock_are_predicted_so_too(name, random):
 def test_what_it_does_not_know_is_left_to_the_matrices(name, random):
     (x, P), _, motion = classroom(random, (RUNS,))
     _, F, G, M, Q = motion.linearize(x, random.uniform(-1, 1, (RUNS, 2)))
-    with using(name):
+    with taking(name):
         for i, j in np.ndindex(3, 3):
             if (i, j) not in ((0, 2), (1, 2)):
                 other = F.copy()
@@ -102,7 +102,7 @@ def test_an_update_is_that_of_the_matrices(name, number, gate, random):
     P[2::7] = aside[:, :, None] * aside[:, None, :]  # H P Hᵀ is what rounding leaves of 0
     prior, reading = Gaussian(x, P), Linearized(z, h, sensor.residual(z, h), H, R)
     belief, correction = corrected(prior, reading, skip, gate, (2,))
-    with using(name):
+    with taking(name):
         fast, told = unrolled.updated(prior, reading, skip, gate, 2)
     assert unrolled.knows(x, z, H)
     np.testing.assert_allclose(fast.mean, belief.mean, **NEAR)
@@ -122,7 +122,7 @@ def test_a_sharp_laser_leaves_its_own_doubt_and_no_rounding(name):
     """A beam along x, the heading known: of 0.01 m² its R is left, be that as small as it may."""
     x, P = np.tile([3.0, 4.0, 0.0], (RUNS, 1)), np.tile(np.diag([0.01, 0.01, 0.0]), (RUNS, 1, 1))
     laser = Laser(ROOM, 0.0, 1e-8)
-    with using(name):
+    with taking(name):
         posterior, correction = EKF().update(Gaussian(x, P), laser, np.full((RUNS, 1), 7.0))
     np.testing.assert_allclose(posterior.covariance[:, 0, 0], correction.R[:, 0, 0], rtol=1e-9)
 
@@ -132,7 +132,7 @@ def test_a_beam_along_a_wall_among_others(name, random):
     x = random.uniform((1, 1, -3), (9, 7, 3), (RUNS, 3))
     x[::3] = [-1.0, 0.0, 0.0]
     laser = Laser(ROOM, 0.0, 0.02)
-    with using(name):
+    with taking(name):
         many = laser.linearize(x)
     assert np.isnan(many[0][::3]).all()
     for k in range(RUNS):
@@ -145,7 +145,7 @@ def test_an_update_changes_nothing_that_it_was_given(name, random):
     (x, P), laser, motion = classroom(random, (RUNS,))
     z, u = laser.h(x) + 0.01, random.uniform(-1, 1, (RUNS, 2))
     before = [each.copy() for each in (x, P, z, u)]
-    with using(name):
+    with taking(name):
         EKF(0.5).update(Gaussian(x, P), laser, z, np.arange(RUNS) % 2 == 0)
         EKF().predict(Gaussian(x, P), motion, u)
         nees(Gaussian(x, P), x + 0.1)
@@ -163,7 +163,7 @@ def test_the_nees_of_many_runs_is_that_of_each(name, random):
     e = random.normal(size=(RUNS, 3)) * 0.1
     e[::2] = np.matvec(P[::2], e[::2])
     for n in (3, 2):
-        with using(name):
+        with taking(name):
             value, rank, impossible = squared_mahalanobis(e[:, :n], P[:, :n, :n])
         for k in range(RUNS):
             one = squared_mahalanobis(e[k : k + 1, :n], P[k : k + 1, :n, :n])
@@ -180,7 +180,7 @@ def test_a_run_of_a_study_is_that_run_alone(name, made, reasons):
     runs, met = np.arange(900, 1024), set()
     some = [0, 1, 60, 123]
     alone = [list(play(dataclasses.replace(made, run=int(runs[k])))) for k in some]
-    with using(name):
+    with taking(name):
         for i, step in enumerate(play(made, runs)):
             for k, one in zip(some, (steps[i] for steps in alone), strict=True):
                 np.testing.assert_allclose(step.entry.truth[k], one.entry.truth, **NEAR)
@@ -201,7 +201,7 @@ def test_a_run_of_a_study_is_that_run_alone(name, made, reasons):
 def test_nothing_in_a_map_without_walls_is_met(random):
     x = classroom(random, (RUNS,))[0].mean
     for name in BACKENDS:
-        with using(name):
+        with taking(name):
             h, H, R = Laser(Walls.of({}), 0.1, 0.01).linearize(x)
         assert np.isnan(h).all()
         assert np.isnan(R).all()

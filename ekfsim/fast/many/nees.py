@@ -8,7 +8,7 @@ from ekfsim.diagnostics.nees import ROUNDING, error
 from ekfsim.diagnostics.nees import squared_mahalanobis as squares
 from ekfsim.filters.belief import Belief, posed
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.geometry.lanes import front
+from ekfsim.geometry.soa import front
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Nees
 from ekfsim.twins import as_written, taken

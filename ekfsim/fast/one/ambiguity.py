@@ -5,7 +5,9 @@ import math
 import numpy as np
 
 from ekfsim.diagnostics.ambiguity import FLAT, REACH, BeamSensor, Sighting
+from ekfsim.fast.one.ground import reach_of_each
 from ekfsim.geometry import Array
+from ekfsim.raycast.searches.single_beam import first
 
 
 def sighting(beam: BeamSensor, x: Array, P: Array) -> Sighting | None:
@@ -21,13 +23,13 @@ def sighting(beam: BeamSensor, x: Array, P: Array) -> Sighting | None:
         for sign in (1.0, -1.0)
         for reach, vx, vy, vθ in zip([sign * reach for reach in reaches], *V, strict=True)
     ]
-    shares = walls.ground.reach_of_each(px, py, arms)
+    shares = reach_of_each(walls.ground, px, py, arms)
     probes = [
         (px + t * dx, py + t * dy, θ + t * dθ) for t, (dx, dy, dθ) in zip(shares, arms, strict=True)
     ]
-    wall = (here := walls.first(px, py, θ + bearing))[1]
+    wall = (here := first(walls, px, py, θ + bearing))[1]
     hits = [
-        walls.first(x_i, y_i, θ_i + bearing) if any(arm) else here
+        first(walls, x_i, y_i, θ_i + bearing) if any(arm) else here
         for (x_i, y_i, θ_i), arm in zip(probes, arms, strict=True)
     ]
     ranges, met = zip(*hits, strict=True)

@@ -8,9 +8,9 @@ import numpy as np
 
 from ekfsim.figures.album import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILLION, Album, labelled
 from ekfsim.geometry import Array
-from ekfsim.geometry.walls import Walls
 from ekfsim.models.sensors.infrared import COLOURS, InfraredBeam
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
+from ekfsim.raycast.walls import Walls
 from ekfsim.scene import Scene
 from ekfsim.simulation.bench import readings
 from ekfsim.systems.instruments import Infrared, Ultrasonic

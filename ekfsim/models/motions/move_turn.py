@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ekfsim.geometry import Array, backend
+from ekfsim import twins
+from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap, wrap_one
-from ekfsim.geometry.lanes import back, lanes
+from ekfsim.geometry.soa import back, lanes
 from ekfsim.models.protocols import Motion, Quantity
 
 
@@ -75,7 +76,7 @@ class MoveTurn(Motion):
         """
         if x.ndim == u.ndim == 1:
             return self._linearize_one(*x.tolist(), *u.tolist())
-        if len(x) == len(u) and x.ndim == u.ndim == 2 and backend.used() == "numba":
+        if len(x) == len(u) and x.ndim == u.ndim == 2 and twins.taken() == "compiled":
             from ekfsim.models.compiled import moved
 
             return *moved(x, u, self.distance_ratio, self.angle_ratio), 0.0

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.geometry.walls import Walls
 from ekfsim.models.protocols import Quantity, Sensor
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.raycast.walls import Walls
 
 COLOURS: dict[str, float] = {  # reflectances; fig. 4 tells that they matter, and prints no numbers
     "white": 1.0,

@@ -10,7 +10,7 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap, wrap_one
-from ekfsim.geometry.lanes import lanes
+from ekfsim.geometry.soa import lanes
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.noise import alike, independent
 from ekfsim.models.protocols import Quantity, Sensor

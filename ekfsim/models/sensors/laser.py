@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ekfsim.geometry import Array, Integers, backend
-from ekfsim.geometry.lanes import back, front, lanes
-from ekfsim.geometry.walls import Walls
+from ekfsim import twins
+from ekfsim.geometry import Array, Integers
+from ekfsim.geometry.soa import back, front, lanes
 from ekfsim.models.protocols import Quantity, Sensor
+from ekfsim.raycast.walls import Walls
 
 ALONG = 1e-9  # rad; a beam this close to its wall's direction has no usable derivative
 
@@ -49,7 +50,7 @@ class Laser(Sensor):
             return self._linearize_one(*x.tolist())
         direction = x[..., 2] + self.bearing
         hit = self.walls.cast(x[..., :2], direction)
-        if direction.ndim == 1 and backend.used() == "numba":
+        if direction.ndim == 1 and twins.taken() == "compiled":
             from ekfsim.models.compiled import beamed
 
             return beamed(

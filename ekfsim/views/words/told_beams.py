@@ -11,7 +11,7 @@ import numpy as np
 from ekfsim.diagnostics.ambiguity import GRAZING, Sighting, sighting_of
 from ekfsim.filters.belief import posed
 from ekfsim.geometry import Array
-from ekfsim.geometry.walls import Walls
+from ekfsim.raycast.walls import Walls
 from ekfsim.records import Reading, Step
 from ekfsim.views.words.numbers import number, point, turn
 

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from numerics import jacobian
 
 from ekfsim.diagnostics.ambiguity import sighting
-from ekfsim.geometry.walls import Walls
 from ekfsim.models.sensors.infrared import COLOURS, InfraredBeam
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
+from ekfsim.raycast.walls import Walls
 
 WALLS = Walls.of({"boundary": np.array([[0, 0], [4, 0], [4, 4], [0, 4.0]])})
 poses = st.tuples(st.floats(0.1, 3.9), st.floats(0.1, 3.9), st.floats(-3.14, 3.14)).map(np.array)

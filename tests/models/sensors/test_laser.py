@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from numerics import jacobian
 
 from ekfsim.diagnostics.ambiguity import sighting
-from ekfsim.geometry.walls import Walls
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.raycast.walls import Walls
 
 ROOM = np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])
 KITE = np.array([[4, 3], [6, 2.5], [6.5, 4], [5, 5.5]])

@@ -10,8 +10,8 @@ import shapely
 
 from ekfsim.files.scenes.load import check, load_scene
 from ekfsim.files.scenes.polygons import FloorPlan, fault_of
-from ekfsim.geometry.walls import Walls
 from ekfsim.localization import play
+from ekfsim.raycast.walls import Walls
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.terminal.playback import views

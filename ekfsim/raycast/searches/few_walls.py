@@ -1,7 +1,6 @@
-"""Every beam against every wall, in broad strokes first: the quickest way where there are few
-walls.
+"""Many beams and few walls: every beam tries every wall, in broad strokes first.
 
-With across_a, across_b of a wall's ends (see meeting.py) and its `area`, twice that of the triangle
+With across_a, across_b of a wall's ends (see rules.py) and its `area`, twice that of the triangle
 from the beam's origin to both ends, a beam crosses the wall at
 
     r = area / (across_b − across_a)     where across_a and across_b differ in sign and r ≥ 0
@@ -15,7 +14,7 @@ broad one is left in doubt, to be followed by a surer way.
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.pairs import first_of, measure
+from ekfsim.raycast.searches.candidates import first_of, measure
 
 ROUGH = 3 << 12  # beams × walls that are held in memory at a time: what a processor has at hand
 # of the coordinates' size: a wall that looks this short to a beam is not judged in broad strokes
@@ -25,7 +24,7 @@ FINE = 1e-6
 BLUR = 1e-8
 
 
-def broad(
+def few_walls(
     ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array
 ) -> tuple[Array, Integers, Integers]:
     """Ranges and walls of many beams, all (n,), and which beams are left in doubt.

@@ -1,8 +1,5 @@
 """Where a robot can stand: inside the room and outside every obstacle."""
 
-import itertools
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
@@ -10,6 +7,7 @@ from typing import Self
 import numpy as np
 
 from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.twins import twinned
 
 CLEARANCE = 1e-3  # m; how near a robot comes to a wall
 HAIR = 1e-9  # of a wall's length: how far beyond its ends a way is cut, too
@@ -40,7 +38,7 @@ class Ground:
         points = places.reshape(-1, 2)
         taken, indoors = np.zeros(len(points), bool), np.full(len(points), self.room < 0)
         for number in (
-            self._near(np.fmin.reduce(points), np.fmax.reduce(points)) if len(points) else ()
+            self.near(np.fmin.reduce(points), np.fmax.reduce(points)) if len(points) else ()
         ):
             boxed = np.flatnonzero(
                 ((self.low[number] <= points) & (points <= self.high[number])).all(axis=-1)
@@ -52,12 +50,14 @@ class Ground:
         )
         return free
 
+    @twinned
     def reach(self, place: Array, ways: Array) -> Array:
         """How much of straight ways can be gone to where a robot can stand : (…), each in [0, 1]
 
         1 where that is so at the end of the way. Elsewhere the way is cut back to the last such
-        place on it, 1 mm clear of the wall; to 0 where there is none. place : (…, 2) m, ways : (…,
-        2) m, broadcast together
+        place on it, 1 mm clear of the wall; to 0 where there is none.
+
+        place : (…, 2) m, ways : (…, 2) m, broadcast together
         """
         place, ways = np.broadcast_arrays(place, ways)
         share = np.ones(place.shape[:-1])
@@ -85,61 +85,14 @@ class Ground:
             left = left[~free]
         return share
 
-    def reach_of_each(self, x: float, y: float, ways: Sequence[tuple[float, ...]]) -> list[float]:
-        """`reach` from one place in plain floats: several times as fast for a few ways (dx, dy, …)
-        m.
-        """
-        xs, ys = [x + way[0] for way in ways], [y + way[1] for way in ways]
-        near = self._near(np.array([min(xs), min(ys)]), np.array([max(xs), max(ys)]))
-        stuck = [not self._free_one(near, *end) for end in zip(xs, ys, strict=True)]
-        if not any(stuck):
-            return [1.0] * len(ways)
-        near = self._near(
-            np.array([min(x, *xs), min(y, *ys)]), np.array([max(x, *xs), max(y, *ys)])
-        )
-        return [
-            self._cut_back_one(near, x, y, *way[:2]) if cut else 1.0
-            for way, cut in zip(ways, stuck, strict=True)
-        ]
-
-    def _free_one(self, near: list[int], x: float, y: float) -> bool:
-        """Whether a robot can stand at a place. near : the polygons that may hold it"""
-        indoors = self.room < 0
-        for number in near:
-            if _inside_one(self._edges[number], x, y):
-                if number != self.room:
-                    return False
-                indoors = True
-        return indoors
-
-    def _cut_back_one(self, near: list[int], x: float, y: float, dx: float, dy: float) -> float:
-        """`_cut_back` of one way. near : the polygons that it may meet"""
-        cuts = [1.0, 0.0]
-        for number in near:
-            for ax, ay, bx, by in self._edges[number]:
-                east, north, across = bx - ax, by - ay, dx * (by - ay) - dy * (bx - ax)
-                if across:
-                    cut = ((ax - x) * north - (ay - y) * east) / across
-                    where = ((ax - x) * dy - (ay - y) * dx) / across
-                    if 0 < cut < 1 and -HAIR <= where <= 1 + HAIR:
-                        cuts.append(cut)
-        cuts.sort(reverse=True)
-        for far, close in itertools.pairwise(cuts):
-            middle = (far + close) / 2
-            if far > close and self._free_one(near, x + middle * dx, y + middle * dy):
-                return max(middle, far - CLEARANCE / math.hypot(dx, dy))
-        return 0.0
-
     def _cuts(self, place: Array, ways: Array) -> Array:
         """Where ways meet walls, as shares of them, from the last to the first : (n, k); the way's
         own ends are two.
         """
         ends = place + ways
-        low, high = (
-            np.fmin.reduce([place, ends]).min(axis=0),
-            np.fmax.reduce([place, ends]).max(axis=0),
-        )
-        near = [np.empty((0, 2, 2)), *(self.rings[number] for number in self._near(low, high))]
+        low = np.fmin.reduce([place, ends]).min(axis=0)
+        high = np.fmax.reduce([place, ends]).max(axis=0)
+        near = [np.empty((0, 2, 2)), *(self.rings[number] for number in self.near(low, high))]
         a, along = (edges := np.concatenate(near))[:, 0], edges[:, 1] - edges[:, 0]
         offset, ways = a - place[:, None], ways[:, None]
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -149,7 +102,7 @@ class Ground:
         one = np.ones((len(place), 1))
         return -np.sort(-np.concatenate([one, np.where(met, cut, 0.0), 0 * one], axis=1), axis=1)
 
-    def _near(self, low: Array, high: Array) -> list[int]:
+    def near(self, low: Array, high: Array) -> list[int]:
         """The polygons whose boxes touch the box from its corner `low` (2,) to `high` (2,)."""
         touching: list[int] = np.flatnonzero(
             (self._boxes <= np.concatenate([high, -low])).all(axis=-1)
@@ -162,7 +115,7 @@ class Ground:
         return np.concatenate([self.low, -self.high], axis=-1)
 
     @cached_property
-    def _edges(self) -> list[list[Edge]]:
+    def edges(self) -> list[list[Edge]]:
         """The rings in plain numbers."""
         return [[(ax, ay, bx, by) for (ax, ay), (bx, by) in ring.tolist()] for ring in self.rings]
 
@@ -178,15 +131,6 @@ def _inside(ring: Array, points: Array) -> Booleans:
     odd: Booleans = (
         np.count_nonzero(beside & (x > ax + (bx - ax) * (y - ay) / rise), axis=-1) % 2 == 1
     )
-    return odd
-
-
-def _inside_one(ring: list[Edge], x: float, y: float) -> bool:
-    """The same of one point, in plain floats."""
-    odd = False
-    for ax, ay, bx, by in ring:
-        if (ay > y) != (by > y) and x > ax + (bx - ax) * (y - ay) / (by - ay):
-            odd = not odd
     return odd
 
 

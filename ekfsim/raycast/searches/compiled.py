@@ -1,48 +1,47 @@
-"""The walk of one beam after the other through the cells of a grid, compiled by Numba: the extra
-`fast`.
+"""Many beams, one after the other from cell to cell of a grid, compiled by Numba: the extra `fast`.
 
-Imported only where backend.py has been told to use it. The steps are those of `Grid.walk`, but
-nothing doubtful is decided here: a beam that passes within a hair of a wall's end, or begins within
-one of a wall, is left to the other ways. Numba keeps what it has compiled as long as this file does
-not change, so the tolerances come as arguments.
+Imported only where twins.py has been told to take what is compiled. The steps are those of
+`single_beam.walk`, but nothing doubtful is decided here: a beam that passes within a hair of a
+wall's end, or begins within one of a wall, is left to the other searches.
 """
 
-from collections.abc import Callable
 from math import inf, nan
-from typing import TypeVar, cast
 
 import numpy as np
-from numba import njit
 
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.cells import BORDER, Cells
-from ekfsim.geometry.meeting import REACH, TIE
+from ekfsim.raycast.rules import REACH, TIE
+from ekfsim.raycast.searches.choice import in_blocks, together
+from ekfsim.raycast.searches.flat_grid import BORDER, FlatGrid
+from ekfsim.raycast.walls import Hit, Walls
+from ekfsim.twins import compiled
 
+FEW = 16  # beams that are sooner followed in plain floats
 DOUBT = -2  # in place of a wall
 
-Function = TypeVar("Function", bound=Callable[..., object])
+
+def cast(walls: Walls, origin: Array, heading: Array) -> Hit | None:
+    """`Walls.cast` of many beams; None where they are few."""
+    x, y, heading = together(origin, heading)
+    return in_blocks(_search, walls, x, y, heading) if heading.size > FEW else None
 
 
-def compiled(function: Function) -> Function:
-    """Compile at the first call, and keep the result for later processes where there is a folder to
-    keep it in.
-    """
-    try:
-        return cast("Function", njit(cache=True, nogil=True, error_model="numpy")(function))
-    except RuntimeError:  # no folder that can be written
-        return cast("Function", njit(nogil=True, error_model="numpy")(function))
+def _search(
+    walls: Walls, x: Array, y: Array, dx: Array, dy: Array
+) -> tuple[Array, Integers, Integers]:
+    return walk(walls.flat_grid, x, y, dx, dy)
 
 
 def walk(
-    cells: Cells, x: Array, y: Array, dx: Array, dy: Array
+    grid: FlatGrid, x: Array, y: Array, dx: Array, dy: Array
 ) -> tuple[Array, Integers, Integers]:
     """Ranges and walls of many beams, all (n,), and which are left in doubt; those beyond the
     horizon are, too.
     """
     ranges, walls = np.empty(x.shape), np.empty(x.shape, np.int64)
-    tree = cells.ends, cells.walls, cells.start, cells.within, cells.place, cells.shape
+    tree = grid.ends, grid.walls, grid.start, grid.within, grid.place, grid.shape
     left = _walk_all(
-        *tree, cells.grid.size, cells.grid.horizon, TIE, 4 * REACH, x, y, dx, dy, ranges, walls
+        *tree, grid.grid.size, grid.grid.horizon, TIE, 4 * REACH, x, y, dx, dy, ranges, walls
     )
     return ranges, walls, np.flatnonzero(walls == DOUBT) if left else walls[:0]
 

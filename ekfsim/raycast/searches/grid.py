@@ -1,20 +1,19 @@
-"""How to find the first wall on a beam's way without trying each.
+"""A grid over the walls: each cell lists the walls that cross it.
 
-A cell lists the walls that cross it, and a beam looks only into the cells on its way (Amanatides &
-Woo, A Fast Voxel Traversal Algorithm, 1987). A crowded cell has a grid of its own: a town of walls
-in a wide plain is found as fast. What it means to meet a wall is told in meeting.py.
+A beam looks only into the cells on its way (Amanatides & Woo, A Fast Voxel Traversal Algorithm,
+1987): single_beam.py, many_beams.py and compiled.py go that way. A crowded cell has a grid of its
+own, so that a town of walls in a wide plain is found as fast.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from math import inf, nan
 from typing import Self
 
 import numpy as np
 
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.geometry.meeting import REACH, TIE, meet_one
+from ekfsim.raycast.rules import TIE
 
 # of a cell: a wall is listed in the cells it passes as near as this, so rounding on the way is
 # harmless
@@ -23,7 +22,6 @@ CROWDED = 64  # walls in a cell from which on it has a grid of its own
 # of the coordinates' size: a smaller cell, and rounding would count for beams from near by
 FINEST = 2e-8
 DEEPEST = 4  # grids within grids; walls that all pass through one point never part
-NOTHING: list["Wall"] = []
 
 Wall = tuple[float, float, float, float, int]  # its ends' x, y, x, y in m, and its index
 
@@ -33,8 +31,8 @@ class Grid:
     """Square cells over all walls, about as many as there are walls, and round them a border that
     ends every walk.
 
-    Cell (i, j) covers x = left + [i, i + 1) cell, y = bottom + [j, j + 1) cell and has the number i
-    · rows + j.
+    Cell (i, j) covers x = left + [i, i + 1) cell, y = bottom + [j, j + 1) cell and has the number
+    i · rows + j.
     """
 
     segments: Array  # (W, 2, 2) m: the ends of each wall
@@ -51,6 +49,10 @@ class Grid:
     walls: Integers  # (listed,) which of the segments, cell after cell
     border: Booleans  # (cells,)
     crowded: Mapping[int, "Grid"]  # the grids of the cells that have one of their own
+    # single beams that were followed not long ago, with their ranges and walls
+    recent: dict[tuple[float, float, float], tuple[float, int]] = field(
+        default_factory=dict, repr=False
+    )
 
     @classmethod
     def over(cls, segments: Array) -> Self:
@@ -113,71 +115,6 @@ class Grid:
             lists[c] = nested
         return lists
 
-    def walk(self, x: float, y: float, dx: float, dy: float) -> tuple[float, int]:
-        """Range and wall of one beam, from cell to cell in plain floats; nan and -1 where it meets
-        none.
-        """
-        span = self.size + abs(x) + abs(y)
-        tie, doubt = TIE * span, 4 * REACH * span * span
-        cell, rows = self.cell, self.rows
-        u, v = (x - self.left) / cell, (y - self.bottom) / cell
-        i, j = int(u), int(v)
-        if not (0 < i < self.columns - 1 and 0 < j < rows - 1):
-            entry = _entry(u, v, dx, dy, self.columns, rows)
-            if entry is None:
-                return nan, -1
-            i, j = entry
-        x_step, x_exit, x_cell = _way(u, i, dx, cell, rows)
-        y_step, y_exit, y_cell = _way(v, j, dy, cell, 1)
-
-        at, lists = i * rows + j, self.lists
-        best, limit = inf, inf
-        found: list[tuple[float, int]] = []
-        while (listed := lists[at]) is not None:
-            if isinstance(listed, Grid):
-                r, wall = listed.walk(x, y, dx, dy)
-                if r <= limit:
-                    found.append((r, wall))
-                    best = min(best, r)
-                    limit = best + tie
-                listed = NOTHING
-            for ax, ay, bx, by, wall in listed:
-                ax -= x
-                ay -= y
-                bx -= x
-                by -= y
-                across_a = ax * dy - ay * dx
-                across_b = bx * dy - by * dx
-                sides = across_a * across_b
-                if sides > doubt:
-                    continue  # both ends on one side
-                along_a, along_b = ax * dx + ay * dy, bx * dx + by * dy
-                area = along_a * across_b - along_b * across_a
-                if sides < -doubt and not -doubt <= area <= doubt:
-                    r = area / (across_b - across_a)
-                else:
-                    r = meet_one(along_a, across_a, along_b, across_b, REACH * span)
-                if not 0 <= r <= limit:
-                    continue
-                if r < best - tie:
-                    found = []
-                found.append((r, wall))
-                if r < best:
-                    best, limit = r, r + tie
-            if x_exit < y_exit:
-                if limit < x_exit:
-                    break
-                at += x_step
-                x_exit += x_cell
-            else:
-                if limit < y_exit:
-                    break
-                at += y_step
-                y_exit += y_cell
-        if len(found) < 2:
-            return found[0] if found else (nan, -1)
-        return best, min(wall for r, wall in found if r <= limit)
-
 
 def crossed(segments: Array, columns: int, rows: int) -> tuple[Integers, Integers]:
     """All pairs of a segment and a cell that it crosses or passes within PAD; segments (n, 2, 2) in
@@ -223,31 +160,3 @@ def spread(counts: Integers) -> tuple[Integers, Integers]:
     """Counts (2, 0, 3) give owners (0, 0, 2, 2, 2) and numbers (0, 1, 0, 1, 2)."""
     owner = np.repeat(np.arange(len(counts)), counts)
     return owner, np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
-
-
-def _way(u: float, i: int, d: float, cell: float, stride: int) -> tuple[int, float, float]:
-    """One axis of a walk: the step to the next cell's number, the range at which it is due, and
-    that to one more.
-    """
-    if d > 0:
-        return stride, (i + 1 - u) * cell / d, cell / d
-    if d < 0:
-        return -stride, (i - u) * cell / d, -cell / d
-    return 0, inf, inf
-
-
-def _entry(
-    u: float, v: float, dx: float, dy: float, columns: int, rows: int
-) -> tuple[int, int] | None:
-    """The first cell inside the border on the way of a beam that starts outside, at (u, v) in units
-    of cells.
-    """
-    enter, leave = 0.0, inf
-    for place, d, count in ((u, dx, columns), (v, dy, rows)):
-        if d:
-            first, last = (1 - place) / d, (count - 1 - place) / d
-            enter, leave = max(enter, min(first, last)), min(leave, max(first, last))
-        elif not 1 <= place <= count - 1:
-            return None
-    i, j = min(max(int(u + enter * dx), 1), columns - 2), min(max(int(v + enter * dy), 1), rows - 2)
-    return (i, j) if enter <= leave else None

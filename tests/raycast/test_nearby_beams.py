@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from wall_worlds import assert_same, by_brute_force, stars, tangle
 
-from ekfsim.geometry.bundle import bundle
-from ekfsim.geometry.walls import Walls, brute_force
+from ekfsim.raycast.brute import brute_force
+from ekfsim.raycast.searches.nearby_beams import nearby_beams
+from ekfsim.raycast.walls import Walls
 
 WORLDS = [Walls.of(rings) for rings in (stars(80, 2), stars(400, 3), tangle(60, 7))]
 BEAMS = 300
@@ -29,7 +30,7 @@ def bundled(walls, origin, heading):
     x, y = origin.T
     dx, dy = np.cos(heading), np.sin(heading)
     span = np.abs(walls.segments).max() + np.abs(x) + np.abs(y)
-    found = bundle(walls.segments.reshape(-1, 4), x, y, dx, dy, span)
+    found = nearby_beams(walls.segments.reshape(-1, 4), x, y, dx, dy, span)
     return found, brute_force(walls.segments, x, y, dx, dy)
 
 

@@ -1,5 +1,4 @@
-"""What is particular to each way of following many beams; that all find the same is told in
-test_walls.py."""
+"""What is particular to each search; that all find the same is told in test_walls.py."""
 
 import subprocess
 import sys
@@ -19,13 +18,13 @@ from wall_worlds import (
     town,
 )
 
-from ekfsim.geometry import backend
-from ekfsim.geometry.backend import using
-from ekfsim.geometry.broad import broad
-from ekfsim.geometry.bundle import bundle
-from ekfsim.geometry.cells import BORDER, PLAIN
-from ekfsim.geometry.fan import fan
-from ekfsim.geometry.walls import BLOCK, Walls
+from ekfsim.raycast.searches.choice import BLOCK
+from ekfsim.raycast.searches.few_walls import few_walls
+from ekfsim.raycast.searches.flat_grid import BORDER, PLAIN
+from ekfsim.raycast.searches.nearby_beams import nearby_beams
+from ekfsim.raycast.searches.scan import scan
+from ekfsim.raycast.walls import Walls
+from ekfsim.twins import taking
 
 needs_numba = pytest.mark.skipif(
     "numba" not in BACKENDS, reason="numba, the extra `fast`, is not installed"
@@ -38,29 +37,29 @@ def test_hardly_a_beam_is_left_in_doubt(name):
     walls = Walls.of(WORLDS[name])
     near = x, y, dx, dy, span = near_beams(walls, *beams(1000, seed=3))
     ends = walls.segments.reshape(-1, 4)
-    assert len(broad(ends, *near)[2]) <= 5
-    assert len(fan(ends, x[0], y[0], dx, dy, span[0])[2]) <= 5
+    assert len(few_walls(ends, *near)[2]) <= 5
+    assert len(scan(ends, x[0], y[0], dx, dy, span[0])[2]) <= 5
 
 
 @needs_numba
 @pytest.mark.parametrize("name", WORLDS)
 def test_hardly_a_beam_is_left_in_doubt_by_the_compiled_walk(name):
-    from ekfsim.geometry import compiled
+    from ekfsim.raycast.searches import compiled
 
     walls = Walls.of(WORLDS[name])
-    *found, doubtful = compiled.walk(walls.cells, *near_beams(walls, *beams(1000, seed=3))[:4])
+    *found, doubtful = compiled.walk(walls.flat_grid, *near_beams(walls, *beams(1000, seed=3))[:4])
     assert len(doubtful) <= 5
     assert_same(found, by_brute_force(walls, *beams(1000, seed=3)), 1.0, but=doubtful)
 
 
 @needs_numba
 def test_walls_on_each_other_are_no_doubt_to_the_compiled_walk():
-    from ekfsim.geometry import compiled
+    from ekfsim.raycast.searches import compiled
 
     rings = stars(40, 2)
     walls = Walls.of({**rings, **{f"{name} again": ring for name, ring in rings.items()}})
     near = near_beams(walls, *beams(1000, seed=3))
-    assert not len(compiled.walk(walls.cells, *near[:4])[2])
+    assert not len(compiled.walk(walls.flat_grid, *near[:4])[2])
 
 
 @pytest.mark.parametrize("name", BACKENDS)
@@ -69,7 +68,7 @@ def test_a_beam_in_a_batch_has_the_hit_that_it_has_alone(name):
     walls = Walls.of(town("houses", 5, 20.0))
     origin, heading = beams(2 * BLOCK + 70, 6, 490, 530)
     origin[7], heading[BLOCK + 1], origin[2 * BLOCK] = np.nan, np.inf, 1e13
-    with using(name):
+    with taking(name):
         hit = walls.cast(origin, heading)
         for some in (slice(0, 70), slice(BLOCK - 40, BLOCK + 40), slice(2 * BLOCK - 10, None)):
             part = walls.cast(origin[some], heading[some])
@@ -108,7 +107,7 @@ def test_a_scan_however_its_beams_are_spaced(name, place):
     walls = Walls.of({"room": ROOM, "desk": DESK, **stars(8, 4, side=10.0)})
     heading = SCANS[name]
     x, y, dx, dy, span = near_beams(walls, np.tile(place, (len(heading), 1)), heading)
-    *found, doubtful = fan(walls.segments.reshape(-1, 4), x[0], y[0], dx, dy, span[0])
+    *found, doubtful = scan(walls.segments.reshape(-1, 4), x[0], y[0], dx, dy, span[0])
     expected = by_brute_force(walls, np.stack([x, y], -1), heading)
     assert_same(found, expected, 1.0, but=doubtful)
     hit = walls.cast(np.array(place), heading)
@@ -126,7 +125,7 @@ def test_beams_that_lie_close_together(name, spread):
         headings = heading + random.normal(0, spread / 20, 200)
         origins[:10] += random.uniform(-50, 50, (10, 2))
         near = near_beams(walls, origins, headings)
-        found = bundle(walls.segments.reshape(-1, 4), *near)
+        found = nearby_beams(walls.segments.reshape(-1, 4), *near)
         if found is not None:
             formed += 1
             assert_same(found[:2], by_brute_force(walls, origins, headings), 1.0, but=found[2])
@@ -136,7 +135,7 @@ def test_beams_that_lie_close_together(name, spread):
 
 
 def test_a_cell_of_a_town_lists_its_walls_or_names_the_grid_that_does():
-    cells = Walls.of(town("houses", 5, 10.0)).cells
+    cells = Walls.of(town("houses", 5, 10.0)).flat_grid
     assert set(range(1, len(cells.place))) | {PLAIN, BORDER} == set(cells.within.tolist())
     assert np.diff(cells.start).max() <= 64
     assert not np.diff(cells.start)[cells.within != PLAIN].any()
@@ -145,7 +144,7 @@ def test_a_cell_of_a_town_lists_its_walls_or_names_the_grid_that_does():
 def test_numpy_is_used_unless_numba_is_asked_for():
     program = """
 import sys, numpy as np
-from ekfsim.geometry.walls import Walls
+from ekfsim.raycast.walls import Walls
 Walls.of({"room": np.array([[0, 0], [9, 0], [9, 9], [0, 9.0]])}).cast(np.ones((500, 2)), \
 np.linspace(0, 6, 500))
 print("numba" in sys.modules)
@@ -154,25 +153,3 @@ print("numba" in sys.modules)
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
     assert done.stdout == "False\n"
-    assert backend.used() == "numpy"
-
-
-def test_a_backend_that_does_not_exist_or_is_not_installed(monkeypatch):
-    with pytest.raises(ValueError, match="'fortran' is no backend; there are numpy and numba"):
-        backend.use("fortran")
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(
-        ModuleNotFoundError, match="numba is not installed; it comes with ekfsim's extra `fast`"
-    ):
-        backend.use("numba")
-    assert backend.used() == "numpy"
-
-
-@needs_numba
-def test_where_no_folder_can_be_written_the_walk_is_compiled_anew(monkeypatch):
-    from numba.core import caching
-
-    from ekfsim.geometry.compiled import compiled
-
-    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
-    assert compiled(lambda x: x + 1)(1) == 2

@@ -2,13 +2,14 @@ import math
 
 import numpy as np
 import pytest
+from backends import BACKENDS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from wall_worlds import (
     DESK,
     ROOM,
     WORLDS,
-    assert_all_ways_agree,
+    assert_all_searches_agree,
     beams,
     by_shapely,
     one_by_one,
@@ -17,18 +18,29 @@ from wall_worlds import (
     town,
 )
 
-from ekfsim.geometry.meeting import REACH
-from ekfsim.geometry.walls import Walls
+from ekfsim.raycast.rules import REACH
+from ekfsim.raycast.walls import Walls
+from ekfsim.twins import taking
 
 SCENE = Walls.of({"boundary": ROOM, "desk": DESK})  # walls 0–3 and 4–7: south, east, north, west
 NONE = (pytest.approx(math.nan, nan_ok=True), -1)
+
+
+@pytest.fixture(params=["plain", *BACKENDS])
+def way(request):
+    """The text by itself, and what may stand in for it."""
+    with taking(request.param):
+        yield
+
+
+in_every_way = pytest.mark.usefixtures("way")
 
 
 @pytest.mark.parametrize("name", WORLDS)
 def test_ranges_are_those_of_shapely(name):
     walls = Walls.of(WORLDS[name])
     origin, heading = beams(1000, seed=9)
-    ranges = assert_all_ways_agree(walls, origin, heading)
+    ranges = assert_all_searches_agree(walls, origin, heading)
     np.testing.assert_allclose(ranges, by_shapely(walls, origin, heading, 500), rtol=0, atol=1e-9)
 
 
@@ -39,14 +51,14 @@ def test_scale_and_place_of_the_world_do_not_matter(size, shift):
     walls = Walls.of(rings)
     origin, heading = beams(300, seed=3)
     origin = origin / 100 * size + shift * size
-    ranges = assert_all_ways_agree(walls, origin, heading, max(1.0, size * shift))
+    ranges = assert_all_searches_agree(walls, origin, heading, max(1.0, size * shift))
     np.testing.assert_allclose(
         ranges, by_shapely(walls, origin, heading, 5 * size), atol=1e-9 * max(1, size * shift)
     )
 
 
 @pytest.mark.parametrize("distance", [1e3, 1e9, 1e13, 1e16])
-def test_from_afar_too_all_ways_agree(distance):
+def test_from_afar_too_all_searches_agree(distance):
     """From 1e13 m a coordinate's last place is finer than a wall; from 1e16 m it is coarser than
     many a cell."""
     random = np.random.default_rng(2)
@@ -54,22 +66,22 @@ def test_from_afar_too_all_ways_agree(distance):
     origin = random.uniform(0, 100, (200, 2)) + distance * np.stack(
         [np.cos(bearing), np.sin(bearing)], -1
     )
-    ranges = assert_all_ways_agree(Walls.of(stars(800, 3)), origin, bearing + np.pi, distance)
+    ranges = assert_all_searches_agree(Walls.of(stars(800, 3)), origin, bearing + np.pi, distance)
     assert np.isfinite(ranges).any()
 
 
 @given(st.integers(1, 40), st.integers(0, 10**6), st.sampled_from([stars, tangle]))
 @settings(max_examples=40, deadline=None)
-def test_any_world_is_cast_alike_by_all_ways(count, seed, world):
+def test_any_world_is_cast_alike_by_all_searches(count, seed, world):
     walls = Walls.of(world(count, seed))
     origin, heading = beams(80, seed)
-    ranges = assert_all_ways_agree(walls, origin, heading)
+    ranges = assert_all_searches_agree(walls, origin, heading)
     np.testing.assert_allclose(ranges, by_shapely(walls, origin, heading, 500), rtol=0, atol=1e-9)
 
 
 @given(st.integers(0, 10**6), st.integers(1, 12))
 @settings(max_examples=40, deadline=None)
-def test_a_lattice_full_of_ties_is_cast_alike_by_all_ways(seed, count):
+def test_a_lattice_full_of_ties_is_cast_alike_by_all_searches(seed, count):
     """Squares that share corners and edges; origins on them; beams along them, through corners, by
     fours of a turn."""
     random = np.random.default_rng(seed)
@@ -79,7 +91,7 @@ def test_a_lattice_full_of_ties_is_cast_alike_by_all_ways(seed, count):
     )
     origin = random.integers(-4, 20, (120, 2)) / 2
     heading = random.integers(-8, 9, 120) * np.pi / 4
-    assert_all_ways_agree(walls, origin, heading)
+    assert_all_searches_agree(walls, origin, heading)
 
 
 @given(st.integers(0, 10**6), st.floats(-np.pi, np.pi), st.floats(-1e3, 1e3), st.floats(-1e3, 1e3))
@@ -95,6 +107,7 @@ def test_robot_and_world_moved_together_change_no_range(seed, angle, east, north
     np.testing.assert_array_equal(after.wall, before.wall)
 
 
+@in_every_way
 @pytest.mark.parametrize(
     ("x", "y", "heading", "r", "wall"),
     [
@@ -114,6 +127,7 @@ def test_the_first_wall_from_either_side(x, y, heading, r, wall):
     assert SCENE.first(x, y, heading) == (pytest.approx(r, rel=1e-12), wall)
 
 
+@in_every_way
 @pytest.mark.parametrize(
     ("x", "y", "heading"), [(12, 4, 0), (-1, -1, -2), (5, 20, np.pi / 2), (12, 20, 3), (1e12, 4, 0)]
 )
@@ -121,6 +135,7 @@ def test_a_beam_that_leaves_the_world_meets_nothing(x, y, heading):
     assert SCENE.first(x, y, heading) == NONE
 
 
+@in_every_way
 @pytest.mark.parametrize("turns", range(7, 360, 7))
 def test_a_beam_through_a_corner_hits_it_and_takes_the_lower_wall(turns):
     """From all round: into the corner, past its side, and with the float noise of the aim."""
@@ -130,6 +145,7 @@ def test_a_beam_through_a_corner_hits_it_and_takes_the_lower_wall(turns):
     assert (r, wall) == (pytest.approx(0.9, abs=1e-12), 4)
 
 
+@in_every_way
 def test_nothing_slips_out_between_two_walls():
     random = np.random.default_rng(4)
     ring = stars(1, 5, corners=40)["star 0"]
@@ -142,16 +158,19 @@ def test_nothing_slips_out_between_two_walls():
     assert (hit.range <= np.hypot(*(target - origin).T) + 1e-12).all()
 
 
+@in_every_way
 @pytest.mark.parametrize(("x", "heading", "r"), [(1, 0, 1), (5, np.pi, 1), (-7, 0, 9)])
 def test_a_beam_along_a_wall_from_outside_meets_its_near_end(x, heading, r):
     desk = Walls.of({"desk": DESK})
     assert desk.first(x, 2.0, heading) == (pytest.approx(r, abs=1e-12), 0)
 
 
+@in_every_way
 def test_a_beam_along_the_boundary_from_inside_meets_the_wall_it_lies_on():
     assert SCENE.first(3.0, 0.0, 0.0) == (0.0, 0)
 
 
+@in_every_way
 @pytest.mark.parametrize("share", [0.0, 0.1, 1 / 3, 0.5, 0.77, 1.0])
 @pytest.mark.parametrize("heading", np.linspace(-np.pi, np.pi, 17))
 def test_a_beam_that_starts_on_a_wall_has_range_0(share, heading):
@@ -164,6 +183,7 @@ def test_a_beam_that_starts_on_a_wall_has_range_0(share, heading):
         assert walls.first(x, y, along) == (0.0, lowest)
 
 
+@in_every_way
 def test_edges_that_lie_on_each_other_give_the_lowest_wall():
     rng = np.random.default_rng(6)
     left, right = np.array([[0, 0], [3, 1], [2, 4.0]]), np.array([[3, 1], [2, 4], [7, 7.0]])
@@ -176,6 +196,7 @@ def test_edges_that_lie_on_each_other_give_the_lowest_wall():
             assert (one_by_one(walls, np.broadcast_to(origin, (50, 2)), heading)[1] == wall).all()
 
 
+@in_every_way
 def test_a_hair_beside_a_corner_is_beside_it():
     """The tolerance is some units in the last place, not more."""
     walls = Walls.of({"desk": DESK})
@@ -184,6 +205,7 @@ def test_a_hair_beside_a_corner_is_beside_it():
     assert walls.first(0.0, 2 + hair, 0.0) == (2.0, 3)
 
 
+@in_every_way
 def test_axis_parallel_beams_though_the_cosine_is_not_quite_0():
     assert math.cos(np.pi / 2) != 0
     assert SCENE.first(5.0, 1.0, np.pi / 2) == (pytest.approx(7, abs=1e-12), 2)
@@ -191,6 +213,7 @@ def test_axis_parallel_beams_though_the_cosine_is_not_quite_0():
     assert SCENE.first(4.0, 7.0, -np.pi / 2) == (pytest.approx(4, abs=1e-12), 5)
 
 
+@in_every_way
 def test_one_wall_of_a_map_without_height():
     flat = Walls.of({"fence": np.array([[0, 1], [5, 1.0]])})
     assert len(flat.segments) == 2  # there and back
@@ -199,6 +222,7 @@ def test_one_wall_of_a_map_without_height():
     assert flat.first(2, 0, -np.pi / 2) == NONE
 
 
+@in_every_way
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 def test_nan_is_no_echo(bad):
     for beam in ((bad, 1.0, 0.0), (1.0, bad, 0.0), (1.0, 1.0, bad)):
@@ -208,6 +232,7 @@ def test_nan_is_no_echo(bad):
     assert many.wall[7] == -1
 
 
+@in_every_way
 def test_no_walls_no_hits():
     empty = Walls.of({})
     assert empty.first(0, 0, 0) == NONE
@@ -218,6 +243,7 @@ def test_no_walls_no_hits():
     assert empty.line.shape == (0,)
 
 
+@in_every_way
 @pytest.mark.parametrize(
     ("origin", "heading", "shape"),
     [
@@ -282,7 +308,7 @@ def test_a_tangle_of_long_walls_stays_within_memory():
 
 @pytest.mark.parametrize("width", [20.0, 0.5])
 @pytest.mark.parametrize("kind", ["houses", "lattice", "fan"])
-def test_a_town_in_a_wide_plain_is_cast_alike_by_all_ways(kind, width):
+def test_a_town_in_a_wide_plain_is_cast_alike_by_all_searches(kind, width):
     rings = town(kind, 5, width)
     walls = Walls.of(rings)
     random = np.random.default_rng(7)
@@ -290,11 +316,11 @@ def test_a_town_in_a_wide_plain_is_cast_alike_by_all_ways(kind, width):
     outside = beams(200, 8, 0, 1000)
     aim = 500 + random.uniform(0, width, (200, 2)) - outside[0]
     for origin, heading in (inside, outside, (outside[0], np.arctan2(*aim.T[::-1]))):
-        assert_all_ways_agree(walls, origin, heading, scale=1000)
+        assert_all_searches_agree(walls, origin, heading, scale=1000)
     corners = np.concatenate(list(rings.values()))[random.integers(0, len(rings), 200)]
     to_corners = corners - inside[0][:200]
-    assert_all_ways_agree(walls, inside[0][:200], np.arctan2(*to_corners.T[::-1]), scale=1000)
-    assert_all_ways_agree(walls, corners, inside[1][:200], scale=1000)
+    assert_all_searches_agree(walls, inside[0][:200], np.arctan2(*to_corners.T[::-1]), scale=1000)
+    assert_all_searches_agree(walls, corners, inside[1][:200], scale=1000)
 
 
 def test_a_town_in_a_wide_plain_is_no_crowd_in_one_cell():
@@ -314,5 +340,5 @@ def test_a_hundred_times_the_same_wall_in_a_wide_plain_is_one_place():
     dot = 500 + 1e-6 * np.array([[0, 0], [1, 0], [0, 1.0]])
     walls = Walls.of({"plain": 1000 * ROOM / 10, **{str(i): dot for i in range(100)}})
     origin, heading = np.tile([[499.0, 500.0]], (50, 1)), np.linspace(-2e-6, 4e-6, 50)
-    assert_all_ways_agree(walls, origin, heading, scale=1000)
+    assert_all_searches_agree(walls, origin, heading, scale=1000)
     assert walls.grid.horizon > 2000

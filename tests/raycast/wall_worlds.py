@@ -1,5 +1,5 @@
-"""Worlds of walls, beams to follow in them, and the ways of following them held against each
-other."""
+"""Worlds of walls, beams to follow in them, and the searches for their walls held against brute
+force."""
 
 import math
 
@@ -7,11 +7,11 @@ import numpy as np
 import shapely
 from backends import BACKENDS
 
-from ekfsim.geometry.backend import using
-from ekfsim.geometry.broad import broad
-from ekfsim.geometry.fan import fan
-from ekfsim.geometry.march import march
-from ekfsim.geometry.walls import brute_force
+from ekfsim.raycast.brute import brute_force
+from ekfsim.raycast.searches.few_walls import few_walls
+from ekfsim.raycast.searches.many_beams import many_beams
+from ekfsim.raycast.searches.scan import scan
+from ekfsim.twins import taking
 
 ROOM = np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])
 DESK = np.array([[2, 2], [4, 2], [4, 3], [2, 3.0]])
@@ -96,25 +96,25 @@ def one_by_one(walls, origin, heading):
     return np.array([r for r, _ in hits]), np.array([wall for _, wall in hits])
 
 
-def assert_all_ways_agree(walls, origin, heading, scale=1.0):
+def assert_all_searches_agree(walls, origin, heading, scale=1.0):
     """Each beam twice, so that there are enough for a batch; and the first few places once more
     with a scan."""
     ranges, _ = expected = by_brute_force(walls, origin, heading)
     assert_same(one_by_one(walls, origin, heading), expected, scale)
-    for name in BACKENDS:
-        with using(name):
+    for way in ("plain", *BACKENDS):
+        with taking(way):
             hit = walls.cast(np.repeat(origin, 2, axis=0)[:, None], np.repeat(heading, 2)[:, None])
         assert_same((hit.range[::2, 0], hit.wall[::2, 0]), expected, scale)
     x, y, dx, dy, span = near = near_beams(walls, origin, heading)
     if not len(x):
         return ranges
     expected = brute_force(walls.segments, x, y, dx, dy)
-    assert_same(march(walls.cells, x, y, dx, dy), expected, scale)
+    assert_same(many_beams(walls.flat_grid, x, y, dx, dy), expected, scale)
     ends = walls.segments.reshape(-1, 4)
-    *found, doubtful = broad(ends, *near)
+    *found, doubtful = few_walls(ends, *near)
     assert_same(found, expected, scale, but=doubtful)
     for k in range(min(3, len(x))):
-        *found, doubtful = fan(ends, x[k], y[k], dx, dy, span[k])
+        *found, doubtful = scan(ends, x[k], y[k], dx, dy, span[k])
         same_place = np.full_like(x, x[k]), np.full_like(y, y[k])
         assert_same(found, brute_force(walls.segments, *same_place, dx, dy), scale, but=doubtful)
     return ranges

@@ -11,14 +11,16 @@ from typing import Self
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.grid import Grid
+from ekfsim.raycast.searches.grid import Grid
 
 PLAIN, BORDER = -1, -2  # a cell that lists its walls itself; one where every walk ends
 
 
 @dataclass(frozen=True, eq=False)
-class Cells:
-    """All cells of a `Grid`; the outermost grid has the number 0, its cells the first numbers."""
+class FlatGrid:
+    """All cells of a `Grid` and of the grids within it. The outermost has the number 0, and its
+    cells the first numbers.
+    """
 
     grid: Grid  # the outermost
     # (listed, 4) m: x, y of the first and of the second end of each listed wall, cell after cell

@@ -1,4 +1,4 @@
-"""Where a beam meets a wall: what that means.
+"""The rules: what it means that a beam meets a wall, and where.
 
 A wall is a straight line from a to b; a beam leaves its origin o in the unit direction d. Seen from
 the beam, a point v lies `along` = (v − o)·d ahead and `across` = (v − o)×d to the right. A wall
@@ -17,8 +17,6 @@ coordinates:
 - Of several walls at the same range (within `tie`), the one with the lowest index is hit.
 """
 
-from math import hypot, nan
-
 import numpy as np
 
 from ekfsim.geometry import Array
@@ -29,23 +27,18 @@ TIE = 1e-12  # of the coordinates' size: ranges that differ by less are equal
 
 
 def see(segments: Array, x: Array, y: Array, dx: Array, dy: Array) -> Array:
-    """Walls as beams see them: along and across of the first end, then of the second, (4, …) m.
+    """Walls as beams see them: `along` and `across` of the first end, then of the second, (4, …) m.
 
-    segments : (…, 2, 2) m, broadcast with the beams' origin (x, y) in m and unit direction (dx,
-    dy).
+    segments : (…, 2, 2) m, broadcast with the beams' origins (x, y) m and unit directions (dx, dy)
     """
-    ax, ay, bx, by = (
-        segments[..., 0, 0] - x,
-        segments[..., 0, 1] - y,
-        segments[..., 1, 0] - x,
-        segments[..., 1, 1] - y,
-    )
+    ax, ay = segments[..., 0, 0] - x, segments[..., 0, 1] - y
+    bx, by = segments[..., 1, 0] - x, segments[..., 1, 1] - y
     return np.stack([ax * dx + ay * dy, ax * dy - ay * dx, bx * dx + by * dy, bx * dy - by * dx])
 
 
 def meet(seen: Array, reach: Array) -> Array:
-    """(…): the range in m at which beams meet the walls that they `see`, inf where not; told
-    above.
+    """The ranges at which beams meet the walls that they `see`, by the rules above : (…) m, inf
+    where they do not.
     """
     along_a, across_a, along_b, across_b = seen
     at_a, at_b = np.abs(across_a) <= reach, np.abs(across_b) <= reach
@@ -60,25 +53,3 @@ def meet(seen: Array, reach: Array) -> Array:
     r = np.where(at_a, np.where(at_b, np.minimum(along_a, along_b), along_a), r)
     r = np.where(distance <= reach, 0.0, r)
     return np.where(r >= 0, r, np.inf)
-
-
-def meet_one(
-    along_a: float, across_a: float, along_b: float, across_b: float, reach: float
-) -> float:
-    """`meet` of one beam and one wall; less than 0 or nan where they do not."""
-    ahead, aside = along_b - along_a, across_b - across_a
-    square = ahead * ahead + aside * aside or 1.0
-    foot = min(max(-(along_a * ahead + across_a * aside) / square, 0.0), 1.0)
-    if hypot(along_a + foot * ahead, across_a + foot * aside) <= reach:
-        return 0.0
-    if abs(across_a) <= reach or abs(across_b) <= reach:
-        return min(
-            along
-            for along, across in ((along_a, across_a), (along_b, across_b))
-            if abs(across) <= reach
-        )
-    return (
-        (along_a * across_b - along_b * across_a) / aside
-        if (across_a < 0) != (across_b < 0)
-        else nan
-    )

@@ -1,14 +1,13 @@
 """A close look at pairs of a beam and a wall: which of its walls each beam meets first.
 
-Every fast way of following beams first finds, by whatever shortcut, a few walls that each beam may
-meet first. What these pairs then come to is computed here, and only here, by the rules of
-meeting.py.
+A search for many beams first finds, by whatever shortcut, a few walls that each beam may meet
+first. What these pairs then come to is calculated here by the rules of rules.py.
 """
 
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.meeting import REACH, TIE, meet
+from ekfsim.raycast.rules import REACH, TIE, meet
 
 
 def measure(ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array) -> Array:
@@ -16,7 +15,7 @@ def measure(ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array) 
     `meet`, only sooner.
 
     ends : (n, 4) m; the beams' origins (x, y) in m and unit directions; span : (n,) m, the
-    coordinates' size Where the ends lie clearly on both sides of the beam, and its origin clearly
+    coordinates' size. Where the ends lie clearly on both sides of the beam, and its origin clearly
     off the wall, the crossing is all.
     """
     ax, ay, bx, by = ends.T

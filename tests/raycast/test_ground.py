@@ -5,8 +5,9 @@ import pytest
 import shapely
 from wall_worlds import WORLDS
 
-from ekfsim.geometry.ground import CLEARANCE
-from ekfsim.geometry.walls import BOUNDARY, Walls
+from ekfsim.raycast.ground import CLEARANCE
+from ekfsim.raycast.walls import BOUNDARY, Walls
+from ekfsim.twins import taking
 
 ROOM = np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])
 DESK = np.array([[4, 3], [5, 3], [5, 4], [4, 4.0]])
@@ -64,14 +65,16 @@ def test_it_is_free_where_shapely_says_so(name):
     "name", ["room", "no boundary", "far away", "empty", "in a room", "a tangle"]
 )
 def test_one_robot_is_told_the_same_as_many(name):
+    """By the twin for one place, as by the text."""
     ground = Walls.of(PLACES[name]).ground
     places = thrown(PLACES[name], 100)
     for place, ways in zip(
         places, thrown(PLACES[name], 600, seed=2).reshape(-1, 6, 2) - places[:, None], strict=True
     ):
-        assert ground.reach_of_each(*place.tolist(), ways.tolist()) == pytest.approx(
-            ground.reach(place, ways), abs=1e-12
-        )
+        with taking("plain"):
+            expected = ground.reach(place, ways)
+        assert ground.reach(place, ways) == pytest.approx(expected, abs=1e-12)
+        assert ground.reach(place[None], ways[:1]) == pytest.approx(expected[:1], abs=1e-12)
 
 
 @pytest.mark.parametrize("name", ["room", "no boundary", "far away"])
@@ -122,4 +125,5 @@ def test_no_number_is_no_place():
         True,
         False,
     ]
-    assert ground.reach(np.array([np.nan, 1.0]), np.ones((1, 2))).tolist() == [0.0]
+    for floor in (ground, Walls.of({"desk": DESK}).ground):
+        assert floor.reach(np.array([np.nan, 1.0]), np.ones((1, 2))).tolist() == [0.0]

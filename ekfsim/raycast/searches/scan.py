@@ -2,7 +2,7 @@
 
 Seen from the origin a wall covers an angle, and of the sorted headings a contiguous piece lies
 within it. Only these pairs of a wall and a beam are tried; the beams need not be evenly spaced. As
-in broad.py the ranges are rough at first,
+in few_walls.py the ranges are rough at first,
 
     r = area / (e × d)     with the wall's edge e and the beam's direction d
 
@@ -12,9 +12,9 @@ and the nearest are looked at closely.
 import numpy as np
 
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.geometry.broad import BLUR, FINE
-from ekfsim.geometry.grid import spread
-from ekfsim.geometry.pairs import first_of, measure
+from ekfsim.raycast.searches.candidates import first_of, measure
+from ekfsim.raycast.searches.few_walls import BLUR, FINE
+from ekfsim.raycast.searches.grid import spread
 
 PAD = 1e-9  # of the coordinates' size: how far beside a wall's end a beam still belongs to it
 # rad: a wall that covers more lies at the origin's feet, and its sides are not to be told apart
@@ -22,7 +22,7 @@ HALF = 3.0
 TURN = 2 * np.pi
 
 
-def fan(
+def scan(
     ends: Array, x: float, y: float, dx: Array, dy: Array, span: float
 ) -> tuple[Array, Integers, Integers]:
     """Ranges and walls of beams from (x, y) m in the unit directions (dx, dy), all (n,), and which

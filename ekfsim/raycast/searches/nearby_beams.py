@@ -1,7 +1,7 @@
-"""Beams that lie close together, as those of a study's runs do: only the walls before all of them
-are tried.
+"""Many beams close together, as those of a study's runs are: only the walls before all of them are
+tried.
 
-Seen from the middle of the bundle, along its mean direction, no beam leaves the wedge
+Seen from the middle of the beams, along their mean direction, none leaves the wedge
 
     |across| ≤ ρ + (along + ρ) tan δ
     ρ: how far the origins lie from the middle, δ: how far the directions part
@@ -13,21 +13,21 @@ the whole wedge, none that lies wholly behind it is met either.
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.broad import broad
+from ekfsim.raycast.searches.few_walls import few_walls
 
 SPREAD = 0.35  # rad; a beam that parts more from the others is left to itself
 APART = 0.05  # of the walls' extent: and so is one that begins farther from them
-LONE = 0.25  # share of such beams from which on there is no bundle
-FEWEST = 128  # beams that make a bundle
-MANY_WALLS = 150  # before the bundle, that are sooner searched for than all tried
+LONE = 0.25  # share of such beams from which on the others do not count as close
+FEWEST = 128  # beams that are worth a look
+MANY_WALLS = 150  # before them, that are sooner searched for than all tried
 SAFE = 1e-6  # of the coordinates' size: by so much the wedge is wider than it need be
 
 
-def bundle(
+def nearby_beams(
     ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array
 ) -> tuple[Array, Integers, Integers] | None:
     """Ranges and walls of many beams, all (n,), and which beams are left in doubt; None where they
-    are no bundle.
+    lie too far apart.
 
     ends : (W, 4) m: x, y of the first and of the second end of each wall; span : (n,) m, the
     coordinates' size
@@ -57,11 +57,11 @@ def bundle(
     if len(before) > MANY_WALLS:
         return None
     if len(lone) == 0:
-        ranges, walls, doubtful = broad(ends[before], x, y, dx, dy, span)
+        ranges, walls, doubtful = few_walls(ends[before], x, y, dx, dy, span)
     else:
         some = np.flatnonzero(close)
         ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
-        ranges[some], walls[some], doubtful = broad(
+        ranges[some], walls[some], doubtful = few_walls(
             ends[before], *(each[some] for each in (x, y, dx, dy, span))
         )
         doubtful = np.concatenate([some[doubtful], lone])
@@ -69,9 +69,7 @@ def bundle(
 
 
 def _before(ends: Array, ux: float, uy: float, ρ: float, tan_δ: float) -> Integers:
-    """The walls that beams of the bundle may meet, in their order. ends : (W, 4) m, seen from its
-    middle
-    """
+    """The walls that the beams may meet, in their order. ends : (W, 4) m, seen from their middle"""
     ax, ay, bx, by = ends.T
     along = np.stack([ax * ux + ay * uy, bx * ux + by * uy])
     across = np.stack([ax * uy - ay * ux, bx * uy - by * ux])

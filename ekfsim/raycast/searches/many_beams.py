@@ -1,20 +1,21 @@
 """Many beams at once through the cells of a grid: in every pass each beam tries the walls of its
 cell and steps on.
 
-The steps are those of `Grid.walk`. Where a beam comes to a crowded cell, a second walk of the same
-beam begins in the grid of that cell, while the first goes on; what either finds shortens both.
+The steps are those of `single_beam.walk`. Where a beam comes to a crowded cell, a second walk of
+the same beam begins in the grid of that cell, while the first goes on; what either finds shortens
+both.
 """
 
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.cells import BORDER, Cells
-from ekfsim.geometry.grid import spread
-from ekfsim.geometry.meeting import TIE
-from ekfsim.geometry.pairs import first_of, measure
+from ekfsim.raycast.rules import TIE
+from ekfsim.raycast.searches.candidates import first_of, measure
+from ekfsim.raycast.searches.flat_grid import BORDER, FlatGrid
+from ekfsim.raycast.searches.grid import spread
 
 
-def march(cells: Cells, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
+def many_beams(cells: FlatGrid, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
     """Ranges and walls of many beams, all (n,)."""
     span = cells.grid.size + np.abs(x) + np.abs(y)
     beams = np.stack([x, y, dx, dy, span])
@@ -53,7 +54,7 @@ def march(cells: Cells, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array
     return first_of(which, wall, r, span, len(cells.walls))
 
 
-def _enter(cells: Cells, beams: Array, beam: Integers, grid: Integers) -> tuple[Integers, Array]:
+def _enter(cells: FlatGrid, beams: Array, beam: Integers, grid: Integers) -> tuple[Integers, Array]:
     """Begin a walk of each `beam` (n,) in its `grid` (n,); those that pass the grid by are left
     out.
 

@@ -1,4 +1,4 @@
-"""Small matrices of many runs, laid out so that numpy is quick at them.
+"""Structure of arrays: small matrices of many runs, laid out so that NumPy is quick at them.
 
 Everywhere an array of matrices is (…, n, m). In memory, however, the same entry of all runs may lie
 side by side: then `M[..., i, j]` is one stretch of numbers, and what is worked out entry by entry

@@ -1,0 +1,146 @@
+"""One beam from cell to cell of a grid, in plain floats: where no array is worth its while."""
+
+from math import cos, hypot, inf, isfinite, nan, sin
+
+import numpy as np
+
+from ekfsim.raycast.brute import brute_force
+from ekfsim.raycast.rules import REACH, TIE
+from ekfsim.raycast.searches.grid import Grid, Wall
+from ekfsim.raycast.walls import Walls
+
+RECENT = 8  # beams that are remembered
+NOTHING: list[Wall] = []
+
+
+def first(walls: Walls, x: float, y: float, heading: float) -> tuple[float, int]:
+    """`Walls.first`. The last few beams are remembered: one is looked along before its reading is
+    used, and followed again when it is.
+    """
+    grid = walls.grid
+    if grid is None:
+        return nan, -1
+    beam = x, y, heading
+    hit = grid.recent.get(beam)
+    if hit is None:
+        if len(grid.recent) >= RECENT:
+            grid.recent.clear()
+        hit = grid.recent[beam] = _follow(grid, x, y, heading)
+    return hit
+
+
+def _follow(grid: Grid, x: float, y: float, heading: float) -> tuple[float, int]:
+    if not isfinite(x + y + heading):
+        return nan, -1
+    if abs(x) + abs(y) < grid.horizon:
+        return walk(grid, x, y, cos(heading), sin(heading))
+    beam = np.array([[x], [y], [cos(heading)], [sin(heading)]])
+    (r,), (wall,) = brute_force(grid.segments, *beam)
+    return float(r), int(wall)
+
+
+def walk(grid: Grid, x: float, y: float, dx: float, dy: float) -> tuple[float, int]:
+    """Range and wall of a beam in the unit direction (dx, dy); nan and −1 where it meets none."""
+    span = grid.size + abs(x) + abs(y)
+    tie, doubt = TIE * span, 4 * REACH * span * span
+    cell, rows = grid.cell, grid.rows
+    u, v = (x - grid.left) / cell, (y - grid.bottom) / cell
+    i, j = int(u), int(v)
+    if not (0 < i < grid.columns - 1 and 0 < j < rows - 1):
+        entry = _entry(u, v, dx, dy, grid.columns, rows)
+        if entry is None:
+            return nan, -1
+        i, j = entry
+    x_step, x_exit, x_cell = _way(u, i, dx, cell, rows)
+    y_step, y_exit, y_cell = _way(v, j, dy, cell, 1)
+
+    at, lists = i * rows + j, grid.lists
+    best, limit = inf, inf
+    found: list[tuple[float, int]] = []
+    while (listed := lists[at]) is not None:
+        if isinstance(listed, Grid):
+            r, wall = walk(listed, x, y, dx, dy)
+            if r <= limit:
+                found.append((r, wall))
+                best = min(best, r)
+                limit = best + tie
+            listed = NOTHING
+        for ax, ay, bx, by, wall in listed:
+            ax -= x
+            ay -= y
+            bx -= x
+            by -= y
+            across_a = ax * dy - ay * dx
+            across_b = bx * dy - by * dx
+            sides = across_a * across_b
+            if sides > doubt:
+                continue  # both ends on one side
+            along_a, along_b = ax * dx + ay * dy, bx * dx + by * dy
+            area = along_a * across_b - along_b * across_a
+            if sides < -doubt and not -doubt <= area <= doubt:
+                r = area / (across_b - across_a)
+            else:
+                r = _meet(along_a, across_a, along_b, across_b, REACH * span)
+            if not 0 <= r <= limit:
+                continue
+            if r < best - tie:
+                found = []
+            found.append((r, wall))
+            if r < best:
+                best, limit = r, r + tie
+        if x_exit < y_exit:
+            if limit < x_exit:
+                break
+            at += x_step
+            x_exit += x_cell
+        else:
+            if limit < y_exit:
+                break
+            at += y_step
+            y_exit += y_cell
+    if len(found) < 2:
+        return found[0] if found else (nan, -1)
+    return best, min(wall for r, wall in found if r <= limit)
+
+
+def _meet(along_a: float, across_a: float, along_b: float, across_b: float, reach: float) -> float:
+    """`rules.meet` of one beam and one wall; less than 0 or nan where they do not."""
+    ahead, aside = along_b - along_a, across_b - across_a
+    square = ahead * ahead + aside * aside or 1.0
+    foot = min(max(-(along_a * ahead + across_a * aside) / square, 0.0), 1.0)
+    if hypot(along_a + foot * ahead, across_a + foot * aside) <= reach:
+        return 0.0
+    if abs(across_a) <= reach or abs(across_b) <= reach:
+        ends = (along_a, across_a), (along_b, across_b)
+        return min(along for along, across in ends if abs(across) <= reach)
+    if (across_a < 0) == (across_b < 0):
+        return nan
+    return (along_a * across_b - along_b * across_a) / aside
+
+
+def _way(u: float, i: int, d: float, cell: float, stride: int) -> tuple[int, float, float]:
+    """One axis of a walk: the step to the next cell's number, the range at which it is due, and
+    that to one more.
+    """
+    if d > 0:
+        return stride, (i + 1 - u) * cell / d, cell / d
+    if d < 0:
+        return -stride, (i - u) * cell / d, -cell / d
+    return 0, inf, inf
+
+
+def _entry(
+    u: float, v: float, dx: float, dy: float, columns: int, rows: int
+) -> tuple[int, int] | None:
+    """The first cell inside the border on the way of a beam that starts outside, at (u, v) in units
+    of cells.
+    """
+    enter, leave = 0.0, inf
+    for place, d, count in ((u, dx, columns), (v, dy, rows)):
+        if d:
+            first, last = (1 - place) / d, (count - 1 - place) / d
+            enter, leave = max(enter, min(first, last)), min(leave, max(first, last))
+        elif not 1 <= place <= count - 1:
+            return None
+    i, j = min(max(int(u + enter * dx), 1), columns - 2), min(max(int(v + enter * dy), 1), rows - 2)
+    return (i, j) if enter <= leave else None

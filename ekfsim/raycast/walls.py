@@ -1,0 +1,160 @@
+"""The walls of a map: which polygon each belongs to, and which of them a beam meets first.
+
+A wall is met from either side: a beam that starts inside an obstacle, or outside the boundary,
+meets the first edge on its way, whosesoever it is. What a beam through a corner, along a wall or
+from a wall meets is told in rules.py.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from ekfsim.geometry import Array, Integers
+from ekfsim.raycast.brute import brute_force
+from ekfsim.raycast.ground import Ground
+from ekfsim.raycast.searches.flat_grid import FlatGrid
+from ekfsim.raycast.searches.grid import Grid
+from ekfsim.twins import twinned
+
+BOUNDARY = "boundary"  # the name of the ring that is the room's own wall
+COLLINEAR = 1e-9  # rad, and of the polygon's size: edges that differ by less lie on one line
+
+
+@dataclass(frozen=True, slots=True)
+class Hit:
+    """Where beams met their first walls. Every array has the beams' axes (…)."""
+
+    range: Array  # (…) m, nan where the beam meets no wall
+    wall: Integers  # (…) index of that wall, -1 where the beam meets none
+
+
+@dataclass(frozen=True, eq=False)
+class Walls:
+    """Every edge of every polygon of one map."""
+
+    segments: Array  # (W, 2, 2) m: the ends of each wall
+    # (W, 2) unit normal of each wall, to the left on the way from its first end to its second
+    normals: Array
+    polygon: Integers  # (W,) which polygon the wall belongs to
+    # (W,) which edge of it: edge j joins points j and j + 1, the last closes the ring
+    edge: Integers
+    line: Integers  # (W,) edges of one polygon on one straight line share a number
+    names: tuple[str, ...]  # of the polygons
+
+    @classmethod
+    def of(cls, rings: Mapping[str, Array]) -> Self:
+        """Collect the edges of all rings, given by name as (n, 2) points in m, closed or not.
+
+        Edges of no length are no walls; the others keep their number in the ring.
+        """
+        polygon, edge, segments = [], [], []
+        for number, points in enumerate(rings.values()):
+            ends = _edges(points)
+            kept = np.flatnonzero(np.hypot(*(ends[:, 1] - ends[:, 0]).T))
+            polygon.append(np.full(len(kept), number))
+            edge.append(kept)
+            segments.append(ends[kept])
+        ends = np.concatenate([np.empty((0, 2, 2)), *segments])
+        east, north = (ends[:, 1] - ends[:, 0]).T
+        normals = np.stack([-north, east], -1) / np.hypot(east, north)[:, None]
+        none = np.empty(0, np.int64)
+        numbers = np.concatenate([none, *polygon])
+        return cls(
+            ends,
+            normals,
+            numbers,
+            np.concatenate([none, *edge]),
+            _lines(ends, numbers),
+            tuple(rings),
+        )
+
+    def name(self, wall: int) -> tuple[str, int]:
+        """The polygon that a wall belongs to, and which edge of it: ("desk", 2)."""
+        return self.names[self.polygon[wall]], int(self.edge[wall])
+
+    @twinned
+    def cast(self, origin: Array, heading: Array) -> Hit:
+        """Follow beams to their first walls. origin : (…, 2) m; heading : (…) rad; broadcast
+        together.
+        """
+        x, y, heading = np.broadcast_arrays(origin[..., 0], origin[..., 1], heading)
+        with np.errstate(invalid="ignore"):
+            dx, dy = np.cos(heading), np.sin(heading)
+        return Hit(*brute_force(self.segments, x, y, dx, dy))
+
+    @twinned
+    def first(self, x: float, y: float, heading: float) -> tuple[float, int]:
+        """Range and wall of one beam from (x, y) m towards `heading` rad; nan and −1 where it meets
+        none.
+        """
+        hit = self.cast(np.array([x, y]), np.array(heading))
+        return float(hit.range), int(hit.wall)
+
+    def near(self, low: Array, high: Array) -> Integers:
+        """The walls whose bounding boxes touch a box from its corner `low` (2,) to `high` (2,)."""
+        first, last = self._boxes
+        return np.flatnonzero(((first <= high) & (last >= low)).all(axis=-1))
+
+    @cached_property
+    def _boxes(self) -> tuple[Array, Array]:
+        return self.segments.min(axis=1), self.segments.max(axis=1)
+
+    @cached_property
+    def ground(self) -> Ground:
+        """Where a robot can stand among these walls."""
+        return Ground.of(
+            self.segments,
+            self.polygon,
+            self.names.index(BOUNDARY) if BOUNDARY in self.names else -1,
+        )
+
+    @cached_property
+    def grid(self) -> Grid | None:
+        """What the searches look walls up in, built at the first cast; None where there is none."""
+        return Grid.over(self.segments) if len(self.segments) else None
+
+    @cached_property
+    def flat_grid(self) -> FlatGrid:
+        """The same for many beams, where there is a wall."""
+        return FlatGrid.of(Grid.over(self.segments) if self.grid is None else self.grid)
+
+
+def _edges(points: Array) -> Array:
+    """(n, 2, 2): the edges of a ring, each from its point to the next; a repeated closing point is
+    none of them.
+    """
+    points = np.asarray(points, float).reshape(-1, 2)
+    if len(points) > 1 and (points[0] == points[-1]).all():
+        points = points[:-1]
+    return np.stack([points, np.roll(points, -1, axis=0)], 1)
+
+
+def _lines(segments: Array, polygon: Integers) -> Integers:
+    """(W,): a number for each straight line, in the order of its first wall."""
+    _, first, which = np.unique(polygon, return_index=True, return_inverse=True)
+    start = segments[first, 0][which]
+    size = np.zeros(len(first))
+    np.maximum.at(size, which, np.abs(segments - start[:, None]).max((1, 2)))
+    east, north = (segments[:, 1] - segments[:, 0]).T
+    angle = np.arctan2(north, east) % np.pi
+    angle = np.where(angle > np.pi - COLLINEAR, angle - np.pi, angle)
+    parallel = _groups(polygon, angle, np.full(len(angle), COLLINEAR))
+    middle = segments.mean(1) - start
+    offset = middle[:, 1] * np.cos(angle) - middle[:, 0] * np.sin(angle)
+    line = _groups(parallel, offset, COLLINEAR * size[which])
+    _, first, which = np.unique(line, return_index=True, return_inverse=True)
+    return np.argsort(np.argsort(first))[which]
+
+
+def _groups(within: Integers, value: Array, gap: Array) -> Integers:
+    """(n,): number the runs of nearly equal values; a gap in the sorted values, or another
+    `within`, parts two runs.
+    """
+    order = np.lexsort([value, within])
+    parted = (np.diff(within[order]) != 0) | (np.diff(value[order]) > gap[order][1:])
+    number = np.empty(len(order), np.int64)
+    number[order] = np.concatenate([np.zeros(min(1, len(order)), np.int64), np.cumsum(parted)])
+    return number
