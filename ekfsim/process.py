@@ -23,7 +23,9 @@ INTERRUPTED = 130
 _ending: list[int] = []  # the signal that is to end us, once it has come
 _parting: list[str] = []  # what is left to say where we are ended
 
-# to look through a long file's tree once more takes as long as to read it
+# what a command makes has no rings in it, or stays to the end: seldom looked through, and not once
+# more before the end, which takes as long as to read a long file
+SELDOM = 100_000  # objects; Python itself looks after 700
 atexit.register(gc.freeze)
 
 
@@ -31,6 +33,9 @@ def run(program: click.Group) -> NoReturn:
     """Run a program and exit with its status: 0 done, 1 the run failed, 2 wrong usage or file, 130,
     143.
     """
+    gc.set_threshold(SELDOM)
+    # of pydantic; to look for some goes through all that is installed
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     _open_closed_streams()
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)  # Windows does not hang up

@@ -27,7 +27,7 @@ class Ground:
     @classmethod
     def of(cls, segments: Array, polygon: Integers, room: int) -> Self:
         """segments : (W, 2, 2) m, all edges; polygon : (W,) which polygon each belongs to"""
-        numbers = np.unique(polygon).tolist()
+        numbers = sorted(set(polygon.tolist()))
         rings = [segments[polygon == number] for number in numbers]
         corners = [(ring.min(axis=(0, 1)), ring.max(axis=(0, 1))) for ring in rings]
         low, high = np.array(corners).reshape(-1, 2, 2).swapaxes(0, 1)

@@ -9,16 +9,16 @@ import errno
 import os
 import re
 import shutil
-import socket
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from platform import node
 from tempfile import mkdtemp, mkstemp
 
 LONGEST = 100  # bytes of a result's name that stand in that of its temporary place: a name has 255
 RANDOM = "[a-z0-9_]{8}"  # what `tempfile` puts into a name
 # locks of another machine may not be seen from here
-HOST = re.sub(r"\W", "", socket.gethostname())[:20]
+HOST = re.sub(r"\W", "", node())[:20]
 
 
 @contextmanager
