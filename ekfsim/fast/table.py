@@ -50,6 +50,12 @@ TWINS: tuple[Twin, ...] = (
         form="ekfsim.fast.chi_square:quantile",
         when="up to 5 000 degrees of freedom, and a probability that is neither 0 nor 1",
     ),
+    Twin(
+        of="ekfsim.study.block:tally_of",
+        form="ekfsim.fast.compiled.block:tally_of",
+        when="commands of the classroom, an EKF as it comes, no guard that looks about",
+        compiled=True,
+    ),
 )
 
 

@@ -1,0 +1,203 @@
+"""Runs of the classroom side by side, watched by the EKF → a Tally, by compiled code.
+
+The text makes a Step of arrays of every command, and judges it. Here a block is the state of its
+runs and what is counted of them, and a command takes three or four calls of compiled code. The
+draws are the text's, to the last bit. What is rare and needs care, a beam through a corner, a P
+that is nearly singular, is done by the text, for those runs alone.
+"""
+
+import math
+
+import numpy as np
+
+from ekfsim.commands import Kidnap, Move, Say, Sense, expand
+from ekfsim.diagnostics.nees import OUTSIDE, RANK, ROUNDING, squared_mahalanobis
+from ekfsim.diagnostics.verdict import LOST
+from ekfsim.fast.compiled import beams, judging, steps
+from ekfsim.fast.many.nees import CLEAR
+from ekfsim.filters import algebra
+from ekfsim.filters.chi_square import quantile
+from ekfsim.geometry import Array, Integers
+from ekfsim.geometry.angles import wrap
+from ekfsim.geometry.ellipse import cone_factor, radius_factor
+from ekfsim.models.sensors.laser import ALONG
+from ekfsim.raycast.ground import CLEARANCE
+from ekfsim.raycast.rules import REACH, TIE
+from ekfsim.raycast.walls import Walls
+from ekfsim.scene import Scene
+from ekfsim.simulation.draws import Draws, true_start
+from ekfsim.study.block import length_of, steps_told
+from ekfsim.study.counting import COVERAGE, SIDES, Judged, bounds, spread
+from ekfsim.study.tally import AtSteps, Extreme, OfRuns, Tally, dtype_of
+
+UPPER = np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2])  # P's upper half: rows, columns
+WHOLE = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])  # and where each entry of P stands in it
+ASKED = 0.5, 0.95, LOST  # the quantiles of χ² that a step's NEES is held against
+
+
+def tally_of(scene: Scene, first: int, runs: int) -> Tally | None:
+    """What becomes of the runs first … first + runs − 1; None where the text must say."""
+    if not knows(scene):
+        return None
+    block = Block(scene, np.arange(first, first + runs), steps_told(length_of(scene)))
+    block.judge()
+    for command in expand(scene.commands):
+        match command:
+            case Move():
+                block.move(command)
+            case Sense(angle):
+                block.sense(angle)
+            case Kidnap(x, y, theta):
+                block.truth[:] = np.array([[x], [y], [wrap(np.asarray(theta))]])
+        block.judge(changed=not isinstance(command, Say))
+    return block.tally()
+
+
+def knows(scene: Scene) -> bool:
+    """Whether the twin may stand in: for an EKF as it comes, without probes, in the classroom."""
+    tuning = scene.tuning
+    as_it_comes = tuning.range_variance == "prediction" and tuning.cross_covariances == "kept"
+    return scene.commanded and scene.filter == "ekf" and scene.guard != "skip" and as_it_comes
+
+
+class Block:
+    """N runs side by side: truth, x : (3, N), P : (6, N), the upper half of each, row after row."""
+
+    def __init__(self, scene: Scene, numbers: Integers, told: Integers) -> None:
+        N = len(numbers)
+        self.world, self.numbers = scene.world, numbers
+        self.draws, self.drawn = Draws(scene.seed, numbers), 0
+        self.truth = np.ascontiguousarray(true_start(scene.world, self.draws).T)
+        start, sigma = scene.world.told.start, scene.world.told.sigma
+        self.x = np.repeat(start[:, None].astype(float), N, axis=1)
+        self.P = np.repeat(np.diag(sigma**2)[UPPER][:, None], N, axis=1)
+        self.gate = math.inf if scene.gate is None else quantile(scene.gate, 1)
+        self.nis, self.nis_dof, self.readings = np.zeros(N), np.zeros(N, np.int64), 0
+        self.e, self.nees = np.empty((3, N)), np.empty(N)
+        self.rank, self.impossible = np.empty(N, np.int64), np.empty(N, bool)
+        self.lost_from, self.some = np.full(N, -1), np.empty(N, np.int64)
+        self.told, self.step, self.at = told, -1, 0
+        self.rows, self.row = np.empty((len(told), len(AtSteps._fields))), np.empty(14)
+        self.quantiles = np.array([[quantile(p, dof) for dof in range(4)] for p in ASKED])
+        self.factors = radius_factor(COVERAGE) ** 2, cone_factor(COVERAGE) ** 2
+
+    def move(self, move: Move) -> None:
+        """The truth goes on, x and P by what the odometry tells of it."""
+        self.drawn += 1
+        noise, faults = self.world.noise, self.world.faults
+        by_way, by_turn, odometry_way, odometry_turn = self.draws.normals(self.drawn)
+        wheels = move.distance + noise.execution_distance * abs(move.distance) * by_way
+        way = self._until_wall((1 - move.slip) * wheels)
+        turn = move.angle + noise.execution_angle * abs(move.angle) * by_turn
+        turned = way / (1 - move.slip) if move.slip < 1 else wheels
+        d = faults.odometry_distance_scale * turned
+        d = d + noise.odometry_distance * abs(turned) * odometry_way
+        a = faults.odometry_angle_scale * turn + noise.odometry_angle * abs(turn) * odometry_turn
+        told = self.world.told.noise
+        ratios = told.odometry_distance, told.odometry_angle
+        steps.move(self.truth, self.x, self.P, way, turn, d, a, *ratios)
+
+    def _until_wall(self, way: Array) -> Array:
+        """The ways (N,), cut short of the first wall."""
+        walls, some = self.world.map.walls, self.some
+        if walls.grid is None:
+            return way
+        tolerances = CLEARANCE, walls.grid.size, TIE, 4 * REACH
+        left = beams.stop(walls.segments.reshape(-1, 4), self.truth, way, *tolerances, some)
+        if left:
+            x, y, heading = self.truth[:, some[:left]]
+            rest = way[some[:left]]
+            r = walls.cast(np.stack([x, y], -1), np.where(rest < 0, heading + np.pi, heading)).range
+            free = np.fmin(np.maximum(r - CLEARANCE, 0.0), np.abs(rest))
+            way[some[:left]] = np.copysign(free, rest)
+        return way
+
+    def sense(self, bearing: float) -> None:
+        """A reading of the true wall revises x and P."""
+        self.drawn += 1
+        noise, faults = self.world.noise, self.world.faults
+        r, _, _ = cast(self.world.map.walls, self.truth, bearing)
+        if faults.short_returns > 0:
+            normals, (decides, u) = self.draws.normals_and_uniforms(self.drawn)
+            r = np.where(decides < faults.short_returns, u * r, r)
+        else:
+            normals = self.draws.normals(self.drawn)
+        z = faults.range_scale * r + faults.range_bias + noise.range * r * normals[0]
+        walls = self.world.told.map.walls
+        h, wall, way = cast(walls, self.x, bearing)
+        self.readings += steps.read(
+            self.x, self.P, np.maximum(z, 0.0), h, wall, way, walls.normals,
+            self.world.told.noise.range, ALONG, algebra.SHARP, algebra.ROUNDING, self.gate,
+            self.nis, self.nis_dof,
+        )  # fmt: skip
+
+    def judge(self, changed: bool = True) -> None:
+        """Hold the beliefs against the truth after a step, and count where it is one to tell of."""
+        self.step += 1
+        told = bool(self.step == self.told[self.at])
+        if changed:
+            left = judging.judge(
+                self.x, self.P, self.truth, ROUNDING, CLEAR, RANK, OUTSIDE,
+                self.e, self.nees, self.rank, self.impossible, self.some,
+            )  # fmt: skip
+            if left:
+                self._judge_as_written(self.some[:left])
+        if changed or told:
+            judging.count(
+                self.e, self.P, self.nees, self.rank, self.impossible, self.step, told,
+                self.quantiles, ROUNDING, RANK, OUTSIDE, *self.factors, self.lost_from, self.row,
+            )  # fmt: skip
+        if told:
+            self.rows[self.at] = self.row
+            self.at += 1
+
+    def _judge_as_written(self, some: Integers) -> None:
+        """The NEES of these runs by the text. some : (m,)"""
+        P = self.P[:, some][WHOLE].transpose(2, 0, 1)
+        value, self.rank[some], impossible = squared_mahalanobis(self.e[:, some].T, P)
+        self.impossible[some] |= impossible
+        self.nees[some] = np.where(self.impossible[some], np.nan, value)
+
+    def tally(self) -> Tally:
+        """What is left when the runs are over."""
+        last, (low, high) = Judged(self.nees, self.rank, self.impossible), SIDES
+        of = OfRuns(
+            nis_runs=int(np.count_nonzero(self.nis_dof)),
+            nis_above=int(np.count_nonzero(self.nis > bounds(high, self.nis_dof))),
+            nis_below=int(np.count_nonzero(self.nis < bounds(low, self.nis_dof))),
+            nis_readings=self.readings,
+            nis_dof=int(np.sum(self.nis_dof)),
+            nis_sum=float(np.sum(self.nis)),
+            nees_above=int(np.count_nonzero(last.above(high))),
+            nees_below=int(np.count_nonzero(last.below(low))),
+        )
+        steps, runs = np.unique(self.lost_from[self.lost_from >= 0], return_counts=True)
+        i = int(np.argmax(np.where(last.impossible, np.inf, last.value)))
+        impossible = bool(last.impossible[i])
+        columns = zip(AtSteps._fields, self.rows.T, strict=True)
+        return Tally(
+            runs=len(self.numbers),
+            steps=self.told,
+            times=np.full(len(self.told), np.nan),
+            at=AtSteps._make(column.astype(dtype_of(name)) for name, column in columns),
+            of=of,
+            lost_from=dict(zip(steps.tolist(), runs.tolist(), strict=True)),
+            spread=spread(last, self.numbers),
+            worst=Extreme(
+                impossible, 0.0 if impossible else float(last.value[i]), int(self.numbers[i])
+            ),
+        )
+
+
+def cast(walls: Walls, place: Array, bearing: float) -> tuple[Array, Integers, Array]:
+    """Ranges (N,), walls (N,) and directions (2, N) of beams from many poses (3, N)."""
+    N = place.shape[1]
+    ranges, wall, way = np.full(N, np.nan), np.full(N, -1), np.empty((2, N))
+    if walls.grid is not None:
+        tolerances = walls.grid.size, TIE, 4 * REACH
+        ends = walls.segments.reshape(-1, 4)
+        if beams.cast(ends, place, bearing, *tolerances, ranges, wall, way):
+            some = np.flatnonzero(wall == beams.DOUBT)
+            hit = walls.cast(place[:2, some].T, place[2, some] + bearing)
+            ranges[some], wall[some] = hit.range, hit.wall
+    return ranges, wall, way
