@@ -138,7 +138,7 @@ def test_wrong_usage(place, more):
     ],
 )
 def test_pictures_that_are_interrupted_do_not_appear(place, number, status, out):
-    (place / "long.yaml").write_text(LONG.replace("20000", "100"))
+    (place / "long.yaml").write_text(LONG.replace("20000", "1000"))
     running = started("render", "long.yaml", "-o", out)
     wait_for(lambda: any(place.glob(".frames*.partial")), running)
     running.send_signal(getattr(signal, number))

@@ -19,6 +19,7 @@ from matplotlib.patches import Polygon
 from ekfsim.filters.belief import Particles, Refused
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import conditioned, cone_halfwidth, outline
+from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.terminal.playback import View
 from ekfsim.views.words.beams import Beam
 from ekfsim.views.words.captions import conditioned_label, cone_label, ellipse_label
@@ -200,22 +201,22 @@ class BeliefArtists:
         self.cone.set_xy(sector(x, half, CONE * unit))
         self.ellipse.set_xy(outline(x, P[:2, :2], self._probability))
         for sign, line in self.conditioned.items():
-            line.set_data(*outline(*conditioned(x, P, sign * half), self._probability).T)
+            place(line, outline(*conditioned(x, P, sign * half), self._probability))
         if isinstance(view.belief, Particles):
             scatter(self.particles, view.layout.pose(view.belief.states), view.belief.weights)
         else:
             self.particles.set_offsets(NOWHERE)
         path = view.path()
-        self.path.set_data(*path.T)
+        place(self.path, path)
         if not self._driven:
             self.path.set_marker("." if len(path) <= DOTS else "")
         if self.body is not None:
             self.body.set_xy(robot(x, unit))
-        self.reference.set_data(x[:1], x[1:2])
+        place(self.reference, x[None, :2])
         true = view.step.entry.truth
         segment = np.empty((0, 2)) if true is None else _ray(true, TRUE_HEADING * unit)
-        self.heading.set_data(*segment.T)
-        self.truth.set_data(*segment[:1].T)
+        place(self.heading, segment)
+        place(self.truth, segment[:1])
 
     def call(self, name: str) -> None:
         """Name the filter in the legend, where others are drawn beside it."""
@@ -290,24 +291,25 @@ class BeamArtists:
     def show(self, beam: Beam | None, far: float) -> None:
         """Move it to a beam, or away. far : m, how long a beam is drawn that meets nothing"""
         for line in (self.measured, self.end, self.way, self.expected, self.arms):
-            line.set_data([], [])
-        self.probes.set_segments(
-            [] if beam is None else [_ray(*probe, far) for probe in beam.probes]
-        )
+            place(line, NOWHERE)
+        if beam is not None or not empty(self.probes):
+            self.probes.set_segments(
+                [] if beam is None else [_ray(*probe, far) for probe in beam.probes]
+            )
         if beam is None:
             return
         arms = [point for probe in beam.probes for point in (beam.pose[:2], probe.pose[:2])]
-        self.arms.set_data(*np.reshape(arms, (-1, 2)).T)
+        place(self.arms, np.reshape(arms, (-1, 2)))
         echo = not np.isnan(beam.measured)
         self.measured.set_linestyle(":" if not echo else "--" if beam.refused else "-")
-        self.measured.set_data(*_ray(beam.pose, beam.measured, far).T)
+        place(self.measured, _ray(beam.pose, beam.measured, far))
         if echo:
-            self.end.set_data(*_ray(beam.pose, beam.measured)[1:].T)
+            place(self.end, _ray(beam.pose, beam.measured)[1:])
             mark_end(self.end, beam.solid, beam.refused)
         if not np.isnan(beam.predicted):
             way = _ray(beam.pose, beam.predicted)
-            self.way.set_data(*way.T)
-            self.expected.set_data(*way[1:].T)
+            place(self.way, way)
+            place(self.expected, way[1:])
 
     def handles(self) -> Iterator[Artist]:
         """What the legend shows of it."""
@@ -328,6 +330,26 @@ def mark_end(line: Line2D, solid: bool, refused: Refused = Refused.NOT) -> Line2
     line.set_marker(IN_WALL if solid else IN_AIR)
     line.set_markerfacecolor(VERMILLION if solid and not refused else "white")
     return line
+
+
+def place(line: Line2D, points: Array) -> None:
+    """Move a line to points : (n, 2) m. One that had none and has none again costs no time."""
+    if len(points) or not empty(line):
+        line.set_data(*points.T)
+
+
+def empty(artist: Artist) -> bool:
+    """Whether nothing is to be seen of an artist, which drawing it would only take time to find."""
+    match artist:
+        case Line2D():
+            return not np.size(artist.get_xdata(orig=True))
+        case PathCollection():
+            return not np.size(artist.get_offsets())
+        case LineCollection():
+            return not artist.get_paths()
+        case OutlinedText():
+            return not artist.get_text()
+    return False
 
 
 def scatter(crowd: PathCollection, poses: Array, weights: Array) -> None:

@@ -20,8 +20,9 @@ from ekfsim.commands import expanded_length
 from ekfsim.geometry.ellipse import outline
 from ekfsim.records import Step
 from ekfsim.scene import Scene
-from ekfsim.views.film.png import Pixels, encode
+from ekfsim.views.film.png import Encoder, Pixels
 from ekfsim.views.picture import limits as limits_of_run
+from ekfsim.views.picture.artists import empty
 from ekfsim.views.picture.labels import label_landmarks, label_obstacles
 from ekfsim.views.picture.lettering import drawable, families, wrapped
 from ekfsim.views.picture.limits import Limits, including
@@ -154,15 +155,12 @@ class Frame:
         for artist in self.picture.moving():
             artist.set_animated(True)
         self._draw_still()
+        width, height = self._canvas.get_width_height()
+        self._encoder = Encoder(height, width)
 
     def rgb(self, view: View) -> Pixels:
         """The pixels of a view : (h, w, 3)"""
-        if self.picture.show(view):
-            self._draw_still()
-        self._canvas.restore_region(self._still)
-        for artist in self.picture.moving():
-            self.picture.figure.draw_artist(artist)
-        rgba = np.asarray(self._canvas.buffer_rgba())
+        rgba = self._rgba(view)
         pixels = np.empty((*rgba.shape[:2], 3), np.uint8)
         for channel in range(3):  # three times as fast as all at once
             pixels[..., channel] = rgba[..., channel]
@@ -170,7 +168,18 @@ class Frame:
 
     def png(self, view: View, metadata: Mapping[str, str] | None = None) -> bytes:
         """The picture of a view as a PNG file; equal views give equal bytes."""
-        return encode(self.rgb(view), metadata or {})
+        return self._encoder.encode(self._rgba(view), metadata or {})
+
+    def _rgba(self, view: View) -> Pixels:
+        """The canvas with a view on it, until the next : (h, w, 4)"""
+        if self.picture.show(view):
+            self._draw_still()
+        self._canvas.restore_region(self._still)
+        renderer = self._canvas.get_renderer()
+        for artist in self.picture.moving():
+            if not empty(artist):
+                artist.draw(renderer)
+        return np.asarray(self._canvas.buffer_rgba())
 
     def _draw_still(self) -> None:
         """Draw what does not move."""

@@ -5,12 +5,13 @@ ellipse.
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from ekfsim.geometry.ellipse import outline
-from ekfsim.views.picture.artists import NOSE, closed, direction
+from ekfsim.views.picture.artists import NOSE, closed, direction, place
 from ekfsim.views.terminal.playback import View
 
 
@@ -67,10 +68,10 @@ class OtherArtists:
         this Axes
         """
         x, P = view.pose
-        self.path.set_data(*view.path().T)
-        self.ellipse.set_data(*closed(outline(x, P[:2, :2], self._probability)).T)
-        self.heading.set_data(*zip(x[:2], x[:2] + NOSE * unit * direction(x[2]), strict=True))
-        self.reference.set_data(x[:1], x[1:2])
+        place(self.path, view.path())
+        place(self.ellipse, closed(outline(x, P[:2, :2], self._probability)))
+        place(self.heading, np.stack([x[:2], x[:2] + NOSE * unit * direction(x[2])]))
+        place(self.reference, x[None, :2])
 
     def handles(self) -> Iterator[tuple[Artist, ...]]:
         """What the legend shows of it."""

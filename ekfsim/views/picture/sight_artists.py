@@ -18,7 +18,7 @@ from ekfsim.models.sensors.yaw import Yaw
 from ekfsim.records import Entry
 from ekfsim.scene import Scene
 from ekfsim.systems.robots import PylonCart
-from ekfsim.views.picture.artists import BLUE, IN_AIR, IN_WALL, VERMILLION
+from ekfsim.views.picture.artists import BLUE, IN_AIR, IN_WALL, VERMILLION, place
 from ekfsim.views.picture.sights import NOWHERE, Sight
 
 FIX = "#7A7A7A"
@@ -61,7 +61,7 @@ class SightArtists:
         """Move it to a reading, or away."""
         lines = (self.line, self.end, self.way, self.expected, self.place)
         for line, points in zip(lines, _points(sight), strict=True):
-            line.set_data(*points.T)
+            place(line, points)
         if sight is not None:
             self.line.set_linestyle("--" if sight.refused else "-")
             self.line.set_linewidth(1.4 if sight.fix else 2)
@@ -103,7 +103,7 @@ class FixArtists:
                 if entry.fix is None or not np.isfinite(entry.fix).all()
                 else entry.fix[None]
             )
-        self.fixes.set_data(*shown.T)
+        place(self.fixes, shown)
 
     def handles(self) -> Iterator[Artist]:
         """What the legend shows of it."""
