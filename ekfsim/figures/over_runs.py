@@ -33,13 +33,13 @@ class EachRun:
         """Of the steps of a simulated drive."""
         squares, nis = list[Array](), list[Array]()
         for step, reckoned in _instants(steps, nis):
-            assert step.entry.truth is not None
-            both = (
-                np.stack([layout.pose(step.posterior.mean), layout.pose(reckoned)])
-                - step.entry.truth
-            )
+            truth, measured = step.entry.truth, step.nees
+            if truth is None or measured is None:
+                continue
+            both = np.stack([layout.pose(step.posterior.mean), layout.pose(reckoned)]) - truth
             e = np.concatenate([np.sum(both[..., :2] ** 2, axis=-1), wrap(both[..., 2]) ** 2])
-            squares.append(np.concatenate([e, Judged.of(step, e.shape[1:]).above(LOST)[None]]))
+            beyond = Judged.of(measured, step.posterior.mean).above(LOST)
+            squares.append(np.concatenate([e, beyond[None]]))
         position, off, heading, turned, beyond = np.mean(squares, axis=0)
         means = np.nanmean(nis, axis=0) if nis else np.full(position.shape, np.nan)
         return cls(

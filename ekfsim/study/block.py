@@ -1,48 +1,33 @@
 """1024 runs side by side → a Tally. They are the unit of work: the runs of a block share their
 draws.
+
+A block is a fold: the instants of its runs, one after another, into what is known of each run so
+far; of that its tally is what remains at the end.
 """
 
 import functools
+import itertools
 import math
 import operator
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from ekfsim.commands import expanded_length
-from ekfsim.diagnostics.nees import error
 from ekfsim.diagnostics.verdict import LOST
-from ekfsim.filters.belief import Correction, posed
-from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.filters.belief import Belief, Correction, posed
+from ekfsim.geometry import Array, Integers
 from ekfsim.localization import play
-from ekfsim.records import Step
+from ekfsim.models.layout import Layout
+from ekfsim.records import Nees, Step
 from ekfsim.scene import Scene
-from ekfsim.study.counting import (
-    SIDES,
-    Judged,
-    bounds,
-    coverage_counts,
-    covered,
-    error_squares,
-    nees_counts,
-    nees_sums,
-    spread,
-)
-from ekfsim.study.tally import AtSteps, Extreme, OfRuns, Tally, dtype_of
+from ekfsim.study.counting import SIDES, Ends, Judged, bounds, counted, spread, worst
+from ekfsim.study.tally import AtSteps, OfRuns, Tally, dtype_of
 from ekfsim.twins import Way, taken, taking, twinned
 
 MOST_PARTICLES = 2_000_000  # of all runs that are watched at once: they take some 400 bytes each
 MOST_STEPS = 1000  # of a longer run so many are told of, evenly spaced, and the last
-
-
-class Ends(NamedTuple):
-    """How each of N runs ended : (N,) each"""
-
-    lost: Booleans
-    inside: Booleans  # the truth is inside the ellipse
-    drawn: Booleans  # the ellipse has an area
-    position: Array  # m, from the truth to the estimate
-    heading: Array  # rad, without its sign
 
 
 def run_block(scene: Scene, first: int, runs: int, way: Way | None = None) -> Tally:
@@ -72,26 +57,17 @@ def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
     return [(run, min(some, first + runs - run)) for run in range(first, first + runs, some)]
 
 
-def watched(scene: Scene, first: int, runs: int) -> "Watch":
-    """These runs, each told apart at its end."""
-    watch = Watch(scene, np.arange(first, first + runs))
-    before: Step | None = None
-    for step in play(scene, watch.numbers):
-        if before is not None and (step.entry.t is None or step.entry.t != before.entry.t):
-            watch.judge(before)  # with a clock, once nothing more comes of that instant
-        if step.correction is not None:
-            watch.weigh(step.correction)
-        before = step
-    assert before is not None
-    watch.judge(before)
-    return watch
+def watched(scene: Scene, first: int, runs: int) -> "Watched":
+    """The runs first … first + runs − 1, each told apart at its end."""
+    numbers = np.arange(first, first + runs)
+    start = Watched.empty(numbers, steps_told(length_of(scene)))
+    return functools.reduce(judge, instants(play(scene, numbers)), start)
 
 
 def length_of(scene: Scene) -> int:
     """How many steps a run has after its start; with a clock, how many instants."""
-    if scene.drive is None:
+    if scene.drive is None or scene.world.robot is None:
         return expanded_length(scene.commands)
-    assert scene.world.robot is not None
     return len(scene.drive.course(1 / scene.world.robot.rate).speed)
 
 
@@ -104,98 +80,116 @@ def steps_told(length: int) -> Integers:
     return np.round(np.linspace(0, length, min(length, MOST_STEPS) + 1)).astype(np.int64)
 
 
-class Watch:
-    """Watches N runs side by side, a step at a time."""
+class Instant(NamedTuple):
+    """What N runs believe once nothing more comes of an instant; without a clock every entry is
+    one.
+    """
 
-    def __init__(self, scene: Scene, numbers: Integers) -> None:
-        self.numbers = numbers
-        self._layout = scene.world.layout
-        self._told = steps_told(length_of(scene)).tolist()
-        self._step = -1
-        self._times: list[float] = []
-        self._rows: list[tuple[float, ...]] = []
-        self._lost_from = np.full(numbers.shape, -1)
-        self._nis, self._nis_dof = np.zeros(numbers.shape), np.zeros(numbers.shape, np.int64)
-        self._readings = self._unsettled = 0
-        self._last: Judged | None = None
-        self._ended: Step | None = None
+    t: float  # s; nan where there is no clock
+    belief: Belief
+    layout: Layout
+    truth: Array  # (N, 3)
+    nees: Nees
+    corrections: tuple[Correction, ...]  # by its readings, refused or not
 
-    def weigh(self, correction: Correction) -> None:
-        """Take the NIS of a reading into account, refused or not."""
+
+def instants(steps: Iterable[Step]) -> Iterator[Instant]:
+    """The steps of runs whose truth is known, instant by instant."""
+    for _, together in itertools.groupby(steps, key=moment):
+        *earlier, last = together
+        entry = last.entry
+        if entry.truth is not None and last.nees is not None:
+            t = math.nan if entry.t is None else entry.t
+            readings = (step.correction for step in (*earlier, last))
+            corrections = tuple(one for one in readings if one is not None)
+            yield Instant(t, last.posterior, last.layout, entry.truth, last.nees, corrections)
+
+
+def moment(step: Step) -> float:
+    """What steps of one instant have in common; without a clock each has its own."""
+    return step.entry.index if step.entry.t is None else step.entry.t
+
+
+class Readings(NamedTuple):
+    """The readings of N runs so far."""
+
+    nis: Array  # (N,) ΣNIS of each run, refused readings included
+    dof: Integers  # (N,) its degrees of freedom
+    number: int = 0  # in all runs together, of those that have a NIS
+    unsettled: int = 0  # in all runs together: the search of an iterated filter was cut off
+
+    def add(self, correction: Correction) -> Self:
+        """One more reading in each run."""
         known = ~np.isnan(correction.nis)
-        self._nis += np.where(known, correction.nis, 0.0)
-        self._nis_dof += known * correction.innovation.shape[-1]
-        self._readings += int(np.count_nonzero(known))
-        self._unsettled += int(np.count_nonzero(~np.asarray(correction.settled)))
-
-    def judge(self, step: Step) -> None:
-        """Hold the beliefs after a step against the truth."""
-        self._step += 1
-        self._ended = step
-        now = self._last = Judged.of(step, self.numbers.shape)
-        since = np.where(self._lost_from < 0, self._step, self._lost_from)
-        self._lost_from = np.where(now.above(LOST), since, -1)
-        if self._step == self._told[len(self._rows)]:
-            pose, truth = posed(step.posterior, self._layout), step.entry.truth
-            assert truth is not None
-            counted = (
-                nees_counts(now),
-                coverage_counts(pose, truth),
-                nees_sums(now),
-                error_squares(pose, truth),
-            )
-            self._rows.append(sum(counted, ()))
-            self._times.append(math.nan if step.entry.t is None else step.entry.t)
-
-    def ends(self) -> Ends:
-        """How each run ended."""
-        assert self._ended is not None
-        assert self._ended.entry.truth is not None
-        assert self._last is not None
-        pose = posed(self._ended.posterior, self._layout)
-        e = error(pose, self._ended.entry.truth)
-        return Ends(
-            self._last.above(LOST),
-            *covered(e, pose.covariance),
-            np.hypot(e[..., 0], e[..., 1]),
-            abs(e[..., 2]),
+        return self._replace(
+            nis=self.nis + np.where(known, correction.nis, 0.0),
+            dof=self.dof + known * correction.innovation.shape[-1],
+            number=self.number + int(np.count_nonzero(known)),
+            unsettled=self.unsettled + int(np.count_nonzero(~np.asarray(correction.settled))),
         )
+
+
+class Watched(NamedTuple):
+    """What is known of N runs up to an instant."""
+
+    numbers: Integers  # (N,)
+    told: Integers  # (k,) which steps are told of
+    lost_from: Integers  # (N,) the step from which on a run is lost, −1 where it is not
+    readings: Readings
+    ends: Ends  # how each run stood at the last step that is told of
+    step: int = -1
+    at: tuple[AtSteps, ...] = ()  # of each step that was told of
+    times: tuple[float, ...] = ()
+
+    @classmethod
+    def empty(cls, numbers: Integers, told: Integers) -> Self:
+        """Runs that have not begun."""
+        N = numbers.shape
+        readings = Readings(np.zeros(N), np.zeros(N, np.int64))
+        return cls(numbers, told, np.full(N, -1), readings, Ends.unknown(len(numbers)))
 
     def tally(self) -> Tally:
         """What is left when the runs are over."""
-        assert self._last is not None
-        assert self._step == self._told[-1]
-        columns = zip(AtSteps._fields, zip(*self._rows, strict=True), strict=True)
-        steps, runs = np.unique(self._lost_from[self._lost_from >= 0], return_counts=True)
+        steps, runs = np.unique(self.lost_from[self.lost_from >= 0], return_counts=True)
+        columns = zip(AtSteps._fields, zip(*self.at, strict=True), strict=True)
         return Tally(
-            len(self.numbers),
-            np.array(self._told),
-            np.array(self._times),
-            AtSteps._make(np.array(column, dtype_of(name)) for name, column in columns),
-            self._of_runs(self._last),
-            dict(zip(steps.tolist(), runs.tolist(), strict=True)),
-            spread(self._last, self.numbers),
-            self._worst(self._last),
+            runs=len(self.numbers),
+            steps=self.told,
+            times=np.array(self.times),
+            at=AtSteps._make(np.array(column, dtype_of(name)) for name, column in columns),
+            of=of_runs(self.readings, self.ends.nees),
+            lost_from=dict(zip(steps.tolist(), runs.tolist(), strict=True)),
+            spread=spread(self.ends.nees, self.numbers),
+            worst=worst(self.ends.nees, self.numbers),
         )
 
-    def _of_runs(self, last: Judged) -> OfRuns:
-        low, high = SIDES
-        return OfRuns(
-            nis_runs=int(np.count_nonzero(self._nis_dof)),
-            nis_above=int(np.count_nonzero(self._nis > bounds(high, self._nis_dof))),
-            nis_below=int(np.count_nonzero(self._nis < bounds(low, self._nis_dof))),
-            nis_readings=self._readings,
-            nis_dof=int(np.sum(self._nis_dof)),
-            nis_sum=float(np.sum(self._nis)),
-            nees_above=int(np.count_nonzero(last.above(high))),
-            nees_below=int(np.count_nonzero(last.below(low))),
-            unsettled=self._unsettled,
-        )
 
-    def _worst(self, last: Judged) -> Extreme:
-        """The run that ended worst, of equals the lowest number."""
-        i = int(np.argmax(np.where(last.impossible, np.inf, last.value)))
-        impossible = bool(last.impossible[i])
-        return Extreme(
-            impossible, 0.0 if impossible else float(last.value[i]), int(self.numbers[i])
-        )
+def judge(so_far: Watched, now: Instant) -> Watched:
+    """Hold the beliefs of one more instant against the truth."""
+    step, nees = so_far.step + 1, Judged.of(now.nees, now.belief.mean)
+    since = np.where(so_far.lost_from < 0, step, so_far.lost_from)
+    after = so_far._replace(
+        step=step,
+        lost_from=np.where(nees.above(LOST), since, -1),
+        readings=functools.reduce(Readings.add, now.corrections, so_far.readings),
+    )
+    if step != so_far.told[len(so_far.at)]:
+        return after
+    ends = Ends.of(nees, posed(now.belief, now.layout), now.truth)
+    return after._replace(ends=ends, at=(*so_far.at, counted(ends)), times=(*so_far.times, now.t))
+
+
+def of_runs(readings: Readings, last: Judged) -> OfRuns:
+    """What is counted of runs that are over, by their readings and their last NEES."""
+    low, high = SIDES
+    return OfRuns(
+        nis_runs=int(np.count_nonzero(readings.dof)),
+        nis_above=int(np.count_nonzero(readings.nis > bounds(high, readings.dof))),
+        nis_below=int(np.count_nonzero(readings.nis < bounds(low, readings.dof))),
+        nis_readings=readings.number,
+        nis_dof=int(np.sum(readings.dof)),
+        nis_sum=float(np.sum(readings.nis)),
+        nees_above=int(np.count_nonzero(last.above(high))),
+        nees_below=int(np.count_nonzero(last.below(low))),
+        unsettled=readings.unsettled,
+    )

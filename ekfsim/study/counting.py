@@ -1,8 +1,9 @@
-"""One step of N runs → counts and sums: how many lie above a quantile, inside the ellipse, inside
-the cone.
+"""N runs held against the truth → counts and sums: how many lie above a quantile, inside the
+ellipse, inside the cone.
 """
 
-from typing import NamedTuple
+from functools import lru_cache
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -13,14 +14,15 @@ from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.ellipse import radius_factor
-from ekfsim.records import Step
-from ekfsim.study.tally import Bin
+from ekfsim.records import Nees
+from ekfsim.study.tally import AtSteps, Bin, Extreme
 
 COVERAGE = 0.954  # probability of the ellipse and the cone whose coverage is counted
 SIDES = 0.025, 0.975  # the two-sided 95 % band of ΣNIS of a run, and of its last NEES
 PER_OCTAVE = 32  # bins of the logarithm of NEES: 2 % wide
 WIDEST = 64 * PER_OCTAVE  # what lies beyond ± so many bins belongs to the outermost
 IMPOSSIBLE = WIDEST + 1  # the bin of impossible beliefs
+RANKS = 4  # of the covariance of a pose: 0, 1, 2, 3
 
 
 class Judged(NamedTuple):
@@ -31,25 +33,23 @@ class Judged(NamedTuple):
     impossible: Booleans
 
     @classmethod
-    def of(cls, step: Step, shape: tuple[int, ...]) -> "Judged":
-        """The NEES after a step. An estimate that is no number is as impossible as one that is
-        certain and wrong.
+    def of(cls, measured: Nees, estimate: Array) -> Self:
+        """The NEES after a step. An estimate (N, n) that is no number is as impossible as one that
+        is certain and wrong.
         """
-        assert step.nees is not None
-        number = np.isfinite(step.posterior.mean).all(axis=-1)
-        impossible = np.broadcast_to(step.nees.impossible | ~number, shape)
-        value = np.where(impossible, np.nan, step.nees.value)
-        return cls(value, np.broadcast_to(step.nees.dof, shape), impossible)
+        impossible = measured.impossible | ~np.isfinite(estimate).all(axis=-1)
+        value = np.where(impossible, np.nan, measured.value)
+        return cls(value, np.broadcast_to(measured.dof, value.shape), impossible)
 
     def above(self, probability: float) -> Booleans:
         """Which runs lie above a quantile of χ², each by its own degrees of freedom; the impossible
         ones do : (N,)
         """
-        return self.impossible | (self.value > bounds(probability, self.dof))
+        return self.impossible | (self.value > by_rank(probability)[self.dof])
 
     def below(self, probability: float) -> Booleans:
         """Which runs lie below a quantile : (N,)"""
-        return self.value < bounds(probability, self.dof)
+        return self.value < by_rank(probability)[self.dof]
 
     @property
     def known(self) -> Booleans:
@@ -58,55 +58,100 @@ class Judged(NamedTuple):
         return known
 
 
+@lru_cache
+def by_rank(probability: float) -> Array:
+    """The quantile of χ² for every rank that P of a pose may have : (4,)"""
+    return np.array([quantile(probability, rank) for rank in range(RANKS)])
+
+
 def bounds(probability: float, dof: Integers) -> Array:
-    """The quantile of χ² for each of many degrees of freedom : (N,)"""
+    """The quantile of χ² for each of many degrees of freedom, however large : (N,)"""
     kinds, which = np.unique(dof, return_inverse=True)
     table: Array = np.array([quantile(probability, int(kind)) for kind in kinds])
     return table[which]
 
 
-def nees_counts(now: Judged) -> tuple[int, ...]:
-    """Runs that are judged, impossible, above the three quantiles."""
-    above = (now.above(probability) for probability in (0.5, 0.95, LOST))
-    return tuple(
-        int(np.count_nonzero(runs)) for runs in (now.known | now.impossible, now.impossible, *above)
+def count(runs: Booleans) -> Integers:
+    """How many runs something is true of : ()"""
+    return np.array(np.count_nonzero(runs))
+
+
+def total(values: Array, runs: Booleans | bool = True) -> Array:
+    """The sum of what these runs have : ()"""
+    return np.array(np.sum(values, where=runs))
+
+
+class Ends(NamedTuple):
+    """How each of N runs stands at a step : (N,) each"""
+
+    nees: Judged
+    e: Array  # (N, 3) estimate − truth of the pose, in m, m, rad
+    inside: Booleans  # the truth is inside the ellipse
+    drawn: Booleans  # the ellipse has an area, or is impossible
+    in_cone: Booleans
+    unsure: Booleans  # of the heading: there is a cone, or it is impossible
+
+    @classmethod
+    def of(cls, nees: Judged, pose: Gaussian, truth: Array) -> Self:
+        """Hold beliefs against the truth. An impossible one is outside. truth : (N, 3)"""
+        e, P = error(pose, truth), pose.covariance
+        square, rank, off = squared_mahalanobis(e[..., :2], P[..., :2, :2])
+        off = off | ~np.isfinite(square) | ~np.isfinite(e[..., :2]).all(axis=-1)
+        drawn = (rank == 2) | off
+        inside = drawn & ~off & (square <= radius_factor(COVERAGE) ** 2)
+        unsure = (P[..., 2, 2] > ROUNDING**2) | ~(abs(e[..., 2]) <= OUTSIDE)
+        return cls(nees, e, inside, drawn, unsure & inside_cone(pose, truth, COVERAGE), unsure)
+
+    @classmethod
+    def unknown(cls, runs: int) -> Self:
+        """Of runs that have not begun."""
+        no, nan = np.zeros(runs, bool), np.full(runs, np.nan)
+        nees = Judged(nan, np.zeros(runs, np.int64), no)
+        return cls(nees, np.full((runs, 3), np.nan), no, no, no, no)
+
+    @property
+    def lost(self) -> Booleans:
+        """Whose NEES lies beyond its χ² 99.9 % quantile, or is impossible : (N,)"""
+        return self.nees.above(LOST)
+
+    @property
+    def position(self) -> Array:
+        """From the truth to the estimate in m : (N,)"""
+        distance: Array = np.hypot(self.e[..., 0], self.e[..., 1])
+        return distance
+
+    @property
+    def heading(self) -> Array:
+        """Its error in rad, without its sign : (N,)"""
+        return abs(self.e[..., 2])
+
+
+def counted(ends: Ends) -> AtSteps:
+    """What is counted of one step : () each"""
+    nees, squares = ends.nees, ends.e * ends.e
+    return AtSteps(
+        judged=count(nees.known | nees.impossible),
+        impossible=count(nees.impossible),
+        above_50=count(nees.above(0.5)),
+        above_95=count(nees.above(0.95)),
+        above_999=count(ends.lost),
+        in_ellipse=count(ends.inside),
+        ellipse_runs=count(ends.drawn),
+        in_cone=count(ends.in_cone),
+        cone_runs=count(ends.unsure),
+        nees_runs=count(nees.known),
+        nees_dof=np.array(np.sum(nees.dof, where=nees.known)),
+        nees_sum=total(nees.value, nees.known),
+        position_square=total(squares[..., :2]),
+        heading_square=total(squares[..., 2]),
     )
 
 
-def coverage_counts(pose: Gaussian, truth: Array) -> tuple[int, ...]:
-    """Runs inside their ellipse, that have one, inside their cone, that have one. An impossible one
-    is outside.
-    """
-    e, P = error(pose, truth), pose.covariance
-    unsure = (P[..., 2, 2] > ROUNDING**2) | ~(abs(e[..., 2]) <= OUTSIDE)
-    held = unsure & inside_cone(pose, truth, COVERAGE)
-    return tuple(int(np.count_nonzero(runs)) for runs in (*covered(e, P), held, unsure))
-
-
-def covered(e: Array, P: Array) -> tuple[Booleans, Booleans]:
-    """Which runs are inside their ellipse, and which have one that has an area, or are impossible :
-    (N,) each
-    """
-    square, rank, off = squared_mahalanobis(e[..., :2], P[..., :2, :2])
-    off = off | ~np.isfinite(square) | ~np.isfinite(e[..., :2]).all(axis=-1)
-    drawn: Booleans = (rank == 2) | off
-    return drawn & ~off & (square <= radius_factor(COVERAGE) ** 2), drawn
-
-
-def nees_sums(now: Judged) -> tuple[float, ...]:
-    """Runs with a NEES, its degrees of freedom, and its sum."""
-    known = now.known
-    return (
-        int(np.count_nonzero(known)),
-        int(np.sum(now.dof[known])),
-        float(np.sum(now.value[known])),
-    )
-
-
-def error_squares(pose: Gaussian, truth: Array) -> tuple[float, float]:
-    """Σ (ex² + ey²) m² and Σ eθ² rad²"""
-    e = error(pose, truth)
-    return float(np.sum(e[..., :2] ** 2)), float(np.sum(e[..., 2] ** 2))
+def worst(last: Judged, numbers: Integers) -> Extreme:
+    """The run that ended worst, of equals the lowest number."""
+    i = int(np.argmax(np.where(last.impossible, np.inf, last.value)))
+    impossible = bool(last.impossible[i])
+    return Extreme(impossible, 0.0 if impossible else float(last.value[i]), int(numbers[i]))
 
 
 def spread(last: Judged, numbers: Integers) -> dict[int, Bin]:

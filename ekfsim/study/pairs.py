@@ -32,7 +32,16 @@ class Shared(NamedTuple):
     @classmethod
     def of(cls, a: Booleans, b: Booleans) -> Self:
         """Count N runs. a, b : (N,)"""
-        return cls(*(int(np.count_nonzero(runs)) for runs in (a & b, a & ~b, ~a & b, ~a & ~b)))
+        return cls(
+            both=int(np.count_nonzero(a & b)),
+            only_a=int(np.count_nonzero(a & ~b)),
+            only_b=int(np.count_nonzero(~a & b)),
+            neither=int(np.count_nonzero(~a & ~b)),
+        )
+
+    def plus(self, other: "Shared") -> "Shared":
+        """Of both."""
+        return Shared(*map(operator.add, self, other))
 
 
 class Sums(NamedTuple):
@@ -52,13 +61,22 @@ class Sums(NamedTuple):
         known = np.isfinite(a) & np.isfinite(b)
         a, b = a[known], b[known]
         d = b - a
-        Σa, Σb, Σd, Σdd = (float(np.sum(numbers)) for numbers in (a, b, d, d * d))
         return cls(
-            len(d), Σa, Σb, Σd, Σdd, int(np.count_nonzero(d < 0)), int(np.count_nonzero(d > 0))
+            runs=len(d),
+            a=float(np.sum(a)),
+            b=float(np.sum(b)),
+            difference=float(np.sum(d)),
+            squares=float(np.sum(d * d)),
+            b_less=int(np.count_nonzero(d < 0)),
+            a_less=int(np.count_nonzero(d > 0)),
         )
 
+    def plus(self, other: "Sums") -> "Sums":
+        """Of both."""
+        return Sums(*map(operator.add, self, other))
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Pairs:
     """What a comparison keeps of its pairs of runs; its size knows no runs."""
 
@@ -74,20 +92,14 @@ class Pairs:
     def __add__(self, other: "Pairs") -> "Pairs":
         """The pairs of both."""
         return Pairs(
-            self.a + other.a,
-            self.b + other.b,
-            Shared(*(one + another for one, another in zip(self.lost, other.lost, strict=True))),
-            Shared(
-                *(one + another for one, another in zip(self.inside, other.inside, strict=True))
-            ),
-            Sums._make(
-                one + another for one, another in zip(self.position, other.position, strict=True)
-            ),
-            Sums._make(
-                one + another for one, another in zip(self.heading, other.heading, strict=True)
-            ),
-            Counter(self.a_errors) + Counter(other.a_errors),
-            Counter(self.b_errors) + Counter(other.b_errors),
+            a=self.a + other.a,
+            b=self.b + other.b,
+            lost=self.lost.plus(other.lost),
+            inside=self.inside.plus(other.inside),
+            position=self.position.plus(other.position),
+            heading=self.heading.plus(other.heading),
+            a_errors=Counter(self.a_errors) + Counter(other.a_errors),
+            b_errors=Counter(self.b_errors) + Counter(other.b_errors),
         )
 
 
@@ -101,22 +113,23 @@ def run_pairs(a: Scene, b: Scene, first: int, runs: int, way: Way | None = None)
         portions = min(
             at_once(a, first, runs), at_once(b, first, runs), key=lambda some: some[0][1]
         )
-        return functools.reduce(operator.add, (_pairs(a, b, *some) for some in portions))
+        return functools.reduce(operator.add, (pairs_of(a, b, *some) for some in portions))
 
 
-def _pairs(a: Scene, b: Scene, first: int, runs: int) -> Pairs:
+def pairs_of(a: Scene, b: Scene, first: int, runs: int) -> Pairs:
+    """The same, all of them side by side."""
     under_a, under_b = watched(a, first, runs), watched(b, first, runs)
-    one, other = under_a.ends(), under_b.ends()
+    one, other = under_a.ends, under_b.ends
     drawn = one.drawn & other.drawn
     return Pairs(
-        under_a.tally(),
-        under_b.tally(),
-        Shared.of(one.lost, other.lost),
-        Shared.of(one.inside[drawn], other.inside[drawn]),
-        Sums.of(one.position, other.position),
-        Sums.of(one.heading, other.heading),
-        octaves(one.position),
-        octaves(other.position),
+        a=under_a.tally(),
+        b=under_b.tally(),
+        lost=Shared.of(one.lost, other.lost),
+        inside=Shared.of(one.inside[drawn], other.inside[drawn]),
+        position=Sums.of(one.position, other.position),
+        heading=Sums.of(one.heading, other.heading),
+        a_errors=octaves(one.position),
+        b_errors=octaves(other.position),
     )
 
 

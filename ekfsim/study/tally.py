@@ -1,5 +1,8 @@
-"""What is left of many runs when they are over: a record that merges with others, and whose size
-knows no runs.
+"""What is left of many runs when they are over: a record that adds to others, and whose size knows
+no runs.
+
+Addition is associative (sums of floating numbers but for their last digits), and `Tally.empty` adds
+nothing.
 """
 
 from collections import Counter
@@ -13,7 +16,7 @@ from ekfsim.geometry import Array, Integers
 
 
 class AtSteps(NamedTuple):
-    """Counts and sums over runs, for each of k steps : (k,) each"""
+    """Counts and sums over runs, for each of k steps : (k,) each; of one step : ()"""
 
     judged: Integers  # runs of which the NEES says something: some freedom, or an impossible belief
     impossible: Integers
@@ -56,9 +59,9 @@ class Extreme(NamedTuple):
     lowest number.
     """
 
-    impossible: bool
-    nees: float
-    run: int
+    impossible: bool = False
+    nees: float = -1.0  # of no run at all; of a run it is 0 or more
+    run: int = 0
 
     @property
     def rank(self) -> tuple[bool, float, int]:
@@ -73,7 +76,7 @@ class Bin(NamedTuple):
     lowest: int  # the lowest number among them
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Tally:
     """What a study keeps of its runs."""
 
@@ -86,52 +89,66 @@ class Tally:
     spread: Mapping[int, Bin]  # runs by the logarithm of their last NEES
     worst: Extreme
 
-    def __add__(self, other: "Tally") -> "Tally":
-        """The tally of the runs of both."""
-        return Tally(
-            self.runs + other.runs,
-            self.steps,
-            self.times,
-            AtSteps._make(map(np.add, self.at, other.at)),
-            OfRuns._make(one + another for one, another in zip(self.of, other.of, strict=True)),
-            Counter(self.lost_from) + Counter(other.lost_from),
-            merged(self.spread, other.spread),
-            max(self.worst, other.worst, key=lambda extreme: extreme.rank),
+    @classmethod
+    def empty(cls, steps: Integers) -> Self:
+        """The tally of no runs, with these steps to be told of."""
+        none = (np.zeros(steps.shape, dtype_of(name)) for name in AtSteps._fields)
+        return cls(
+            runs=0,
+            steps=steps,
+            times=np.full(steps.shape, np.nan),
+            at=AtSteps._make(none),
+            of=OfRuns(),
+            lost_from={},
+            spread={},
+            worst=Extreme(),
         )
 
-    def plain(self) -> list[Any]:
+    def __add__(self, other: "Tally") -> "Tally":
+        """The tally of the runs of both, of which the same steps are told."""
+        return Tally(
+            runs=self.runs + other.runs,
+            steps=self.steps,
+            times=np.fmax(self.times, other.times),  # the same, where either has a clock
+            at=AtSteps._make(map(np.add, self.at, other.at)),
+            of=OfRuns._make(one + another for one, another in zip(self.of, other.of, strict=True)),
+            lost_from=Counter(self.lost_from) + Counter(other.lost_from),
+            spread=together(self.spread, other.spread),
+            worst=max(self.worst, other.worst, key=lambda extreme: extreme.rank),
+        )
+
+    def plain(self) -> dict[str, Any]:
         """Lists and numbers, fit for JSON, from which `of_plain` makes the same tally to the last
         bit.
         """
-        return [
-            *(self.runs, self.steps.tolist(), self.times.tolist()),
-            *([column.tolist() for column in self.at], list(self.of)),
-            *(
-                sorted(self.lost_from.items()),
-                sorted((key, *held) for key, held in self.spread.items()),
-            ),
-            list(self.worst),
-        ]
+        return {
+            "runs": self.runs,
+            "steps": self.steps.tolist(),
+            "times": self.times.tolist(),
+            "at": {name: column.tolist() for name, column in self.at._asdict().items()},
+            "of": self.of._asdict(),
+            "lost_from": sorted(self.lost_from.items()),
+            "spread": sorted((key, *held) for key, held in self.spread.items()),
+            "worst": self.worst._asdict(),
+        }
 
     @classmethod
-    def of_plain(cls, plain: list[Any]) -> Self:
+    def of_plain(cls, plain: Mapping[str, Any]) -> Self:
         """The tally that `plain` came from."""
-        runs, steps, times, at, of, lost_from, spread, worst = plain
+        columns = (np.array(plain["at"][name], dtype_of(name)) for name in AtSteps._fields)
         return cls(
-            runs,
-            np.array(steps, np.int64),
-            np.array(times, np.float64),
-            AtSteps._make(
-                np.array(c, dtype_of(name)) for name, c in zip(AtSteps._fields, at, strict=True)
-            ),
-            OfRuns(*of),
-            dict(lost_from),
-            {key: Bin(runs, lowest) for key, runs, lowest in spread},
-            Extreme(*worst),
+            runs=plain["runs"],
+            steps=np.array(plain["steps"], np.int64),
+            times=np.array(plain["times"], np.float64),
+            at=AtSteps._make(columns),
+            of=OfRuns(**plain["of"]),
+            lost_from=dict(plain["lost_from"]),
+            spread={key: Bin(runs, lowest) for key, runs, lowest in plain["spread"]},
+            worst=Extreme(**plain["worst"]),
         )
 
 
-def merged(one: Mapping[int, Bin], other: Mapping[int, Bin]) -> dict[int, Bin]:
+def together(one: Mapping[int, Bin], other: Mapping[int, Bin]) -> dict[int, Bin]:
     """The runs of both, bin by bin."""
     both = dict(one)
     for key, (runs, lowest) in other.items():

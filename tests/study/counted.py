@@ -33,4 +33,16 @@ def counted(
     )
     spread, worst = more.get("spread", {0: Bin(runs, 0)}), Extreme(False, 9.0, 7)
     clock = np.full(k, np.nan) if times is None else np.array(times)
-    return Result(None, Tally(runs, np.arange(k), clock, at, of, lost_from or {}, spread, worst))
+    return Result(
+        None,
+        Tally(
+            runs=runs,
+            steps=np.arange(k),
+            times=clock,
+            at=at,
+            of=of,
+            lost_from=lost_from or {},
+            spread=spread,
+            worst=worst,
+        ),
+    )

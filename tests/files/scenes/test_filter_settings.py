@@ -181,12 +181,11 @@ def test_a_comparison_is_watched_in_portions_too(monkeypatch):
 
 
 def flat(held):
-    """All numbers of nested lists, in their order."""
-    return [
-        number
-        for part in held
-        for number in (flat(part) if isinstance(part, list | tuple) else [part])
-    ]
+    """All numbers of nested lists and dicts, in their order."""
+    if not isinstance(held, list | tuple | dict):
+        return [held]
+    parts = held.values() if isinstance(held, dict) else held
+    return [number for part in parts for number in flat(part)]
 
 
 def test_the_beliefs_of_many_particles_are_of_so_many():
