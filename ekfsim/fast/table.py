@@ -19,13 +19,39 @@ class Twin:
     of: str  # the function of the text
     form: str  # what stands in for it; it returns None where it sees that it cannot
     when: str  # in words: the arguments that it is for
-    given: str = ""  # the class of the first argument, where the twin is for one class alone
+    # the class of the first argument, where it is for that one alone: no class that inherits of it
+    given: str = ""
     compiled: bool = False  # by Numba: only where that is asked for
 
 
 MANY = "ekfsim.fast.many"
 NEES = "ekfsim.diagnostics.nees"
+ALONE = "one robot: no leading axes"
+ANY = "whatever the leading axes"
+MOTION, SENSOR = (f"ekfsim.models.protocols:{kind}.linearize" for kind in ("Motion", "Sensor"))
+MOTIONS, MARKER = "ekfsim.models.motions", "ekfsim.models.sensors.landmarks:MarkerAngles"
+AMBIGUITY = "ekfsim.diagnostics.ambiguity"
+
 TWINS: tuple[Twin, ...] = (
+    Twin(MOTION, "ekfsim.fast.one.motions:move_turn", ALONE, "MoveTurn"),
+    Twin(MOTION, "ekfsim.fast.compiled.models:move_turn", "x, u : (N, …)", "MoveTurn", True),
+    Twin(MOTION, "ekfsim.fast.many.motions:move_turn", ANY, "MoveTurn"),
+    Twin(MOTION, "ekfsim.fast.one.motions:gyro_wheels", ALONE, "GyroWheels"),
+    Twin(MOTION, "ekfsim.fast.one.motions:unicycle", ALONE, "Unicycle"),
+    Twin(MOTION, "ekfsim.fast.one.motions:wheel_speeds", ALONE, "WheelSpeeds"),
+    Twin(f"{MOTIONS}.move_turn:MoveTurn.f", "ekfsim.fast.one.motions:move_turn_f", ALONE),
+    Twin(f"{MOTIONS}.move_turn:MoveTurn.f", "ekfsim.fast.many.motions:move_turn_f", ANY),
+    Twin(f"{MOTIONS}.wheels:GyroWheels.f", "ekfsim.fast.one.motions:gyro_wheels_f", ALONE),
+    Twin(f"{MOTIONS}.unicycle:Unicycle.f", "ekfsim.fast.one.motions:unicycle_f", ALONE),
+    Twin(SENSOR, "ekfsim.fast.one.sensors:laser", ALONE, "Laser"),
+    Twin(SENSOR, "ekfsim.fast.compiled.models:laser", "x : (N, …)", "Laser", True),
+    Twin(SENSOR, "ekfsim.fast.many.sensors:laser", ANY, "Laser"),
+    Twin(SENSOR, "ekfsim.fast.many.sensors:laser_by_reading", ANY, "LaserByReading"),
+    Twin(SENSOR, "ekfsim.fast.many.sensors:ultrasonic", ANY, "UltrasonicBeam"),
+    Twin(SENSOR, "ekfsim.fast.many.sensors:infrared", ANY, "InfraredBeam"),
+    Twin(SENSOR, "ekfsim.fast.one.sensors:marker_angles", ALONE, "MarkerAngles"),
+    Twin(f"{MARKER}.residual", "ekfsim.fast.one.sensors:marker_residual", ALONE),
+    Twin(f"{AMBIGUITY}:sighting", "ekfsim.fast.one.ambiguity:sighting", ALONE),
     Twin(
         "ekfsim.raycast.walls:Walls.cast",
         "ekfsim.raycast.searches.compiled:cast",
@@ -37,7 +63,6 @@ TWINS: tuple[Twin, ...] = (
         "ekfsim.raycast.walls:Walls.first", "ekfsim.raycast.searches.single_beam:first", "any beam"
     ),
     Twin("ekfsim.raycast.ground:Ground.reach", "ekfsim.fast.one.ground:reach", "from one place"),
-    Twin("ekfsim.diagnostics.ambiguity:sighting", "ekfsim.fast.one.ambiguity:sighting", "one pose"),
     Twin(f"{NEES}:nees", "ekfsim.fast.one.nees:nees", "one pose, its P clearly of full rank"),
     Twin(f"{NEES}:nees", f"{MANY}.nees:nees", "64 runs or more"),
     Twin(
@@ -61,12 +86,11 @@ TWINS: tuple[Twin, ...] = (
 
 def twins_of(name: str, way: Way, first: type) -> tuple[Callable[..., Any], ...]:
     """The twins of a function, the quickest first, for a first argument of this type."""
-    kinds = {kind.__name__ for kind in first.__mro__}
     return tuple(
         function(twin.form)
         for twin in TWINS
         if twin.of == name
-        and (not twin.given or twin.given in kinds)
+        and twin.given in ("", first.__name__)
         and (way == "compiled" or not twin.compiled)
     )
 

@@ -40,7 +40,7 @@ class AugmentedUKF(UKF):
         """
         x, P = prior
         n = x.shape[-1]
-        R = sensor.linearize(x)[2]
+        R = sensor.R(x)
         (mean, covariance), told = UKF.update(
             self, augmented(x, P, np.nan_to_num(R)), NoisySensor(sensor, n), z, skip
         )
@@ -121,11 +121,15 @@ class NoisySensor(Sensor):
         """(…, k)"""
         return self.sensor.h(x[..., : self.n]) + x[..., self.n :]
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, k), (H, 1) (…, k, n + k) and R = 0"""
-        h, H, R = self.sensor.linearize(x[..., : self.n])
-        ones = np.broadcast_to(np.eye(h.shape[-1]), (*H.shape[:-1], h.shape[-1]))
-        return h + x[..., self.n :], np.concatenate([H, ones], axis=-1), np.zeros_like(R)
+    def H(self, x: Array) -> Array:
+        """(H, 1) : (…, k, n + k)"""
+        H, k = self.sensor.H(x[..., : self.n]), x.shape[-1] - self.n
+        return np.concatenate([H, np.broadcast_to(np.eye(k), (*H.shape[:-1], k))], axis=-1)
+
+    def R(self, x: Array) -> Array:
+        """None besides n : (…, k, k)"""
+        k = x.shape[-1] - self.n
+        return np.zeros((*x.shape[:-1], k, k))
 
     def residual(self, z: Array, h: Array) -> Array:
         """That of the sensor."""

@@ -3,6 +3,7 @@
 from typing import NamedTuple, Protocol
 
 from ekfsim.geometry import Array
+from ekfsim.twins import twinned
 
 
 class Quantity(NamedTuple):
@@ -40,8 +41,9 @@ class Motion(Protocol):
     def Q(self, u: Array) -> Array | float:
         """Covariance of the process noise : (…, n, n), or 0 where there is none."""
 
+    @twinned
     def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
-        """f, F, G, M and Q at once, as a filter asks for them; some motions know a quicker way."""
+        """f, F, G, M and Q, as a filter asks for them."""
         return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), self.Q(u)
 
 
@@ -58,10 +60,17 @@ class Sensor(Protocol):
 
     def h(self, x: Array) -> Array:
         """The reading that the state x predicts : (…, k), nan where it predicts none."""
-        return self.linearize(x)[0]
 
+    def H(self, x: Array) -> Array:
+        """∂h/∂x : (…, k, n), 0 where h is nan"""
+
+    def R(self, x: Array) -> Array:
+        """Covariance of the reading's noise : (…, k, k), nan where h is nan and R depends on it"""
+
+    @twinned
     def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, k), H (…, k, n) and R (…, k, k) at x. H is 0 and R nan where h is nan."""
+        """h, H and R, as a filter asks for them."""
+        return self.h(x), self.H(x), self.R(x)
 
     def residual(self, z: Array, h: Array) -> Array:
         """ν = z − h : (…, k), to be wrapped where it is an angle"""

@@ -60,19 +60,22 @@ class Linear:
     def linearize(self, x, *u):
         if u:
             return self.f(x, *u), self.F(x, *u), self.G(x, *u), self.M(*u), self.Q(*u)
-        return self.h(x), np.broadcast_to(self.C, (*x.shape[:-1], *self.C.shape)), self.noise
+        return self.h(x), self.H(x), self.R(x)
 
     def h(self, x):
         return np.matvec(self.C, x)
+
+    def H(self, x):
+        return np.broadcast_to(self.C, (*x.shape[:-1], *self.C.shape))
+
+    def R(self, x):
+        return self.noise
 
     def residual(self, z, h):
         ν = z - h
         for i in self.angles:
             ν[..., i] = np.angle(np.exp(1j * ν[..., i]))
         return ν
-
-    def sight(self, x, P):
-        return None
 
 
 def problem(random, n=3, m=2, k=1):

@@ -53,7 +53,7 @@ def test_state_and_noise_are_one_set_of_sigma_points(n):
         assert belief.mean == pytest.approx(mean, rel=1e-9, abs=1e-9)
         assert belief.covariance == pytest.approx(P_new, rel=1e-9, abs=1e-9)
         assert (told.F.shape, told.G.shape) == ((n, n), (n, 2))
-        model.linearize = lambda x, m=model, R=R: (m.h(x), np.zeros((2, n)), R)
+        model.H, model.R = (lambda x: np.zeros((2, n))), lambda x, R=R: R
         ẑ, S, cross = by_hand(*augmented(x, P, R), lambda X, m=model: m.h(X[:n]) + X[n:])
         K = cross[:n] @ np.linalg.inv(S)
         posterior, correction = filter.update(Gaussian(x, P), model, z)

@@ -5,16 +5,15 @@ Both drive their way by the mid-point rule. Their noise grows with the time: the
 heading after t s are density · √t.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap_one
 from ekfsim.models.motions.midpoint import arrival, by_state, by_way
 from ekfsim.models.noise import per_second
 from ekfsim.models.protocols import Motion, Quantity
+from ekfsim.twins import twinned
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,18 +28,9 @@ class Unicycle(Motion):
         """v, ω, dt"""
         return Quantity("speed", "m/s"), Quantity("turn rate", "rad/s"), Quantity("dt", "s")
 
+    @twinned
     def f(self, x: Array, u: Array) -> Array:
         """(x + v dt cos(θ + ω dt/2),  y + v dt sin(θ + ω dt/2),  θ + ω dt)"""
-        if x.ndim == u.ndim == 1:
-            (px, py, θ), (v, ω, dt) = x.tolist(), u.tolist()
-            middle = θ + ω * dt / 2
-            return np.array(
-                [
-                    px + v * dt * math.cos(middle),
-                    py + v * dt * math.sin(middle),
-                    wrap_one(θ + ω * dt),
-                ]
-            )
         return arrival(x, *self._way(u))
 
     def F(self, x: Array, u: Array) -> Array:
@@ -67,40 +57,9 @@ class Unicycle(Motion):
         """All noise enters with u."""
         return 0.0
 
-    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
-        """f, F, G, M and Q at once."""
-        if x.ndim == u.ndim == 1:
-            return self._linearize_one(*x.tolist(), *u.tolist())
-        return Motion.linearize(self, x, u)
-
     def _way(self, u: Array) -> tuple[Array, Array]:
         """D = v dt      T = ω dt"""
         return u[..., 0] * u[..., 2], u[..., 1] * u[..., 2]
-
-    def _linearize_one(
-        self, x: float, y: float, θ: float, v: float, ω: float, dt: float
-    ) -> tuple[Array, Array, Array, Array, float]:
-        """The same for one robot in plain floats: several times as fast, held equal to the above by
-        a test.
-        """
-        middle, per_second = θ + ω * dt / 2, 1 / dt if dt > 0 else 0.0
-        c, s = math.cos(middle), math.sin(middle)
-        dx, dy, h = v * dt * c, v * dt * s, dt / 2
-        return (
-            np.array([x + dx, y + dy, wrap_one(θ + ω * dt)]),
-            np.array([[1.0, 0.0, -dy], [0.0, 1.0, dx], [0.0, 0.0, 1.0]]),
-            np.array(
-                [
-                    [c * dt, -dy * h, v * c - dy * ω / 2],
-                    [s * dt, dx * h, v * s + dx * ω / 2],
-                    [0.0, dt, ω],
-                ]
-            ),
-            np.diag(
-                [self.distance_density**2 * per_second, self.heading_density**2 * per_second, 0.0]
-            ),
-            0.0,
-        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,11 @@
 """The speeds of two wheels, and a state that holds the robot's speed (document 003)."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap, wrap_one
+from ekfsim.geometry.angles import wrap
 from ekfsim.models.noise import per_second
 from ekfsim.models.protocols import Motion, Quantity
 
@@ -84,39 +83,6 @@ class WheelSpeeds(Motion):
     def Q(self, u: Array) -> float:
         """The document finds its Q by trial and error; here all noise enters with u."""
         return 0.0
-
-    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
-        """f, F, G, M and Q at once."""
-        if x.ndim == u.ndim == 1:
-            return self._linearize_one(*x.tolist(), *u.tolist())
-        return Motion.linearize(self, x, u)
-
-    def _linearize_one(
-        self, _: float, φ: float, x: float, y: float, left: float, right: float, dt: float
-    ) -> tuple[Array, Array, Array, Array, float]:
-        """The same for one robot in plain floats: several times as fast, held equal to the above by
-        a test.
-        """
-        V, R, per_second = (left + right) / 2, self.half_track, 1 / dt if dt > 0 else 0.0
-        rate, turned = (right - left) / (2 * R), dt / (2 * R)
-        φ += rate * dt
-        c, s = math.cos(φ), math.sin(φ)
-        dx, dy = V * c * dt, V * s * dt
-        q_V, q_φ = self.speed_density**2 * per_second, (R * self.turn_density) ** 2 * per_second
-        return (
-            np.array([V, wrap_one(φ), x + dx, y + dy]),
-            np.array([[0.0] * 4, [0.0, 1.0, 0.0, 0.0], [0.0, -dy, 1.0, 0.0], [0.0, dx, 0.0, 1.0]]),
-            np.array(
-                [
-                    [0.5, 0.5, 0.0],
-                    [-turned, turned, rate],
-                    [c * dt / 2 + dy * turned, c * dt / 2 - dy * turned, V * c - dy * rate],
-                    [s * dt / 2 - dx * turned, s * dt / 2 + dx * turned, V * s + dx * rate],
-                ]
-            ),
-            np.array([[q_V + q_φ, q_V - q_φ, 0.0], [q_V - q_φ, q_V + q_φ, 0.0], [0.0] * 3]),
-            0.0,
-        )
 
     def _motion(self, u: Array) -> tuple[Array, Array, Array]:
         """V = (v_L + v_R)/2      φ̇ = (v_R − v_L)/(2R)      dt"""

@@ -2,16 +2,15 @@
 section 3.1).
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap_one
 from ekfsim.models.motions.midpoint import arrival, by_state
 from ekfsim.models.noise import alike, independent
 from ekfsim.models.protocols import Motion, Quantity
+from ekfsim.twins import twinned
 
 
 def _B(middle: Array, ΔD: Array, b: float) -> Array:
@@ -94,19 +93,13 @@ class GyroWheels(Motion):
             Quantity("dt", "s"),
         )
 
+    @twinned
     def f(self, x: Array, u: Array) -> Array:
         """(x + ΔD cos(Φ + ω dt/2),  y + ΔD sin(Φ + ω dt/2),  Φ + ω dt)
         eqs 16 to 19, listing
 
         The listing keeps Φ in (−2π, 2π); here it is (−π, π].
         """
-        if x.ndim == u.ndim == 1:
-            px, py, Φ = x.tolist()
-            left, right, ω, dt = u.tolist()
-            ΔD, middle = (right + left) / 2, Φ + ω * dt / 2
-            return np.array(
-                [px + ΔD * math.cos(middle), py + ΔD * math.sin(middle), wrap_one(Φ + ω * dt)]
-            )
         return arrival(x, *self._way(u))
 
     def F(self, x: Array, u: Array) -> Array:
@@ -137,39 +130,9 @@ class GyroWheels(Motion):
         """The process noise : (3, 3)          eq. 29"""
         return self.process
 
-    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
-        """f, F, G, M and Q at once."""
-        if x.ndim == u.ndim == 1:
-            return self._linearize_one(*x.tolist(), *u.tolist())
-        return Motion.linearize(self, x, u)
-
     def _way(self, u: Array) -> tuple[Array, Array]:
         """ΔD = (ΔD_R + ΔD_L)/2      ΔΦ = ω dt          eq. 19, listing"""
         return (u[..., 1] + u[..., 0]) / 2, u[..., 2] * u[..., 3]
-
-    def _linearize_one(
-        self, x: float, y: float, Φ: float, left: float, right: float, ω: float, dt: float
-    ) -> tuple[Array, Array, Array, Array, Array | float]:
-        """The same for one robot in plain floats: several times as fast, held equal to the above by
-        a test.
-        """
-        ΔD, b, middle = (right + left) / 2, self.width, Φ + ω * dt / 2
-        c, s = math.cos(middle), math.sin(middle)
-        dx, dy = ΔD * c, ΔD * s
-        lever_x, lever_y, half_t, half_ω = dx / (2 * b), dy / (2 * b), dt / 2, ω / 2
-        return (
-            np.array([x + dx, y + dy, wrap_one(Φ + ω * dt)]),
-            np.array([[1.0, 0.0, -dy], [0.0, 1.0, dx], [0.0, 0.0, 1.0]]),
-            np.array(
-                [
-                    [c / 2 + lever_y, c / 2 - lever_y, -dy * half_t, -dy * half_ω],
-                    [s / 2 - lever_x, s / 2 + lever_x, dx * half_t, dx * half_ω],
-                    [-1 / b, 1 / b, dt, ω],
-                ]
-            ),
-            independent(self.wheel_sigma, self.wheel_sigma, self.gyro_sigma, 0.0),
-            self.process,
-        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -189,10 +152,6 @@ class WheelsBesideGyro(GyroWheels):
         G = np.zeros((*middle.shape, 3, 4))
         G[..., :2] = _B(middle, ΔD, self.width)
         return G
-
-    def linearize(self, x: Array, u: Array) -> tuple[Array, Array, Array, Array, Array | float]:
-        """f, F, G, M and Q at once."""
-        return Motion.linearize(self, x, u)
 
     def _way(self, u: Array) -> tuple[Array, Array]:
         """ΔD = (ΔD_R + ΔD_L)/2      ΔΦ = (ΔD_R − ΔD_L)/b          eqs 19, 20"""

@@ -74,14 +74,17 @@ class Echo(Sensor):
         A0, τ, T, α = (x[..., i, None] for i in range(4))
         return envelope(self.times, A0, τ, T, α)
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, k), H (…, k, 4) and R = σ² I (…, k, k); with s = (t − τ)/T, after τ:
+    def H(self, x: Array) -> Array:
+        """∂A/∂x : (…, k, 4); with s = (t − τ)/T, after τ:
 
         ∂A/∂A₀ = A/A₀        ∂A/∂τ = A (1 − α/s)/T        ∂A/∂T = A (s − α)/T        ∂A/∂α = A ln s
         """
         A0, τ, T, α = (x[..., i, None] for i in range(4))
         A, shape, s = _envelope(self.times, A0, τ, T, α)
         per_T = 1 / np.where(T > TINY, T, 1.0)
-        H = np.stack([shape, A * (1 - α / s) * per_T, A * (s - α) * per_T, A * np.log(s)], axis=-1)
+        return np.stack([shape, A * (1 - α / s) * per_T, A * (s - α) * per_T, A * np.log(s)], -1)
+
+    def R(self, x: Array) -> Array:
+        """σ² I : (…, k, k)"""
         R = np.asarray(self.sigma)[..., None, None] ** 2 * np.eye(len(self.times))
-        return A, H, alike(R, x.shape[:-1])
+        return alike(R, x.shape[:-1])

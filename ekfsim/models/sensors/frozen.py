@@ -29,9 +29,13 @@ class Frozen(Sensor):
         """The reading that `at` predicts : (…, k)"""
         return self.sensor.h(self._held(x))
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h, H and R at `at`."""
-        return self.sensor.linearize(self._held(x))
+    def H(self, x: Array) -> Array:
+        """∂h/∂x at `at` : (…, k, n)"""
+        return self.sensor.H(self._held(x))
+
+    def R(self, x: Array) -> Array:
+        """R at `at` : (…, k, k)"""
+        return self.sensor.R(self._held(x))
 
     def residual(self, z: Array, h: Array) -> Array:
         """ν = z − h(at), wrapped where it is an angle : (…, k)"""

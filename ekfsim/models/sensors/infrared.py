@@ -43,23 +43,27 @@ class InfraredBeam(Sensor):
         return (Quantity("intensity", "V"),)
 
     def h(self, x: Array) -> Array:
-        """I = ρ (offset − gain ln r) : (…, 1) V, nan where no wall stands between `nearest` and
-        `farthest`
+        """I = ρ (offset − gain ln r) : (…, 1) V
 
-        ρ is the reflectance; the almost logarithmic dependency is section IV A's.
+        ρ is the reflectance; the almost logarithmic dependency is section IV A's. nan where no wall
+        stands between `nearest` and `farthest`.
         """
-        return self.linearize(x)[0]
+        return self.reflectance * (self.offset - self.gain * np.log(self._range(x)))
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, 1), H (…, 1, 3) and R = σ² (…, 1, 1): ∂I/∂x = −ρ gain/r · ∂r/∂x, with the laser's
-        ∂r/∂x.
-        """
-        r, H_r, _ = self._beam().linearize(x)
-        lit = (r >= self.nearest) & (r <= self.farthest)
-        r = np.where(lit, r, 1.0)
-        intensity = np.where(lit, self.reflectance * (self.offset - self.gain * np.log(r)), np.nan)
-        H = np.where(lit[..., None], -self.reflectance * self.gain / r[..., None] * H_r, 0.0)
-        return intensity, H, np.where(lit, self.sigma**2, np.nan)[..., None]
+    def H(self, x: Array) -> Array:
+        """∂I/∂x = −ρ gain/r · ∂r/∂x : (…, 1, 3), with the laser's ∂r/∂x; 0 where no wall is lit"""
+        r = self._range(x)[..., None]
+        slope = -self.reflectance * self.gain / np.where(np.isnan(r), 1.0, r)
+        return np.where(np.isnan(r), 0.0, slope * self._beam().H(x))
+
+    def R(self, x: Array) -> Array:
+        """σ² : (…, 1, 1)"""
+        return np.where(np.isnan(self._range(x)), np.nan, self.sigma**2)[..., None]
+
+    def _range(self, x: Array) -> Array:
+        """r, the distance to the wall that is lit : (…, 1) m, nan where there is none"""
+        r = self._beam().h(x)
+        return np.where((r >= self.nearest) & (r <= self.farthest), r, np.nan)
 
     def _beam(self) -> Laser:
         return Laser(self.walls, self.bearing, 0.0)

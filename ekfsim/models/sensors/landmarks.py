@@ -3,17 +3,16 @@
 Whatever else the state holds, these depend on its pose alone; `layout` tells where that stands.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap, wrap_one
-from ekfsim.geometry.soa import lanes
+from ekfsim.geometry.angles import wrap
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.noise import alike, independent
 from ekfsim.models.protocols import Quantity, Sensor
+from ekfsim.twins import twinned
 
 AT_IT = 1e-9  # m; nearer than this there is no direction to a landmark, and no derivative
 
@@ -26,28 +25,26 @@ class _Landmark(Sensor):
     y: float
     layout: Layout
 
-    def _polar(self, x: Array) -> tuple[Array, Array, Array, Array]:
-        """Unit vector to the landmark, distance and bearing. At the landmark: no vector, and no
-        distance.
-        """
-        px, py, θ = self.layout.places
-        dx, dy = self.x - x[..., px], self.y - x[..., py]
-        return *self._away(x), wrap(np.arctan2(dy, dx) - x[..., θ])
+    def _offset(self, x: Array) -> tuple[Array, Array]:
+        """How far the landmark is to the east and to the north of the robot : (…) m each"""
+        px, py, _ = self.layout.places
+        return self.x - x[..., px], self.y - x[..., py]
+
+    def _bearing(self, x: Array) -> Array:
+        """atan2(p_B − p) − θ : (…)"""
+        dx, dy = self._offset(x)
+        return wrap(np.arctan2(dy, dx) - x[..., self.layout.heading])
 
     def _away(self, x: Array) -> tuple[Array, Array, Array]:
-        """The same without the bearing."""
-        px, py, _ = self.layout.places
-        dx, dy = self.x - x[..., px], self.y - x[..., py]
+        """Unit vector e to the landmark, and the distance; both 0 at the landmark."""
+        dx, dy = self._offset(x)
         d = np.hypot(dx, dy)
-        away = d > AT_IT
-        if np.all(away):
-            return dx / d, dy / d, d
-        ex, ey = (np.divide(part, d, out=np.zeros_like(d), where=away) for part in (dx, dy))
-        return ex, ey, np.where(away, d, 0.0)
+        d = np.where(d > AT_IT, d, 0.0)
+        return _per(dx, d), _per(dy, d), d
 
-    def _placed(self, x: Array, rows: list[list[Array | float]]) -> Array:
+    def _placed(self, x: Array, *rows: tuple[Array | float, ...]) -> Array:
         """Derivatives by x, y, θ, a row for each entry of z, as H : (…, k, n)"""
-        H = lanes(x.shape[:-1], len(rows), x.shape[-1])
+        H = np.zeros((*x.shape[:-1], len(rows), x.shape[-1]))
         for i, row in enumerate(rows):
             for column, derivative in zip(self.layout.places, row, strict=True):
                 H[..., i, column] = derivative
@@ -81,55 +78,32 @@ class MarkerAngles(_Landmark):
 
         Eq. 23 is printed with the arctangent of a quotient, which cannot tell ahead from behind.
         """
-        return self.linearize(x)[0]
+        _, _, d = self._away(x)
+        return np.stack([self._bearing(x), -np.arctan2(self.height, d)], axis=-1)
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, 2), H (…, 2, n) and R (…, 2, 2).          eqs 23 to 25, 30
+    def H(self, x: Array) -> Array:
+        """∂h/∂x : (…, 2, n), 0 at the marker          eq. 25
 
             ∂α/∂x = (y_B − y)/d²                    ∂α/∂y = −(x_B − x)/d²
             ∂α/∂Φ = −1
             ∂η/∂x = −μ(x_B − x)/(d(μ² + d²))        ∂η/∂y = −μ(y_B − y)/(d(μ² + d²))
             ∂η/∂Φ = 0
 
-        Eq. 25 prints ∂η/∂x and ∂η/∂y without the minus. At the marker H is 0.
+        Eq. 25 prints ∂η/∂x and ∂η/∂y without the minus.
         """
-        if x.ndim == 1:
-            return self._linearize_one(x)
-        ex, ey, d, α = self._polar(x)
+        ex, ey, d = self._away(x)
         slant = np.where(d > 0, np.hypot(self.height, d), 1.0)
         η_d = self.elevation_sign * self.height / slant / slant  # μ/(μ² + d²)
-        H = self._placed(
-            x,
-            [[_per(ey, d), -_per(ex, d), np.where(d > 0, -1.0, 0.0)], [-η_d * ex, -η_d * ey, 0.0]],
-        )
-        z = np.stack([α, -np.arctan2(self.height, d)], axis=-1)
-        return z, H, alike(independent(self.azimuth_sigma, self.elevation_sigma), x.shape[:-1])
+        turned = np.where(d > 0, -1.0, 0.0)
+        return self._placed(x, (_per(ey, d), -_per(ex, d), turned), (-η_d * ex, -η_d * ey, 0.0))
 
-    def _linearize_one(self, x: Array) -> tuple[Array, Array, Array]:
-        """The same for one robot in plain floats: several times as fast, held equal to the above by
-        a test.
-        """
-        state, places, μ = x.tolist(), self.layout.places, self.height
-        px, py, Φ = (state[place] for place in places)
-        dx, dy = self.x - px, self.y - py
-        d, α = math.hypot(dx, dy), wrap_one(math.atan2(dy, dx) - Φ)
-        R = independent(self.azimuth_sigma, self.elevation_sigma)
-        if d <= AT_IT:
-            return np.array([α, -math.atan2(μ, 0.0)]), np.zeros((2, len(state))), R
-        ex, ey, slant = dx / d, dy / d, math.hypot(μ, d)
-        η_d = self.elevation_sign * μ / slant / slant
-        H = np.array([[ey / d, -ex / d, -1.0], [-η_d * ex, -η_d * ey, 0.0]])
-        if not self.layout.is_pose:
-            placed = np.zeros((2, len(state)))
-            placed[:, places] = H
-            H = placed
-        return np.array([α, -math.atan2(μ, d)]), H, R
+    def R(self, x: Array) -> Array:
+        """diag(σ_α², σ_η²) : (…, 2, 2)          eq. 30"""
+        return alike(independent(self.azimuth_sigma, self.elevation_sigma), x.shape[:-1])
 
+    @twinned
     def residual(self, z: Array, h: Array) -> Array:
         """ν = z − h, both angles wrapped : (…, 2)"""
-        if z.ndim == h.ndim == 1:
-            (α, η), (α_h, η_h) = z.tolist(), h.tolist()
-            return np.array([wrap_one(α - α_h), wrap_one(η - η_h)])
         return wrap(z - h)
 
 
@@ -148,18 +122,24 @@ class RangeBearing(_Landmark):
         """r, β"""
         return Quantity("range", "m"), Quantity("bearing", "rad")
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, 2), H (…, 2, n) and R (…, 2, 2); e is the unit vector to the landmark.
+    def h(self, x: Array) -> Array:
+        """r = |p_B − p|      β = atan2(p_B − p) − θ : (…, 2)"""
+        _, _, r = self._away(x)
+        return np.stack([r, self._bearing(x)], axis=-1)
 
-        r = |p_B − p|                ∂r/∂p = −eᵀ                   ∂r/∂θ = 0
-        β = atan2(p_B − p) − θ       ∂β/∂p = (e_y, −e_x)/r         ∂β/∂θ = −1
+    def H(self, x: Array) -> Array:
+        """∂h/∂x : (…, 2, n); e is the unit vector to the landmark
+
+        ∂r/∂p = −eᵀ                  ∂r/∂θ = 0
+        ∂β/∂p = (e_y, −e_x)/r        ∂β/∂θ = −1
         """
-        ex, ey, r, β = self._polar(x)
-        H = self._placed(
-            x, [[-ex, -ey, 0.0], [_per(ey, r), -_per(ex, r), np.where(r > 0, -1.0, 0.0)]]
-        )
-        R = alike(independent(self.range_sigma, self.bearing_sigma), x.shape[:-1])
-        return np.stack([r, β], axis=-1), H, R
+        ex, ey, r = self._away(x)
+        turned = np.where(r > 0, -1.0, 0.0)
+        return self._placed(x, (-ex, -ey, 0.0), (_per(ey, r), -_per(ex, r), turned))
+
+    def R(self, x: Array) -> Array:
+        """diag(σ_r², σ_β²) : (…, 2, 2)"""
+        return alike(independent(self.range_sigma, self.bearing_sigma), x.shape[:-1])
 
     def residual(self, z: Array, h: Array) -> Array:
         """ν = z − h, the bearing wrapped : (…, 2)"""
@@ -182,16 +162,19 @@ class RangeOnly(_Landmark):
         """r"""
         return (Quantity("range", "m"),)
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, 1), H (…, 1, n) and R (…, 1, 1): r = |p_B − p|, ∂r/∂p = −eᵀ, e the unit vector to
-        the landmark.
-        """
-        ex, ey, r = self._away(x)
-        return (
-            r[..., None],
-            self._placed(x, [[-ex, -ey, 0.0]]),
-            alike(independent(self.sigma), x.shape[:-1]),
-        )
+    def h(self, x: Array) -> Array:
+        """r = |p_B − p| : (…, 1)"""
+        _, _, r = self._away(x)
+        return r[..., None]
+
+    def H(self, x: Array) -> Array:
+        """∂r/∂p = −eᵀ : (…, 1, n), e the unit vector to the landmark"""
+        ex, ey, _ = self._away(x)
+        return self._placed(x, (-ex, -ey, 0.0))
+
+    def R(self, x: Array) -> Array:
+        """σ² : (…, 1, 1)"""
+        return alike(independent(self.sigma), x.shape[:-1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,13 +191,19 @@ class BearingOnly(_Landmark):
         """β"""
         return (Quantity("bearing", "rad"),)
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, 1), H (…, 1, n) and R (…, 1, 1): β = atan2(p_B − p) − θ, ∂β/∂p = (e_y, −e_x)/r,
-        ∂β/∂θ = −1.
-        """
-        ex, ey, r, β = self._polar(x)
-        H = self._placed(x, [[_per(ey, r), -_per(ex, r), np.where(r > 0, -1.0, 0.0)]])
-        return β[..., None], H, alike(independent(self.sigma), x.shape[:-1])
+    def h(self, x: Array) -> Array:
+        """β = atan2(p_B − p) − θ : (…, 1)"""
+        return self._bearing(x)[..., None]
+
+    def H(self, x: Array) -> Array:
+        """∂β/∂p = (e_y, −e_x)/r, ∂β/∂θ = −1 : (…, 1, n), 0 at the landmark"""
+        ex, ey, r = self._away(x)
+        turned = np.where(r > 0, -1.0, 0.0)
+        return self._placed(x, (_per(ey, r), -_per(ex, r), turned))
+
+    def R(self, x: Array) -> Array:
+        """σ² : (…, 1, 1)"""
+        return alike(independent(self.sigma), x.shape[:-1])
 
     def residual(self, z: Array, h: Array) -> Array:
         """ν = z − h, wrapped : (…, 1)"""

@@ -15,16 +15,16 @@ class LaserByReading(Laser):
 
     z: Array  # (…, 1) m, nan where there is no echo
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h and H as the laser's, and R = C_v = (ratio · z)² : (…, 1, 1)
+    def R(self, x: Array) -> Array:
+        """C_v = (ratio · z)² : (…, 1, 1)
 
         x may have an axis more than z, of sigma points or particles. Without an echo there is no z
-        to take it from.
+        to take it from: there it is the laser's.
         """
-        h, H, R = Laser.linearize(self, x)
+        h = self.h(x)
         z = self.z if h.ndim == self.z.ndim else self.z[..., None, :]
-        known = ~(np.isnan(h) | np.isnan(z))
-        return h, H, np.where(known[..., None], np.square(self.range_ratio * z)[..., None], R)
+        r = np.where(np.isnan(h) | np.isnan(z), h, z)
+        return np.square(self.range_ratio * r)[..., None]
 
 
 def by_reading(sensor: Sensor, z: Array) -> Sensor:

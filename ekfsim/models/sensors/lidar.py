@@ -1,6 +1,4 @@
-"""A landmark seen by a lidar and read as it sees it: the robot's own frame, in which the yaw counts
-(document 004).
-"""
+"""A landmark seen by a lidar and read as it sees it, in the robot's own frame (document 004)."""
 
 from dataclasses import dataclass
 
@@ -32,25 +30,33 @@ class LidarOffset(Sensor):
         """x_L, y_L"""
         return Quantity("right", "m"), Quantity("ahead", "m")
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, 2), H (…, 2, n) and R = σ² I (…, 2, 2).
-        eq. 8 turned round, with eq. 9 in it
+    def h(self, x: Array) -> Array:
+        """The landmark in the robot's frame : (…, 2)          eq. 8 turned round, with eq. 9 in it
 
-            x_L = Δx sin θ − Δy cos θ        ∂x_L/∂(x, y) = (−sin θ, cos θ)         ∂x_L/∂θ = y_L
-            y_L = Δx cos θ + Δy sin θ        ∂y_L/∂(x, y) = (−cos θ, −sin θ)        ∂y_L/∂θ = −x_L
+            x_L = Δx sin θ − Δy cos θ
+            y_L = Δx cos θ + Δy sin θ
 
         with Δx = X_L − x and Δy = Y_L − y.
         """
-        east, north = np.moveaxis(np.array([self.x, self.y]) - x[..., self.layout.position], -1, 0)
-        θ = x[..., self.layout.heading]
+        i, j = self.layout.position
+        east, north, θ = self.x - x[..., i], self.y - x[..., j], x[..., self.layout.heading]
         s, c = np.sin(θ), np.cos(θ)
-        right, ahead = east * s - north * c, east * c + north * s
+        return np.stack([east * s - north * c, east * c + north * s], axis=-1)
+
+    def H(self, x: Array) -> Array:
+        """∂h/∂x : (…, 2, n)
+
+        ∂x_L/∂(x, y) = (−sin θ, cos θ)         ∂x_L/∂θ = y_L
+        ∂y_L/∂(x, y) = (−cos θ, −sin θ)        ∂y_L/∂θ = −x_L
+        """
+        h, θ = self.h(x), x[..., self.layout.heading]
+        s, c = np.sin(θ), np.cos(θ)
         (i, j), k = self.layout.position, self.layout.heading
         H = np.zeros((*θ.shape, 2, x.shape[-1]))
-        H[..., 0, i], H[..., 0, j], H[..., 0, k] = -s, c, ahead
-        H[..., 1, i], H[..., 1, j], H[..., 1, k] = -c, -s, -right
-        return (
-            np.stack([right, ahead], axis=-1),
-            H,
-            alike(independent(self.sigma, self.sigma), θ.shape),
-        )
+        H[..., 0, i], H[..., 0, j], H[..., 0, k] = -s, c, h[..., 1]
+        H[..., 1, i], H[..., 1, j], H[..., 1, k] = -c, -s, -h[..., 0]
+        return H
+
+    def R(self, x: Array) -> Array:
+        """σ² I : (…, 2, 2)"""
+        return alike(independent(self.sigma, self.sigma), x.shape[:-1])

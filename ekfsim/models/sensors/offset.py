@@ -8,13 +8,14 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.models.layout import POSE, Layout
-from ekfsim.models.noise import alike, independent
+from ekfsim.models.noise import independent
 from ekfsim.models.protocols import Quantity, Sensor
 
 
 def to_global(z: Array, θ: Array | float) -> Array:
     """From the lidar's frame, x to the right and y ahead, to the global one.
-    eq. 8, corrected
+
+    Eq. 8, corrected:
 
         x_p = x_L sin θ + y_L cos θ        y_p = −x_L cos θ + y_L sin θ
         z : (…, 2) m, θ : (…) rad → (…, 2) m
@@ -66,19 +67,19 @@ class LandmarkOffset(Sensor):
         """h = (X_L − x, Y_L − y) : (…, 2)          eq. 9"""
         return np.array([self.x, self.y]) - x[..., self.layout.position]
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, 2), H (…, 2, n), −1 at x and y, and R (…, 2, 2).          eqs 9, 10
+    def H(self, x: Array) -> Array:
+        """∂h/∂x : (…, 2, n), −1 at x and y"""
+        H = np.zeros((*x.shape[:-1], 2, x.shape[-1]))
+        for row, column in enumerate(self.layout.position):
+            H[..., row, column] = -1
+        return H
 
-            R = diag(σ_x², σ_y²) + σ_θ² J Jᵀ          J = ∂z/∂θ = (−h_y, h_x)
+    def R(self, x: Array) -> Array:
+        """diag(σ_x², σ_y²) + σ_θ² J Jᵀ          J = ∂z/∂θ = (−h_y, h_x) : (…, 2, 2)
 
         Eq. 10 has the first part only: an error of the yaw times the lever arm to the landmark is
         the second.
         """
-        h, H = self.h(x), np.zeros((*x.shape[:-1], 2, x.shape[-1]))
-        for row, column in enumerate(self.layout.position):
-            H[..., row, column] = -1
-        R = alike(independent(self.sigma_x, self.sigma_y), x.shape[:-1])
-        if self.yaw_sigma:
-            J = self.yaw_sigma * np.stack([-h[..., 1], h[..., 0]], axis=-1)
-            R = R + J[..., :, None] * J[..., None, :]
-        return h, H, R
+        h = self.h(x)
+        J = self.yaw_sigma * np.stack([-h[..., 1], h[..., 0]], axis=-1)
+        return independent(self.sigma_x, self.sigma_y) + J[..., :, None] * J[..., None, :]

@@ -27,9 +27,13 @@ class Position(Sensor):
         """h = (x, y) : (…, 2)          eq. 2"""
         return x[..., self.layout.position]
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, 2), H (…, 2, n), ones at x and y, and R = diag(σ_x², σ_y²) (…, 2, 2)."""
+    def H(self, x: Array) -> Array:
+        """∂h/∂x : (…, 2, n), ones at x and y"""
         H = np.zeros((*x.shape[:-1], 2, x.shape[-1]))
         for row, column in enumerate(self.layout.position):
             H[..., row, column] = 1
-        return self.h(x), H, alike(independent(self.sigma_x, self.sigma_y), x.shape[:-1])
+        return H
+
+    def R(self, x: Array) -> Array:
+        """diag(σ_x², σ_y²) : (…, 2, 2)"""
+        return alike(independent(self.sigma_x, self.sigma_y), x.shape[:-1])

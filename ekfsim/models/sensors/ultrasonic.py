@@ -31,21 +31,21 @@ class UltrasonicBeam(Sensor):
         return (Quantity("range", "m"),)
 
     def h(self, x: Array) -> Array:
-        """r = the distance to the first wall : (…, 1) m, nan where none stands between `nearest`
-        and `farthest`
-        """
-        return self.linearize(x)[0]
+        """r = the distance to the first wall : (…, 1) m
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, 1), H (…, 1, 3) as the laser's, and R = (σ + σ_r r)² (…, 1, 1)."""
-        r, H, _ = self._beam().linearize(x)
-        heard = (r >= self.nearest) & (r <= self.farthest)
-        r = np.where(heard, r, np.nan)
-        return (
-            r,
-            np.where(heard[..., None], H, 0.0),
-            (self.sigma + self.sigma_per_metre * r[..., None]) ** 2,
-        )
+        nan where none stands between `nearest` and `farthest`.
+        """
+        r = self._beam().h(x)
+        return np.where((r >= self.nearest) & (r <= self.farthest), r, np.nan)
+
+    def H(self, x: Array) -> Array:
+        """∂r/∂x : (…, 1, 3), as the laser's; 0 where there is no echo"""
+        heard = ~np.isnan(self.h(x))
+        return np.where(heard[..., None], self._beam().H(x), 0.0)
+
+    def R(self, x: Array) -> Array:
+        """(σ + σ_r r)² : (…, 1, 1)"""
+        return (self.sigma + self.sigma_per_metre * self.h(x)[..., None]) ** 2
 
     def _beam(self) -> Laser:
         return Laser(self.walls, self.bearing, 0.0)

@@ -29,12 +29,19 @@ class Yaw(Sensor):
         """ω"""
         return (Quantity("yaw", "rad"),)
 
-    def linearize(self, x: Array) -> tuple[Array, Array, Array]:
-        """h (…, 1), H (…, 1, n) and R = σ² (…, 1, 1): ω = θ + β, ∂ω/∂θ = 1.          eqs 36, 37"""
+    def h(self, x: Array) -> Array:
+        """ω = θ + β : (…, 1)          eqs 36, 37"""
+        return wrap(x[..., self.layout.heading, None] + self.orientation)
+
+    def H(self, x: Array) -> Array:
+        """∂ω/∂x : (…, 1, n), one at θ"""
         H = np.zeros((*x.shape[:-1], 1, x.shape[-1]))
         H[..., 0, self.layout.heading] = 1
-        ω = wrap(x[..., self.layout.heading] + self.orientation)
-        return ω[..., None], H, alike(independent(self.sigma), x.shape[:-1])
+        return H
+
+    def R(self, x: Array) -> Array:
+        """σ² : (…, 1, 1)"""
+        return alike(independent(self.sigma), x.shape[:-1])
 
     def residual(self, z: Array, h: Array) -> Array:
         """ν = z − h, wrapped : (…, 1)"""

@@ -1,7 +1,6 @@
-"""The classroom's motion and sensor, linearised for many runs by Numba: the extra `fast`.
+"""The classroom's motion and sensor for many runs, by Numba: the extra `fast`.
 
-Imported only where twins.py has been told to take it. All arrays have their entries in
-front and the runs behind: x : (3, N), F : (3, 3, N).
+All arrays have their entries in front and the runs behind: x : (3, N), F : (3, 3, N).
 """
 
 import math
@@ -10,27 +9,35 @@ import numpy as np
 
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.soa import back, front, lanes
+from ekfsim.models.motions.move_turn import MoveTurn
+from ekfsim.models.sensors.laser import ALONG, Laser
 from ekfsim.twins import compiled
 
 
-def moved(
-    x: Array, u: Array, distance_ratio: float, angle_ratio: float
-) -> tuple[Array, Array, Array, Array]:
-    """f, F, G and M of `MoveTurn` for x : (N, 3) and u : (N, 2)"""
+def move_turn(
+    motion: MoveTurn, x: Array, u: Array
+) -> tuple[Array, Array, Array, Array, float] | None:
+    """Twin of f, F, G, M and Q of `MoveTurn`, for x : (N, 3) and u : (N, 2)"""
+    if not (x.ndim == u.ndim == 2 and len(x) == len(u)):
+        return None
     N = len(x)
     new = np.empty((3, N)), np.empty((3, 3, N)), np.empty((3, 2, N)), np.empty((2, 2, N))
     x, u = (np.ascontiguousarray(front(each, 1)) for each in (x, u))
-    _move_turn(x, u, distance_ratio, angle_ratio, *new)
+    _move_turn(x, u, motion.distance_ratio, motion.angle_ratio, *new)
     f, F, G, M = new
-    return back(f, 1), back(F), back(G), back(M)
+    return back(f, 1), back(F), back(G), back(M), 0.0
 
 
-def beamed(
-    direction: Array, r: Array, wall: Integers, normals: Array, range_ratio: float, along: float
-) -> tuple[Array, Array, Array]:
-    """h, H and R of `Laser` for beams (N,) whose first walls are known"""
-    h, H, R = np.empty(r.shape), lanes(r.shape, 1, 3), np.empty(r.shape)
-    _beam(direction, r, wall, normals, range_ratio, along, h, front(H)[0], R)
+def laser(sensor: Laser, x: Array) -> tuple[Array, Array, Array] | None:
+    """Twin of h, H and R of `Laser`, for x : (N, 3)"""
+    if x.ndim != 2:
+        return None
+    direction, walls = x[:, 2] + sensor.bearing, sensor.walls
+    hit = walls.cast(x[:, :2], direction)
+    h, H, R = np.empty(len(x)), lanes((len(x),), 1, 3), np.empty(len(x))
+    _beam(
+        direction, hit.range, hit.wall, walls.normals, sensor.range_ratio, ALONG, h, front(H)[0], R
+    )
     return h[:, None], H, R[:, None, None]
 
 

@@ -1,0 +1,72 @@
+"""Beams of many runs, of sigma points or of particles: cast once for h, H and R."""
+
+import numpy as np
+
+from ekfsim.geometry import Array, Integers
+from ekfsim.geometry.soa import back, front, lanes
+from ekfsim.models.sensors.infrared import InfraredBeam
+from ekfsim.models.sensors.laser import ALONG, Laser
+from ekfsim.models.sensors.laser_by_reading import LaserByReading
+from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
+from ekfsim.raycast.walls import Walls
+
+Linearized = tuple[Array, Array, Array]  # h, H, R
+
+
+def laser(sensor: Laser, x: Array) -> Linearized:
+    """Twin of h, H and R of `Laser`."""
+    direction = x[..., 2] + sensor.bearing
+    hit = sensor.walls.cast(x[..., :2], direction)
+    (nx, ny), c, s = front(_normal(sensor.walls, hit.wall), 1), np.cos(direction), np.sin(direction)
+    n_d = nx * c + ny * s
+    met = np.abs(n_d) > ALONG
+    r = hit.range
+    if met.all():
+        per = -1.0 / n_d
+    else:
+        r, per = (
+            np.where(met, r, np.nan),
+            np.divide(-1.0, n_d, out=np.zeros_like(n_d), where=met),
+        )
+    H, R = lanes(r.shape, 1, 3), lanes(r.shape, 1, 1)
+    H[..., 0, 0], H[..., 0, 1] = nx * per, ny * per
+    H[..., 0, 2] = np.where(met, r, 0.0) * (ny * c - nx * s) * per
+    R[..., 0, 0] = np.square(sensor.range_ratio * r)
+    return r[..., None], H, R
+
+
+def laser_by_reading(sensor: LaserByReading, x: Array) -> Linearized:
+    """Twin of h, H and R of `LaserByReading`."""
+    h, H, R = Laser(sensor.walls, sensor.bearing, sensor.range_ratio).linearize(x)
+    z = sensor.z if h.ndim == sensor.z.ndim else sensor.z[..., None, :]
+    known = ~(np.isnan(h) | np.isnan(z))
+    return h, H, np.where(known[..., None], np.square(sensor.range_ratio * z)[..., None], R)
+
+
+def ultrasonic(sensor: UltrasonicBeam, x: Array) -> Linearized:
+    """Twin of h, H and R of `UltrasonicBeam`."""
+    r, H, _ = Laser(sensor.walls, sensor.bearing, 0.0).linearize(x)
+    heard = (r >= sensor.nearest) & (r <= sensor.farthest)
+    r = np.where(heard, r, np.nan)
+    R = (sensor.sigma + sensor.sigma_per_metre * r[..., None]) ** 2
+    return r, np.where(heard[..., None], H, 0.0), R
+
+
+def infrared(sensor: InfraredBeam, x: Array) -> Linearized:
+    """Twin of h, H and R of `InfraredBeam`."""
+    r, H_r, _ = Laser(sensor.walls, sensor.bearing, 0.0).linearize(x)
+    lit = (r >= sensor.nearest) & (r <= sensor.farthest)
+    r = np.where(lit, r, 1.0)
+    intensity = sensor.reflectance * (sensor.offset - sensor.gain * np.log(r))
+    H = np.where(lit[..., None], -sensor.reflectance * sensor.gain / r[..., None] * H_r, 0.0)
+    R = np.where(lit, sensor.sigma**2, np.nan)[..., None]
+    return np.where(lit, intensity, np.nan), H, R
+
+
+def _normal(walls: Walls, wall: Integers) -> Array:
+    """Unit normals : (…, 2), zero where there is no wall."""
+    if not len(walls.normals):
+        return np.zeros((*wall.shape, 2))
+    normals = back(front(walls.normals, 1)[:, wall], 1)
+    normals[wall < 0] = 0.0
+    return normals
