@@ -22,6 +22,7 @@ from ekfsim.simulation import simulate
 from ekfsim.simulation.draws import particle_generators
 from ekfsim.simulation.interpolation import stretched
 from ekfsim.simulation.nominal import nominal_trajectory
+from ekfsim.twins import twinned
 
 NO_PLAN = (
     "a recording does not tell the way that was planned, which it is linearised about; take "
@@ -29,6 +30,7 @@ NO_PLAN = (
 )
 
 
+@twinned
 def localize(
     entries: Iterable[Entry],
     filter: Filter,

@@ -81,6 +81,11 @@ TWINS: tuple[Twin, ...] = (
         when="commands of the classroom, an EKF as it comes, no guard that looks about",
         compiled=True,
     ),
+    Twin(
+        of="ekfsim.localization:localize",
+        form="ekfsim.fast.stretches:localize",
+        when="an EKF of planar odometry: inputs that follow one another are taken together",
+    ),
 )
 
 

@@ -1,0 +1,127 @@
+"""Motion inputs that follow one another, with no reading between, taken a stretch at a time."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import repeat
+
+import numpy as np
+
+from ekfsim.diagnostics.nees import nees
+from ekfsim.fast.records import records
+from ekfsim.filters.belief import Belief, Gaussian, Prediction
+from ekfsim.filters.ekf import EKF
+from ekfsim.filters.protocol import Filter
+from ekfsim.filters.stretch import stretch
+from ekfsim.geometry import Array
+from ekfsim.localization import advance
+from ekfsim.models.layout import POSE, Layout
+from ekfsim.models.protocols import Motion
+from ekfsim.records import Control, Entry, Nees, Step
+from ekfsim.scene import Guard
+
+FEW = 8  # inputs that are sooner taken one by one
+MOST = 256  # inputs at once, of one run
+AT_ONCE = 8192  # inputs times runs that stay in the processor's cache
+NEAR = 1e-12  # of a way, in m: by how much the Jacobian of the same way may differ from it
+UNMOVED = np.eye(3)[:, :2]  # ∂f/∂(x, y) of a robot that moves alike wherever it stands
+
+
+def localize(
+    entries: Iterable[Entry],
+    filter: Filter,
+    belief: Belief,
+    guard: Guard = "warn",
+    layout: Layout = POSE,
+) -> Iterator[Step] | None:
+    """The steps of an EKF that watches a driven robot. None where it is another filter or state."""
+    if type(filter) is not EKF or not layout.is_pose:
+        return None
+    return _localized(entries, filter, belief, guard, layout)
+
+
+def _localized(
+    entries: Iterable[Entry], filter: EKF, belief: Belief, guard: Guard, layout: Layout
+) -> Iterator[Step]:
+    most = min(MOST, AT_ONCE // max(belief.mean.size // 3, 1))
+    for together in _gathered(entries, most):
+        made = _stretched(belief, together, layout) if len(together) >= FEW else None
+        if made is None:
+            for entry in together:
+                step = advance(filter, belief, entry, guard, layout)
+                belief = step.posterior
+                yield step
+        else:
+            belief = made[-1].posterior
+            yield from made
+
+
+def _gathered(entries: Iterable[Entry], most: int) -> Iterator[list[Entry]]:
+    """The entries, those together that are inputs of one motion which nobody commanded."""
+    gathered: list[Entry] = []
+    motion: Motion | None = None
+    for entry in entries:
+        given = entry.given
+        if not isinstance(given, Control) or entry.command is not None:
+            if gathered:
+                yield gathered
+                gathered = []
+            yield [entry]
+            continue
+        if gathered and (given.motion is not motion or len(gathered) == most):
+            yield gathered
+            gathered = []
+        motion = given.motion
+        gathered.append(entry)
+    if gathered:
+        yield gathered
+
+
+def _stretched(belief: Belief, entries: list[Entry], layout: Layout) -> list[Step] | None:
+    """The steps of inputs of one motion; None where it is no planar odometry."""
+    given = entries[0].given
+    assert isinstance(given, Control)
+    motion = given.motion
+    U = np.array([entry.given.u for entry in entries if isinstance(entry.given, Control)])
+    after = stretch(belief, motion, U)
+    before = np.concatenate([belief.mean[None], after.mean[:-1]])
+    F, G = motion.F(before, U), motion.G(before, U)
+    if not _is_planar(F, after.mean - before):
+        return None
+    n, nothing = len(entries), repeat(None)
+    posteriors = list(map(Gaussian, after.mean, after.covariance))
+    predictions = records(Prediction, n, F, G)
+    judged = _judged(after, posteriors, entries, layout)
+    priors = [belief, *posteriors]
+    return records(
+        Step, n, entries, priors, posteriors, predictions, nothing, nothing, judged, repeat(layout)
+    )
+
+
+def _is_planar(F: Array, way: Array) -> bool:
+    """Whether F = [1 0 −Δy; 0 1 Δx; 0 0 1], as `stretch` takes it to be : (T, …, 3, 3); way : (T,
+    …, 3)
+    """
+    turned = np.stack([-way[..., 1], way[..., 0]], axis=-1)
+    return bool(
+        (F[..., :2] == UNMOVED).all()
+        and (F[..., 2, 2] == 1).all()
+        and np.allclose(F[..., :2, 2], turned, rtol=0, atol=NEAR * (1 + np.abs(way).max()))
+    )
+
+
+def _judged(
+    after: Gaussian, posteriors: list[Gaussian], entries: list[Entry], layout: Layout
+) -> Sequence[Nees | None]:
+    """What `advance` finds of each, where the truth is known."""
+    truths = [entry.truth for entry in entries if entry.truth is not None]
+    if len(truths) < len(entries) or after.mean.size // 3 < 64:
+        return [
+            None if entry.truth is None else nees(posterior, entry.truth, layout)
+            for posterior, entry in zip(posteriors, entries, strict=True)
+        ]
+    axes = after.mean.shape[:-1]
+    flat = Gaussian(after.mean.reshape(-1, 3), after.covariance.reshape(-1, 3, 3))
+    found = nees(flat, np.array(truths).reshape(-1, 3), layout)
+    value, dof, impossible = (
+        part.reshape(axes) for part in (found.value, found.dof, found.impossible)
+    )
+    return records(Nees, len(entries), value, dof, impossible)
