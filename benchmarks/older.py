@@ -39,7 +39,7 @@ ROWS = [
     Row("study tour, CPU per run", f"{STUDY} --runs {RUNS}", 0.48, 0.35, RUNS),
     Row("study tour --fast, CPU per run", f"{STUDY} --runs {RUNS} --fast", 0.28, 0.2, RUNS),
     Row("run mower", "run mower", 0.5, 0.3, rounds=5),
-    Row("100 runs of study mower", "study MOWER --expect --runs 100", 0.4, 0.25, rounds=3),
+    Row("100 runs of study mower", "study MOWER --expect --runs 100", 0.4, 0.25, rounds=2),
 ]
 WALL = Row("run tour, whole process, wall", "run tour", 0.7, 0.5, rounds=15)
 MANY = "a million runs, --fast, two workers, wall"
@@ -64,7 +64,7 @@ def main() -> None:
             if "--fast" in row.words and find_spec("numba") is None:
                 print(f"skipped: {row.what}: numba is not installed")
                 continue
-            rounds = 3 if given.quick else row.rounds
+            rounds = row.rounds // 2 if given.quick else row.rounds
             compare = in_turn if row in (WALL, MILLION) else within
             words = [scenes.get(word, word) for word in row.words.split()]
             for line in compare(row, words, older, Build(HERE), rounds):
