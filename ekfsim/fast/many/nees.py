@@ -4,7 +4,7 @@ eigenvalues.
 
 import numpy as np
 
-from ekfsim.diagnostics.nees import ROUNDING, error
+from ekfsim.diagnostics.nees import OUTSIDE, ROUNDING, error
 from ekfsim.diagnostics.nees import squared_mahalanobis as squares
 from ekfsim.filters.belief import Belief, posed
 from ekfsim.geometry import Array, Booleans, Integers
@@ -15,6 +15,9 @@ from ekfsim.twins import as_written, taken
 
 # a determinant of the correlation matrix above this needs no eigenvalues to tell the rank
 CLEAR = 1e-8
+# below NONE an eigenvalue of it is rounding; above PLANE two of them are clearly none
+NONE, PLANE = 1e-14, 1e-2
+UNCLEAR = -1  # in place of a rank
 MANY = 64  # runs from which on they are told apart by rank
 
 
@@ -44,9 +47,12 @@ def squared_mahalanobis(e: Array, P: Array) -> tuple[Array, Integers, Booleans] 
         with np.errstate(all="ignore"):
             value, clear = _full_rank(front(e, 1), front(P))
     rank, impossible = np.full(len(e), n), np.zeros(len(e), bool)
-    if not clear.all():
-        rest = ~clear
-        value[rest], rank[rest], impossible[rest] = as_written(squares)(e[rest], P[rest])
+    for judged in (singular, as_written(squares)):
+        rest = np.flatnonzero(~clear)
+        if not rest.size:
+            break
+        value[rest], rank[rest], impossible[rest] = judged(e[rest], P[rest])
+        clear[rest] = rank[rest] != UNCLEAR
     return value, rank, impossible
 
 
@@ -71,3 +77,74 @@ def _full_rank(e: Array, P: Array) -> tuple[Array, Booleans]:
     y3 = e[2] - m * e[0] - n * y
     square += y3 * y3 / D3
     return square, clear & (r > ROUNDING**2) & (CLEAR * d * r < D * D3)
+
+
+def singular(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
+    """The same where P is singular, in closed form; of rank UNCLEAR where no rank is clear.
+
+    With m_ij = 1 − ρ_ij² of each pair of entries whose variances are not zero,
+
+        λ₁λ₂ + λ₁λ₃ + λ₂λ₃ = Σ m_ij        λ₁λ₂λ₃ = det C
+
+    tell the rank. P of rank 1 is B Bᵀ, B one of its columns over its σ. P of rank 2 is known from
+    the two entries with the largest m_ij: what it makes of the third, k, are the weights w, and
+    (w, −1) is its null vector.
+    """
+    n = e.shape[-1]
+    e, P = front(e, 1), front(P)
+    variance = P[range(n), range(n)]
+    there = variance > ROUNDING**2
+    pairs = [(i, j) for i in range(n) for j in range(i)]
+    with np.errstate(all="ignore"):
+        apart = np.array(
+            [
+                np.where(
+                    there[i] & there[j], 1 - P[i, j] * (P[i, j] / variance[i]) / variance[j], 0
+                )
+                for i, j in pairs
+            ]
+        )
+        minors = apart.sum(axis=0)
+        value, outside = _line(e, P, variance, there)
+        rank = np.where(minors < NONE, there.any(axis=0), UNCLEAR)
+        widest = apart.argmax(axis=0)
+        for pair, (i, j) in enumerate(pairs):
+            some = np.flatnonzero((widest == pair) & (minors > PLANE))
+            if some.size and n == 3:
+                k = 3 - i - j
+                found = _plane(e[:, some], P[:, :, some], there[k, some], i, j, k)
+                value[some], outside[some], third = found
+                least = apart[pair, some] * third / minors[some]  # λ₃
+                rank[some] = np.where(abs(least) < NONE, 2, UNCLEAR)
+    return value, rank, outside > OUTSIDE
+
+
+def _line(e: Array, P: Array, variance: Array, there: Booleans) -> tuple[Array, Array]:
+    """eᵀ P⁺ e of P = B Bᵀ, and the length of what of e is not along B : (N,) each"""
+    most = variance.argmax(axis=0)
+    column = np.take_along_axis(P, most[None, None], axis=1)[:, 0]
+    B = np.where(there, column / np.sqrt(np.take_along_axis(variance, most[None], axis=0)), 0.0)
+    y = np.where(there.any(axis=0), (B * e).sum(axis=0) / (B * B).sum(axis=0), 0.0)
+    return y * y, np.sqrt(((e - y * B) ** 2).sum(axis=0))
+
+
+def _plane(
+    e: Array, P: Array, there: Booleans, i: int, j: int, k: int
+) -> tuple[Array, Array, Array]:
+    """eᵀ P⁺ e of a P of rank 2 that its entries i and j span, the length of what of e lies outside
+    that plane, and which share of the variance of k does, too : (N,) each
+
+    there : (N,) whether k has a variance at all
+    """
+    a, b, d = P[i, i], P[i, j], P[j, j]
+    p, q, r = np.where(there, P[k, i], 0.0), np.where(there, P[k, j], 0.0), P[k, k]
+    slope = b / a
+    D = d - slope * b
+    wj = (q - slope * p) / D
+    wi = (p - b * wj) / a
+    rest = e[k] - wi * e[i] - wj * e[j]
+    square = 1 + wi * wi + wj * wj  # of the null vector
+    x, y = e[i] + wi * rest / square, e[j] + wj * rest / square
+    y = y - slope * x
+    third = np.where(there, (r - wi * p - wj * q) / r, 0.0)
+    return x * x / a + y * y / D, abs(rest) / np.sqrt(square), third
