@@ -76,8 +76,8 @@ TWINS: tuple[Twin, ...] = (
         when="up to 5 000 degrees of freedom, and a probability that is neither 0 nor 1",
     ),
     Twin(
-        of="ekfsim.study.block:tally_of",
-        form="ekfsim.fast.compiled.block:tally_of",
+        of="ekfsim.study.block:watched",
+        form="ekfsim.fast.compiled.block:watched",
         when="commands of the classroom, an EKF as it comes, no guard that looks about",
         compiled=True,
     ),

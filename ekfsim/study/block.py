@@ -37,14 +37,8 @@ def run_block(scene: Scene, first: int, runs: int, way: Way | None = None) -> Ta
     """
     with taking(way or taken()):
         return functools.reduce(
-            operator.add, (tally_of(scene, *some) for some in at_once(scene, first, runs))
+            operator.add, (watched(scene, *some).tally() for some in at_once(scene, first, runs))
         )
-
-
-@twinned
-def tally_of(scene: Scene, first: int, runs: int) -> Tally:
-    """The same, all of them side by side."""
-    return watched(scene, first, runs).tally()
 
 
 def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
@@ -57,6 +51,7 @@ def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
     return [(run, min(some, first + runs - run)) for run in range(first, first + runs, some)]
 
 
+@twinned
 def watched(scene: Scene, first: int, runs: int) -> "Watched":
     """The runs first … first + runs − 1, each told apart at its end."""
     numbers = np.arange(first, first + runs)

@@ -17,6 +17,7 @@ from ekfsim.world import Faults, Map, Noise
 
 block = pytest.importorskip("ekfsim.fast.compiled.block", exc_type=ImportError)
 CLOSE = 1e-9  # relative: runs that are lost make much of what rounding leaves
+LOST = 1e-6  # and of some of them alone more than of all together
 LOOKS = tuple(Sense(math.radians(angle)) for angle in range(-180, 180, 45))
 ROUNDS = Repeat(2, (Move(2.0, math.pi / 2), Sense(0.3), Sense(-2.0)))
 SCENES = {
@@ -99,9 +100,15 @@ def drawn(seed):
 def verify(made, runs, first=0, tolerance=CLOSE):
     """The tally of compiled code says what that of the text does."""
     with taking("quick"):
-        text = watched(made, first, runs).tally()
+        ends, text = (told := watched(made, first, runs)).ends, told.tally()
     with taking("compiled"):
-        twin = block.tally_of(made, first, runs)
+        twin_ends, twin = (told := block.watched(made, first, runs)).ends, told.tally()
+    np.testing.assert_array_equal(twin_ends.drawn, ends.drawn)
+    np.testing.assert_array_equal(twin_ends.inside, ends.inside)
+    np.testing.assert_array_equal(twin_ends.in_cone, ends.in_cone)
+    np.testing.assert_array_equal(twin_ends.unsure, ends.unsure)
+    np.testing.assert_allclose(twin_ends.position, ends.position, LOST)
+    np.testing.assert_allclose(twin_ends.heading, ends.heading, LOST, 1e-9)
     for name, column in text.at._asdict().items():
         same = getattr(twin.at, name)
         assert same.dtype == column.dtype, name
@@ -148,7 +155,7 @@ def test_runs_of_two_blocks_draw_what_each_of_them_does():
     ],
 )
 def test_what_it_does_not_know_is_left_to_the_text(otherwise):
-    assert block.tally_of(replace(rich(), **otherwise), 0, 5) is None
+    assert block.watched(replace(rich(), **otherwise), 0, 5) is None
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -1,4 +1,4 @@
-"""Runs of the classroom side by side, watched by the EKF → a Tally, by compiled code.
+"""Runs of the classroom side by side, watched by the EKF, from their draws to what is counted.
 
 The text makes a Step of arrays of every command, and judges it. Here a block is the state of its
 runs and what is counted of them, and a command takes three or four calls of compiled code. The
@@ -26,17 +26,17 @@ from ekfsim.raycast.rules import REACH, TIE
 from ekfsim.raycast.walls import Walls
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import Draws, true_start
-from ekfsim.study.block import length_of, steps_told
-from ekfsim.study.counting import COVERAGE, SIDES, Judged, bounds, spread
-from ekfsim.study.tally import AtSteps, Extreme, OfRuns, Tally, dtype_of
+from ekfsim.study.block import Readings, Watched, length_of, steps_told
+from ekfsim.study.counting import COVERAGE, Ends, Judged, by_rank
+from ekfsim.study.tally import AtSteps
 
 UPPER = np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2])  # P's upper half: rows, columns
 WHOLE = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])  # and where each entry of P stands in it
 ASKED = 0.5, 0.95, LOST  # the quantiles of χ² that a step's NEES is held against
 
 
-def tally_of(scene: Scene, first: int, runs: int) -> Tally | None:
-    """What becomes of the runs first … first + runs − 1; None where the text must say."""
+def watched(scene: Scene, first: int, runs: int) -> Watched | None:
+    """The runs first … first + runs − 1, each told apart at its end."""
     if not knows(scene):
         return None
     block = Block(scene, np.arange(first, first + runs), steps_told(length_of(scene)))
@@ -50,7 +50,7 @@ def tally_of(scene: Scene, first: int, runs: int) -> Tally | None:
             case Kidnap(x, y, theta):
                 block.truth[:] = np.array([[x], [y], [wrap(np.asarray(theta))]])
         block.judge(changed=not isinstance(command, Say))
-    return block.tally()
+    return block.watched()
 
 
 def knows(scene: Scene) -> bool:
@@ -76,9 +76,10 @@ class Block:
         self.e, self.nees = np.empty((3, N)), np.empty(N)
         self.rank, self.impossible = np.empty(N, np.int64), np.empty(N, bool)
         self.lost_from, self.some = np.full(N, -1), np.empty(N, np.int64)
-        self.told, self.step, self.at = told, -1, 0
-        self.rows, self.row = np.empty((len(told), len(AtSteps._fields))), np.empty(14)
-        self.quantiles = np.array([[quantile(p, dof) for dof in range(4)] for p in ASKED])
+        self.stand = np.empty((4, N), bool)  # inside, drawn, in_cone and unsure of `Ends`
+        self.told, self.step = told, -1
+        self.rows, self.row = list[Array](), np.empty(len(AtSteps._fields))
+        self.quantiles = np.array([by_rank(probability) for probability in ASKED])
         self.factors = radius_factor(COVERAGE) ** 2, cone_factor(COVERAGE) ** 2
 
     def move(self, move: Move) -> None:
@@ -134,7 +135,7 @@ class Block:
     def judge(self, changed: bool = True) -> None:
         """Hold the beliefs against the truth after a step, and count where it is one to tell of."""
         self.step += 1
-        told = bool(self.step == self.told[self.at])
+        told = bool(self.step == self.told[len(self.rows)])
         if changed:
             left = judging.judge(
                 self.x, self.P, self.truth, ROUNDING, CLEAR, RANK, OUTSIDE,
@@ -146,10 +147,10 @@ class Block:
             judging.count(
                 self.e, self.P, self.nees, self.rank, self.impossible, self.step, told,
                 self.quantiles, ROUNDING, RANK, OUTSIDE, *self.factors, self.lost_from, self.row,
+                *self.stand,
             )  # fmt: skip
         if told:
-            self.rows[self.at] = self.row
-            self.at += 1
+            self.rows.append(self.row.copy())
 
     def _judge_as_written(self, some: Integers) -> None:
         """The NEES of these runs by the text. some : (m,)"""
@@ -158,34 +159,17 @@ class Block:
         self.impossible[some] |= impossible
         self.nees[some] = np.where(self.impossible[some], np.nan, value)
 
-    def tally(self) -> Tally:
-        """What is left when the runs are over."""
-        last, (low, high) = Judged(self.nees, self.rank, self.impossible), SIDES
-        of = OfRuns(
-            nis_runs=int(np.count_nonzero(self.nis_dof)),
-            nis_above=int(np.count_nonzero(self.nis > bounds(high, self.nis_dof))),
-            nis_below=int(np.count_nonzero(self.nis < bounds(low, self.nis_dof))),
-            nis_readings=self.readings,
-            nis_dof=int(np.sum(self.nis_dof)),
-            nis_sum=float(np.sum(self.nis)),
-            nees_above=int(np.count_nonzero(last.above(high))),
-            nees_below=int(np.count_nonzero(last.below(low))),
-        )
-        steps, runs = np.unique(self.lost_from[self.lost_from >= 0], return_counts=True)
-        i = int(np.argmax(np.where(last.impossible, np.inf, last.value)))
-        impossible = bool(last.impossible[i])
-        columns = zip(AtSteps._fields, self.rows.T, strict=True)
-        return Tally(
-            runs=len(self.numbers),
-            steps=self.told,
-            times=np.full(len(self.told), np.nan),
-            at=AtSteps._make(column.astype(dtype_of(name)) for name, column in columns),
-            of=of,
-            lost_from=dict(zip(steps.tolist(), runs.tolist(), strict=True)),
-            spread=spread(last, self.numbers),
-            worst=Extreme(
-                impossible, 0.0 if impossible else float(last.value[i]), int(self.numbers[i])
-            ),
+    def watched(self) -> Watched:
+        """What is known of the runs so far."""
+        return Watched(
+            numbers=self.numbers,
+            told=self.told,
+            lost_from=self.lost_from,
+            readings=Readings(self.nis, self.nis_dof, self.readings),
+            ends=Ends(Judged(self.nees, self.rank, self.impossible), self.e.T, *self.stand),
+            step=self.step,
+            at=tuple(map(AtSteps._make, self.rows)),
+            times=(math.nan,) * len(self.rows),
         )
 
 

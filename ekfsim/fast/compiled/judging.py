@@ -155,8 +155,9 @@ def count(
     e: Array, P: Array, value: Array, rank: Integers, impossible: Booleans, step: int, told: bool,
     quantiles: Array, rounding: float, counts: float, outside: float, ellipse: float, cone: float,
     lost_from: Integers, row: Array,
+    inside: Booleans, drawn: Booleans, in_cone: Booleans, unsure: Booleans,
 ) -> None:  # fmt: skip
-    """From which step on each run is lost, and of a step that is told the columns of `AtSteps`.
+    """From which step on each run is lost, and of a step that is told `Ends` and `AtSteps`.
 
     quantiles : (3, 4), of χ² at three probabilities for each rank; ellipse, cone : the squares of
     their factors; lost_from : (N,), row : (14,)
@@ -179,11 +180,14 @@ def count(
         e0, e1, e2, v = e[0, n], e[1, n], e[2, n], P[5, n]
         square, area, rest = _square_2(e0, e1, P[0, n], P[1, n], P[3, n], tiny, counts)
         astray = rest > outside or not math.isfinite(square) or not math.isfinite(e0 + e1)
-        row[5] += area == 2 and not astray and square <= ellipse
-        row[6] += area == 2 or astray
-        unsure = v > tiny or not abs(e2) <= outside
-        row[7] += unsure and (e2 * e2 <= cone * v or (v <= 0 and abs(e2) <= outside))
-        row[8] += unsure
+        inside[n] = area == 2 and not astray and square <= ellipse
+        drawn[n] = area == 2 or astray
+        unsure[n] = v > tiny or not abs(e2) <= outside
+        in_cone[n] = unsure[n] and (e2 * e2 <= cone * v or (v <= 0 and abs(e2) <= outside))
+        row[5] += inside[n]
+        row[6] += drawn[n]
+        row[7] += in_cone[n]
+        row[8] += unsure[n]
         if known:
             row[9] += 1
             row[10] += rank[n]
