@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from wall_worlds import assert_same, by_brute_force, stars, tangle
+from wall_worlds import assert_same, by_brute_force, stars, tangle, together
 
-from ekfsim.raycast.brute import brute_force
-from ekfsim.raycast.searches.nearby_beams import nearby_beams
 from ekfsim.raycast.walls import Walls
 
 WORLDS = [Walls.of(rings) for rings in (stars(80, 2), stars(400, 3), tangle(60, 7))]
@@ -26,14 +24,6 @@ def close_beams(seed, spread, turn, lone=0):
     return origin, heading
 
 
-def bundled(walls, origin, heading):
-    x, y = origin.T
-    dx, dy = np.cos(heading), np.sin(heading)
-    span = np.abs(walls.segments).max() + np.abs(x) + np.abs(y)
-    found = nearby_beams(walls.segments.reshape(-1, 4), x, y, dx, dy, span)
-    return found, brute_force(walls.segments, x, y, dx, dy)
-
-
 @given(
     st.integers(0, 2**32 - 1),
     st.sampled_from(range(len(WORLDS))),
@@ -41,28 +31,29 @@ def bundled(walls, origin, heading):
     st.sampled_from([0.0, 1e-3, 0.03, 0.15]),
     st.sampled_from([0, 20]),
 )
-def test_a_bundle_meets_the_walls_that_its_beams_meet(seed, world, spread, turn, lone):
+def test_beams_together_meet_the_walls_that_each_meets(seed, world, spread, turn, lone):
     origin, heading = close_beams(seed, spread, turn, lone)
-    found, expected = bundled(WORLDS[world], origin, heading)
+    expected = by_brute_force(WORLDS[world], origin, heading)
+    found = together(WORLDS[world], origin, heading)
     if found is not None:
         *found, doubtful = found
         assert_same(found, expected, 100.0, but=doubtful)
     hit = WORLDS[world].cast(origin, heading)
-    assert_same((hit.range, hit.wall), by_brute_force(WORLDS[world], origin, heading), 100.0)
+    assert_same((hit.range, hit.wall), expected, 100.0)
 
 
-def test_close_beams_are_a_bundle_and_others_are_none():
+def test_close_beams_are_followed_together_and_others_are_not():
     for walls in WORLDS:
         for seed in range(20):
-            assert bundled(walls, *close_beams(seed, 0.1, 0.02))[0] is not None
-            *_, doubtful = bundled(walls, *close_beams(seed, 0.1, 0.02, lone=20))[0]
+            assert together(walls, *close_beams(seed, 0.1, 0.02)) is not None
+            *_, doubtful = together(walls, *close_beams(seed, 0.1, 0.02, lone=20))
             assert 10 < len(doubtful) < 60
-            assert bundled(walls, *close_beams(seed, 0.1, 1.0))[0] is None
-            assert bundled(walls, *close_beams(seed, 30.0, 0.02))[0] is None
+            assert together(walls, *close_beams(seed, 0.1, 1.0)) is None
+            assert together(walls, *close_beams(seed, 30.0, 0.02)) is None
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-7, 1e-12])
-def test_a_corner_before_a_bundle_is_met_as_by_each_beam(gap):
+def test_a_corner_before_many_beams_is_met_as_by_each(gap):
     """Two pillars with a gap between them, a wall behind, and beams at the gap from half a metre to
     both sides."""
     pillars = {
@@ -74,8 +65,8 @@ def test_a_corner_before_a_bundle_is_met_as_by_each_beam(gap):
     walls = Walls.of(pillars)
     x = np.concatenate([np.linspace(0.5, 1.5, BEAMS - 3), [1.0, 1 + gap / 2, 1 + gap]])
     origin, heading = np.stack([x, np.full_like(x, -2.0)], -1), np.full_like(x, np.pi / 2)
-    found, expected = bundled(walls, origin, heading)
-    *found, doubtful = found
+    expected = by_brute_force(walls, origin, heading)
+    *found, doubtful = together(walls, origin, heading)
     assert_same(found, expected, 20.0, but=doubtful)
     hit = walls.cast(origin, heading)
     assert_same((hit.range, hit.wall), expected, 20.0)

@@ -15,19 +15,19 @@ from wall_worlds import (
     by_brute_force,
     near_beams,
     stars,
+    together,
     town,
 )
 
 from ekfsim.raycast.searches.choice import BLOCK
 from ekfsim.raycast.searches.few_walls import few_walls
 from ekfsim.raycast.searches.flat_grid import BORDER, PLAIN
-from ekfsim.raycast.searches.nearby_beams import nearby_beams
 from ekfsim.raycast.searches.scan import scan
 from ekfsim.raycast.walls import Walls
 from ekfsim.twins import taking
 
 needs_numba = pytest.mark.skipif(
-    "numba" not in BACKENDS, reason="numba, the extra `fast`, is not installed"
+    "compiled" not in BACKENDS, reason="numba, the extra `fast`, is not installed"
 )
 
 
@@ -124,13 +124,13 @@ def test_beams_that_lie_close_together(name, spread):
         origins = origin + random.normal(0, spread, (200, 2))
         headings = heading + random.normal(0, spread / 20, 200)
         origins[:10] += random.uniform(-50, 50, (10, 2))
-        near = near_beams(walls, origins, headings)
-        found = nearby_beams(walls.segments.reshape(-1, 4), *near)
+        expected = by_brute_force(walls, origins, headings)
+        found = together(walls, origins, headings)
         if found is not None:
             formed += 1
-            assert_same(found[:2], by_brute_force(walls, origins, headings), 1.0, but=found[2])
+            assert_same(found[:2], expected, 1.0, but=found[2])
         hit = walls.cast(origins, headings)
-        assert_same((hit.range, hit.wall), by_brute_force(walls, origins, headings), 1.0)
+        assert_same((hit.range, hit.wall), expected, 1.0)
     assert formed or name == "stars that overlap" or spread > 1
 
 

@@ -10,6 +10,7 @@ from backends import BACKENDS
 from ekfsim.raycast.brute import brute_force
 from ekfsim.raycast.searches.few_walls import few_walls
 from ekfsim.raycast.searches.many_beams import many_beams
+from ekfsim.raycast.searches.nearby_beams import nearby_beams
 from ekfsim.raycast.searches.scan import scan
 from ekfsim.twins import taking
 
@@ -140,3 +141,11 @@ def near_beams(walls, origin, heading):
         np.sin(heading[near]),
         walls.grid.size + np.abs(x) + np.abs(y),
     )
+
+
+def together(walls, origin, heading):
+    """What `nearby_beams` finds; None where they lie too far apart."""
+    beams = np.stack([*origin.T, np.cos(heading), np.sin(heading)])
+    span = np.abs(walls.segments).max() + np.abs(beams[:2]).sum(axis=0)
+    ends = walls.segments.reshape(-1, 4)
+    return nearby_beams(ends, beams, beams.min(axis=1), beams.max(axis=1), span)

@@ -11,26 +11,40 @@ from ekfsim.raycast.rules import REACH, TIE, meet
 
 
 def measure(ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array) -> Array:
-    """(n,): the range in m at which beams meet walls, pair by pair, inf where not: the same as
-    `meet`, only sooner.
+    """(n,): the range in m at which beams meet walls, pair by pair, inf where not.
 
     ends : (n, 4) m; the beams' origins (x, y) in m and unit directions; span : (n,) m, the
-    coordinates' size. Where the ends lie clearly on both sides of the beam, and its origin clearly
-    off the wall, the crossing is all.
+    coordinates' size
     """
     ax, ay, bx, by = ends.T
-    ax, ay, bx, by = ax - x, ay - y, bx - x, by - y
-    across_a, across_b = ax * dy - ay * dx, bx * dy - by * dx
-    along_a, along_b = ax * dx + ay * dy, bx * dx + by * dy
+    return crossing(seen(ax, ay, x, y, dx, dy), seen(bx, by, x, y, dx, dy), span)
+
+
+def seen(
+    px: Array | float, py: Array | float, x: Array, y: Array, dx: Array, dy: Array
+) -> tuple[Array, Array]:
+    """Where beams see points (px, py) m, or one point : `along` and `across` of rules.py, (n,) m"""
+    ahead, aside = px - x, py - y
+    return ahead * dx + aside * dy, ahead * dy - aside * dx
+
+
+def crossing(a: tuple[Array, Array], b: tuple[Array, Array], span: Array) -> Array:
+    """(n,): the same as `meet`, of walls whose ends a and b are seen like this, only sooner.
+
+    Where the ends lie clearly on both sides of the beam, and its origin clearly off the wall, the
+    crossing is all.
+    """
+    (along_a, across_a), (along_b, across_b) = a, b
     doubt = 4 * REACH * span * span
     sides, area = across_a * across_b, along_a * across_b - along_b * across_a
     with np.errstate(divide="ignore", invalid="ignore"):
         r = area / (across_b - across_a)
-    r = np.where((sides < -doubt) & (r >= 0), r, np.inf)
-    look = np.flatnonzero((np.abs(sides) <= doubt) | (np.abs(area) <= doubt) & (sides < -doubt))
+    clear = (sides < -doubt) & (np.abs(area) > doubt)
+    r = np.where(clear & (r >= 0), r, np.inf)
+    look = np.flatnonzero((sides <= doubt) & ~clear)
     if look.size:
-        seen = np.stack([along_a[look], across_a[look], along_b[look], across_b[look]])
-        r[look] = meet(seen, REACH * span[look])
+        ends = np.stack([along_a[look], across_a[look], along_b[look], across_b[look]])
+        r[look] = meet(ends, REACH * span[look])
     return r
 
 

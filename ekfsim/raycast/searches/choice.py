@@ -11,16 +11,16 @@ from ekfsim.raycast.searches.few_walls import few_walls
 from ekfsim.raycast.searches.many_beams import many_beams
 from ekfsim.raycast.searches.nearby_beams import nearby_beams
 from ekfsim.raycast.searches.scan import scan
-from ekfsim.raycast.searches.single_beam import first
+from ekfsim.raycast.searches.single_beam import first, follow
 from ekfsim.raycast.walls import Hit, Walls
 
 FEW = 64  # beams that are sooner followed one by one than all at once
 BLOCK = 4096  # beams that are followed together: few enough for a processor's cache
 FEW_WALLS = 150  # walls that are sooner all tried than searched
-FEWER_WALLS = 48  # and that are so even where the beams lie close together
+VERY_FEW_WALLS = 8  # and that are so even where the beams lie close together
 
-# of beams (n,) ranges and walls, and which of them are in doubt
-Search = Callable[[Walls, Array, Array, Array, Array], tuple[Array, Integers, Integers]]
+# of beams (4, n), x, y in m and unit direction: ranges, walls, and which of them are in doubt
+Search = Callable[[Walls, Array], tuple[Array, Integers, Integers]]
 
 
 def cast(walls: Walls, origin: Array, heading: Array) -> Hit:
@@ -55,42 +55,50 @@ def in_blocks(search: Search, walls: Walls, x: Array, y: Array, heading: Array) 
     ranges, met = np.full(x.shape, np.nan), np.full(x.shape, -1)
     for start in range(0, len(x) if walls.grid else 0, BLOCK):
         part = slice(start, start + BLOCK)
+        beams = np.stack([x[part], y[part], heading[part], heading[part]])
         with np.errstate(invalid="ignore"):
-            beams = x[part], y[part], np.cos(heading[part]), np.sin(heading[part])
-        ranges[part], met[part], doubtful = search(walls, *beams)
+            np.cos(beams[2], out=beams[2])
+            np.sin(beams[3], out=beams[3])
+        ranges[part], met[part], doubtful = search(walls, beams)
         if doubtful.size:
             again = start + doubtful
-            ranges[again], met[again] = _surely(walls, *(each[doubtful] for each in beams))
+            ranges[again], met[again] = _surely(walls, beams[:, doubtful])
     return Hit(ranges.reshape(shape), met.reshape(shape))
 
 
-def suited(
-    walls: Walls, x: Array, y: Array, dx: Array, dy: Array
-) -> tuple[Array, Integers, Integers]:
+def suited(walls: Walls, beams: Array) -> tuple[Array, Integers, Integers]:
     """The search that suits these beams best."""
-    grid, ends = walls.flat_grid.grid, walls.segments.reshape(-1, 4)
-    far = np.abs(x) + np.abs(y)
-    if not (np.isfinite(dx) & (far < grid.horizon)).all():
-        return np.full(x.shape, np.nan), np.full(x.shape, -1), np.arange(len(x))
-    span = grid.size + far
-    if (x == x[0]).all() and (y == y[0]).all():
+    grid, ends, n = walls.flat_grid.grid, walls.segments.reshape(-1, 4), beams.shape[1]
+    low, high = beams.min(axis=1), beams.max(axis=1)
+    farthest = float(np.maximum(np.abs(low), np.abs(high))[:2].sum())
+    if not (farthest < grid.horizon and np.isfinite(low).all()):
+        return np.full(n, np.nan), np.full(n, -1), np.arange(n)
+    x, y, dx, dy = beams
+    span = grid.size + np.abs(x) + np.abs(y)
+    if low[0] == high[0] and low[1] == high[1]:
         return scan(ends, x[0], y[0], dx, dy, span[0])
-    if len(ends) > FEWER_WALLS and (hits := nearby_beams(ends, x, y, dx, dy, span)) is not None:
-        return hits
+    if len(ends) > VERY_FEW_WALLS:
+        hits = nearby_beams(ends, beams, low, high, span)
+        if hits is not None:
+            return hits
     if len(ends) <= FEW_WALLS:
         return few_walls(ends, x, y, dx, dy, span)
     return *many_beams(walls.flat_grid, x, y, dx, dy), np.empty(0, np.int64)
 
 
-def _surely(walls: Walls, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, Integers]:
+def _surely(walls: Walls, beams: Array) -> tuple[Array, Integers]:
     """Cell by cell where rounding is small against a cell, by brute force from beyond."""
-    ranges, met = np.full(x.shape, np.nan), np.full(x.shape, -1)
-    far = np.abs(x) + np.abs(y)
+    ranges, met = np.full(beams.shape[1], np.nan), np.full(beams.shape[1], -1)
+    far = np.abs(beams[0]) + np.abs(beams[1])
     near = far < walls.flat_grid.grid.horizon
-    finite = np.isfinite(far + dx)
+    finite = np.isfinite(far + beams[2])
+    if np.count_nonzero(finite) <= FEW:
+        for k in np.flatnonzero(finite).tolist():
+            ranges[k], met[k] = follow(walls.flat_grid.grid, *beams[:, k].tolist())
+        return ranges, met
     for some, search in (
         (finite & near, partial(many_beams, walls.flat_grid)),
         (finite & ~near, partial(brute_force, walls.segments)),
     ):
-        ranges[some], met[some] = search(x[some], y[some], dx[some], dy[some])
+        ranges[some], met[some] = search(*beams[:, some])
     return ranges, met

@@ -26,10 +26,8 @@ def cast(walls: Walls, origin: Array, heading: Array) -> Hit | None:
     return in_blocks(_search, walls, x, y, heading) if heading.size > FEW else None
 
 
-def _search(
-    walls: Walls, x: Array, y: Array, dx: Array, dy: Array
-) -> tuple[Array, Integers, Integers]:
-    return walk(walls.flat_grid, x, y, dx, dy)
+def _search(walls: Walls, beams: Array) -> tuple[Array, Integers, Integers]:
+    return walk(walls.flat_grid, *beams)
 
 
 def walk(

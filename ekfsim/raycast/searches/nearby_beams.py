@@ -1,82 +1,146 @@
 """Many beams close together, as those of a study's runs are: only the walls before all of them are
 tried.
 
-Seen from the middle of the beams, along their mean direction, none leaves the wedge
+Seen from the middle of the beams, along their middle direction, none leaves the wedge
 
     |across| ≤ ρ + (along + ρ) tan δ
     ρ: how far the origins lie from the middle, δ: how far the directions part
 
 which is convex: a wall with both ends beyond one of its sides is met by none. And where a wall bars
-the whole wedge, none that lies wholly behind it is met either.
+the whole wedge, none that lies wholly behind it is met either. Often a single wall is left.
 """
+
+from functools import reduce
+from math import cos, hypot, inf, sqrt
+from typing import NamedTuple, Self
 
 import numpy as np
 
-from ekfsim.geometry import Array, Integers
+from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.raycast.rules import TIE
+from ekfsim.raycast.searches.candidates import crossing, seen
 from ekfsim.raycast.searches.few_walls import few_walls
 
 SPREAD = 0.35  # rad; a beam that parts more from the others is left to itself
 APART = 0.05  # of the walls' extent: and so is one that begins farther from them
 LONE = 0.25  # share of such beams from which on the others do not count as close
 FEWEST = 128  # beams that are worth a look
-MANY_WALLS = 150  # before them, that are sooner searched for than all tried
+FEW = 6  # walls before them, that are sooner measured right away than in broad strokes first
+MANY = 150  # and that are sooner searched for than all tried
+ASKED = 64  # beams whose median tells where most are
 SAFE = 1e-6  # of the coordinates' size: by so much the wedge is wider than it need be
 
 
-def nearby_beams(
-    ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array
-) -> tuple[Array, Integers, Integers] | None:
-    """Ranges and walls of many beams, all (n,), and which beams are left in doubt; None where they
-    lie too far apart.
+class Wedge(NamedTuple):
+    """What beams do not leave."""
 
-    ends : (W, 4) m: x, y of the first and of the second end of each wall; span : (n,) m, the
+    x: float  # m, its middle
+    y: float
+    dx: float  # its direction, of length 1
+    dy: float
+    wide: float  # m: no beam begins farther from the middle by x or by y
+    ρ: float  # m: nor farther than this
+    sin_δ: float  # inf where not all go its way
+
+    @classmethod
+    def of(cls, low: Array, high: Array) -> Self:
+        """The wedge of all beams whose x, y, dx, dy are between low and high, (4,) each."""
+        x, y, dx, dy = ((low + high) / 2).tolist()
+        about_x, about_y, about_dx, about_dy = ((high - low) / 2).tolist()
+        length = hypot(dx, dy) or inf
+        dx, dy = dx / length, dy / length
+        part = about_dx * abs(dy) + about_dy * abs(dx)
+        back = about_dx * abs(dx) + about_dy * abs(dy)
+        sin_δ = part if back < length < inf else inf
+        return cls(x, y, dx, dy, max(about_x, about_y), hypot(about_x, about_y), sin_δ)
+
+
+def nearby_beams(
+    ends: Array, beams: Array, low: Array, high: Array, span: Array
+) -> tuple[Array, Integers, Integers] | None:
+    """Ranges and walls of many beams, all (n,), and which are left in doubt; None where they lie
+    too far apart.
+
+    ends : (W, 4) m, x, y of the first and of the second end of each wall; beams : (4, n), x, y in m
+    and the unit direction; low, high : (4,), the least and the greatest of each; span : (n,) m, the
     coordinates' size
     """
-    if len(x) < FEWEST:
+    n = beams.shape[1]
+    if n < FEWEST:
         return None
-    apart = APART * float(np.ptp(ends))
-    for middle in (np.mean, np.median):  # some that stray far move the mean, but not the median
-        mx, my, ux, uy = (float(middle(each)) for each in (x, y, dx, dy))
-        length = np.hypot(ux, uy)
-        if length == 0:
-            return None
-        ux, uy = ux / length, uy / length
-        from_x, from_y, cosine = np.abs(x - mx), np.abs(y - my), dx * ux + dy * uy
-        close = (from_x <= apart) & (from_y <= apart) & (cosine >= np.cos(SPREAD))
-        lone = np.flatnonzero(~close)
-        if not len(lone):
-            break
-    if len(lone) > LONE * len(x):
+    apart, wedge = APART * float(ends.max() - ends.min()), Wedge.of(low, high)
+    if wedge.wide <= apart and wedge.sin_δ <= SPREAD:
+        before = _before(ends, wedge, SAFE * float(span.max()))
+        return _first_of(ends, before, beams, span) if len(before) <= MANY else None
+    close = _close(beams, apart)
+    some, lone = np.flatnonzero(close), np.flatnonzero(~close)
+    if len(lone) > LONE * n:
         return None
-    ρ = float(
-        np.hypot(from_x.max(where=close, initial=0.0), from_y.max(where=close, initial=0.0))
-        + SAFE * span.max()
-    )
-    tan_δ = float(np.sqrt(1 / cosine.min(where=close, initial=1.0) ** 2 - 1 + SAFE))
-    before = _before(ends - [mx, my, mx, my], ux, uy, ρ, tan_δ)
-    if len(before) > MANY_WALLS:
+    beams, span = beams[:, some], span[some]
+    wedge = Wedge.of(beams.min(axis=1), beams.max(axis=1))
+    if wedge.sin_δ >= 1:
         return None
-    if len(lone) == 0:
-        ranges, walls, doubtful = few_walls(ends[before], x, y, dx, dy, span)
-    else:
-        some = np.flatnonzero(close)
-        ranges, walls = np.full(x.shape, np.nan), np.full(x.shape, -1)
-        ranges[some], walls[some], doubtful = few_walls(
-            ends[before], *(each[some] for each in (x, y, dx, dy, span))
-        )
-        doubtful = np.concatenate([some[doubtful], lone])
-    return ranges, np.append(before, -1)[walls], doubtful
+    before = _before(ends, wedge, SAFE * float(span.max()))
+    if len(before) > MANY:
+        return None
+    ranges, walls = np.full(n, np.nan), np.full(n, -1)
+    ranges[some], walls[some], doubtful = _first_of(ends, before, beams, span)
+    return ranges, walls, np.concatenate([some[doubtful], lone])
 
 
-def _before(ends: Array, ux: float, uy: float, ρ: float, tan_δ: float) -> Integers:
-    """The walls that the beams may meet, in their order. ends : (W, 4) m, seen from their middle"""
-    ax, ay, bx, by = ends.T
-    along = np.stack([ax * ux + ay * uy, bx * ux + by * uy])
-    across = np.stack([ax * uy - ay * ux, bx * uy - by * ux])
+def _close(beams: Array, apart: float) -> Booleans:
+    """Which beams are close to most : (n,). Some that stray far move a mean, but not a median; that
+    of every so many beams will do.
+    """
+    x, y, dx, dy = beams
+    mx, my, ux, uy = np.median(beams[:, :: beams.shape[1] // ASKED], axis=1).tolist()
+    aligned = dx * ux + dy * uy >= cos(SPREAD) * hypot(ux, uy)
+    close: Booleans = (np.abs(x - mx) <= apart) & (np.abs(y - my) <= apart) & aligned
+    return close
+
+
+def _before(ends: Array, wedge: Wedge, safe: float) -> Integers:
+    """The walls that beams may meet, in their order. ends : (W, 4) m"""
+    x, y, dx, dy, _, ρ, sin_δ = wedge
+    ρ, tan_δ = ρ + safe, sin_δ / sqrt(1 - sin_δ**2) + SAFE
+    east, north = ends[:, ::2].T - x, ends[:, 1::2].T - y  # (2, W)
+    along, across = east * dx + north * dy, east * dy - north * dx
     half = ρ + (along + ρ) * tan_δ
     right, left = across > half, across < -half
-    nearest, farthest = along.min(0), along.max(0)
+    nearest, farthest = np.minimum(*along), np.maximum(*along)
     maybe = (farthest >= -ρ) & ~(right[0] & right[1]) & ~(left[0] & left[1])
     bars = (nearest > ρ) & (right[0] & left[1] | left[0] & right[1])
-    limit = farthest.min(where=bars, initial=np.inf)
+    limit = farthest.min(where=bars, initial=inf)
     return np.flatnonzero(maybe & (nearest <= limit))
+
+
+def _first_of(
+    ends: Array, before: Integers, beams: Array, span: Array
+) -> tuple[Array, Integers, Integers]:
+    """What of the walls before them beams meet first, and which beams are left in doubt."""
+    x, y, dx, dy = beams
+    if len(before) > FEW:
+        ranges, walls, doubtful = few_walls(ends[before], x, y, dx, dy, span)
+        return ranges, np.append(before, -1)[walls], doubtful
+    r = _measured(ends[before], beams, span)
+    nearest = np.full(len(x), inf) if not r else reduce(np.minimum, r)
+    met = nearest < inf
+    limit, walls = np.where(met, nearest + TIE * span, -1.0), np.full(len(x), -1)
+    for wall, each in zip(reversed(before.tolist()), reversed(r), strict=True):
+        np.copyto(walls, wall, where=each <= limit)
+    return np.where(met, nearest, np.nan), walls, before[:0]
+
+
+def _measured(ends: Array, beams: Array, span: Array) -> list[Array]:
+    """The ranges at which beams meet each of a few walls : (n,) m, inf where not
+
+    Wall by wall, since arrays for all of them would be larger than a processor's nearest cache; and
+    a corner is looked at once for both its walls.
+    """
+    ranges, corners = [], dict[tuple[float, float], tuple[Array, Array]]()
+    for ax, ay, bx, by in ends.tolist():
+        for corner in ((ax, ay), (bx, by)):
+            if corner not in corners:
+                corners[corner] = seen(*corner, *beams)
+        ranges.append(crossing(corners[ax, ay], corners[bx, by], span))
+    return ranges

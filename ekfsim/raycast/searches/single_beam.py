@@ -25,17 +25,17 @@ def first(walls: Walls, x: float, y: float, heading: float) -> tuple[float, int]
     if hit is None:
         if len(grid.recent) >= RECENT:
             grid.recent.clear()
-        hit = grid.recent[beam] = _follow(grid, x, y, heading)
+        finite = isfinite(x + y + heading)
+        hit = follow(grid, x, y, cos(heading), sin(heading)) if finite else (nan, -1)
+        grid.recent[beam] = hit
     return hit
 
 
-def _follow(grid: Grid, x: float, y: float, heading: float) -> tuple[float, int]:
-    if not isfinite(x + y + heading):
-        return nan, -1
+def follow(grid: Grid, x: float, y: float, dx: float, dy: float) -> tuple[float, int]:
+    """Range and wall of a beam in the unit direction (dx, dy), from however far."""
     if abs(x) + abs(y) < grid.horizon:
-        return walk(grid, x, y, cos(heading), sin(heading))
-    beam = np.array([[x], [y], [cos(heading)], [sin(heading)]])
-    (r,), (wall,) = brute_force(grid.segments, *beam)
+        return walk(grid, x, y, dx, dy)
+    (r,), (wall,) = brute_force(grid.segments, *np.array([[x], [y], [dx], [dy]]))
     return float(r), int(wall)
 
 
