@@ -161,7 +161,7 @@ def run(
         runs = []
         for one, result, files in zip(alone, results, outputs.for_each(scene), strict=True):
             sinks = stack.enter_context(files.open(one, confidence, result))
-            runs.append(kept(steps_of(one), [result.add, *(sink.write for sink in sinks)]))
+            runs.append(kept(result.following(steps_of(one)), [sink.write for sink in sinks]))
         for view in together(runs[0], runs[1:]):
             heed()
             if not quiet:

@@ -3,6 +3,7 @@ verdict.
 """
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Self
 
@@ -14,6 +15,7 @@ from ekfsim.geometry.outline import path_error
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Control, Entry, Step
 from ekfsim.scene import Scene
+from ekfsim.twins import twinned
 
 
 @dataclass
@@ -71,6 +73,7 @@ class Errors:
         }
 
 
+@dataclass
 class Instants:
     """The instants of a run at which errors are counted: asked of one entry after another.
 
@@ -78,8 +81,7 @@ class Instants:
     its own.
     """
 
-    def __init__(self) -> None:
-        self._judged: float | None = None  # s, the last of them
+    _judged: float | None = None  # s, the last of them
 
     def hold(self, entry: Entry) -> bool:
         """Whether an entry is one of them, or more of one."""
@@ -149,6 +151,13 @@ class Summary:
             self._measure(
                 entry, self.layout.pose(step.posterior.mean), self.layout.pose(self._reckoned)
             )
+
+    @twinned
+    def following(self, steps: Iterable[Step]) -> Iterator[Step]:
+        """The same steps, each taken into account before it goes on."""
+        for step in steps:
+            self.add(step)
+            yield step
 
     def _measure(self, entry: Entry, estimated: Array, reckoned: Array) -> None:
         if entry.truth is not None:

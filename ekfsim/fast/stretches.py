@@ -84,7 +84,7 @@ def _stretched(belief: Belief, entries: list[Entry], layout: Layout) -> list[Ste
     after = stretch(belief, motion, U)
     before = np.concatenate([belief.mean[None], after.mean[:-1]])
     F, G = motion.F(before, U), motion.G(before, U)
-    if not _is_planar(F, after.mean - before):
+    if not is_planar(F, after.mean - before):
         return None
     n, nothing = len(entries), repeat(None)
     posteriors = list(map(Gaussian, after.mean, after.covariance))
@@ -96,7 +96,7 @@ def _stretched(belief: Belief, entries: list[Entry], layout: Layout) -> list[Ste
     )
 
 
-def _is_planar(F: Array, way: Array) -> bool:
+def is_planar(F: Array, way: Array) -> bool:
     """Whether F = [1 0 −Δy; 0 1 Δx; 0 0 1], as `stretch` takes it to be : (T, …, 3, 3); way : (T,
     …, 3)
     """

@@ -82,6 +82,13 @@ TWINS: tuple[Twin, ...] = (
         compiled=True,
     ),
     Twin(
+        of="ekfsim.diagnostics.summary:Summary.following",
+        form="ekfsim.fast.summary:following",
+        when="states that are a pose: inputs that follow one another are taken together",
+    ),
+    Twin("ekfsim.simulation.driver:driven", "ekfsim.fast.one.driver:driven", "one robot"),
+    Twin("ekfsim.simulation.driven:written", "ekfsim.fast.written:written", "any ticks"),
+    Twin(
         of="ekfsim.localization:localize",
         form="ekfsim.fast.stretches:localize",
         when="an EKF of planar odometry: inputs that follow one another are taken together",

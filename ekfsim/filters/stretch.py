@@ -23,18 +23,25 @@ def stretch(belief: Belief, motion: Motion, U: Array) -> Gaussian:
     so that the covariances are cumulative sums, too. Held equal to EKF.predict in a loop by a test.
     """
     x, P = belief
-    # seen from where each step begins; time last, as is fastest
-    along, aside, turn = motion.f(np.zeros_like(x), U).T
-    θ = wrap(x[..., 2].T[..., None] + np.cumsum(turn, axis=-1))
-    before = np.zeros((*θ.T.shape, 3))
-    before[:1, ..., 2], before[1:, ..., 2] = x[..., 2], θ.T[:-1]
-    c, s = np.cos(before[..., 2].T), np.sin(before[..., 2].T)
-    way = np.cumsum([c * along - s * aside, s * along + c * aside], axis=-1)
+    mean = moved(x, motion, U)
+    before = np.concatenate([x[None], mean[:-1]])[: len(mean)]
     G = motion.G(before, U)
     W = G @ motion.M(U) @ G.mT + motion.Q(U)
+    way = (mean - x)[..., :2].T
     from_start = P.T[..., None] + np.cumsum(_sheared(np.ascontiguousarray(W.T), -way), axis=-1)
-    mean = np.stack([x[..., 0].T[..., None] + way[0], x[..., 1].T[..., None] + way[1], θ])
-    return Gaussian(mean.T, covariance(_sheared(from_start, way).T))
+    return Gaussian(mean, covariance(_sheared(from_start, way).T))
+
+
+def moved(x: Array, motion: Motion, U: Array) -> Array:
+    """Where such a motion leads after each of N inputs : (N, …, 3)"""
+    # seen from where each step begins; time last, as is fastest
+    along, aside, turn = motion.f(np.zeros_like(x), U).T
+    start = x.T[..., None]
+    θ = wrap(start[2] + np.cumsum(turn, axis=-1))
+    before = np.concatenate([start[2], θ[..., :-1]], axis=-1)[..., : θ.shape[-1]]
+    c, s = np.cos(before), np.sin(before)
+    way = np.cumsum([c * along - s * aside, s * along + c * aside], axis=-1)
+    return np.stack([start[0] + way[0], start[1] + way[1], θ]).T
 
 
 def _sheared(P: Array, way: Array) -> Array:

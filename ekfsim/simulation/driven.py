@@ -21,6 +21,7 @@ from ekfsim.systems.drives import Drive
 from ekfsim.systems.faults import SOUND, SensorFaults
 from ekfsim.systems.instruments import Instrument, Pylon, Ranges, Target
 from ekfsim.systems.robots import PylonCart
+from ekfsim.twins import twinned
 
 GPS_SIGMA, GPS_PERIOD = 0.4, 2.0  # m, s: of the pylon cart's GPS, which is recorded and not used
 SOON = 1e-9  # of a period: what rounding makes of an instant
@@ -68,14 +69,34 @@ def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
         past.goes_on(truth)
         fixes = gps.fixes(ticks, truth, robot.rate) if isinstance(robot, PylonCart) else None
         readings = _readings(watches, ticks, past, u, robot.rate, world.layout)
-        for i, tick in enumerate(ticks.tolist()):
-            index, t = index + 1, (tick + 1) / robot.rate
-            yield Entry(
-                index, Control(told, u[i]), truth[i], t=t, fix=None if fixes is None else fixes[i]
-            )
-            for reading in readings[i]:
-                index += 1
-                yield Entry(index, reading, truth[i], t=t)
+        yield from written(
+            Happened(told, u, truth, (ticks + 1) / robot.rate, readings, fixes), index
+        )
+        index += len(ticks) + sum(map(len, readings))
+
+
+class Happened(NamedTuple):
+    """What happened in T ticks."""
+
+    told: Motion  # as the filter is told
+    u: Array  # (T, …, m)
+    truth: Array  # (T, …, 3) at the end of each
+    t: Array  # (T,) s, of its end
+    readings: list[list[Reading]]  # at the end of each
+    fixes: Array | None  # (T, …, 2) m
+
+
+@twinned
+def written(happened: Happened, index: int) -> Iterator[Entry]:
+    """The entries of it, numbered from index + 1."""
+    told, u, truth, t, readings, fixes = happened
+    for i, stamp in enumerate(t.tolist()):
+        index += 1
+        fix = None if fixes is None else fixes[i]
+        yield Entry(index, Control(told, u[i]), truth[i], t=stamp, fix=fix)
+        for reading in readings[i]:
+            index += 1
+            yield Entry(index, reading, truth[i], t=stamp)
 
 
 class _Watch(NamedTuple):

@@ -1,4 +1,6 @@
-"""Logs of driven robots, as they come and as they hardly ever do."""
+"""Logs of driven robots, as they come and as they hardly ever do; how they are driven and
+summed up.
+"""
 
 from dataclasses import replace
 
@@ -7,13 +9,16 @@ from numerics import covariance
 from twin_inputs import axes_of, inputs
 
 from ekfsim.commands import Move
+from ekfsim.diagnostics.summary import Summary
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.iekf import IEKF
+from ekfsim.localization import localize
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.motions.wheels import GyroWheels, TwoWheels
 from ekfsim.models.sensors.position import Position
 from ekfsim.records import Control, Entry, Reading
+from ekfsim.simulation.driven import Happened
 
 INPUTS = 18  # of each log
 
@@ -46,3 +51,51 @@ def logs(random, runs):
         yield (*log, Entry(INPUTS + 1, Control(beside, U[0, ..., :2]), x)), EKF(), belief
         yield log, IEKF(), belief
         yield log[:0], EKF(), belief
+
+
+@inputs("ekfsim.diagnostics.summary:Summary.following", within=1e-9, filled=True)  # see above
+def steps(random, runs):
+    if runs is not None:
+        return
+    outline = np.array([[0, 0], [10, 0], [10, -10], [0, -10.0]])
+    for number, (log, filter, belief) in enumerate(logs(random, None)):
+        start = Entry(0, None, belief.mean, t=0.0)
+        steps = tuple(localize((start, *log), filter, belief))
+        yield Summary(expected_path=outline if number % 2 else None), steps
+        yield Summary(), steps[1:]
+        lost = [
+            replace(step, nees=step.nees and replace(step.nees, value=np.array(40.0)))
+            if step.entry.index in (3, 4, 15, 17)
+            else step
+            for step in steps
+        ]
+        yield Summary(), lost
+        uncounted = [
+            replace(step, entry=replace(step.entry, judged=step.entry.index % 3 > 0))
+            for step in steps
+        ]
+        yield Summary(), uncounted
+        still = [replace(step, entry=replace(step.entry, t=0.0)) for step in steps]
+        yield Summary(), still
+
+
+@inputs("ekfsim.simulation.driver:driven")
+def ways(random, runs):
+    axes = axes_of(runs)
+    asked = random.normal(size=(50, 6)) * [1, 1, 1, 5, 5, 3]
+    here = random.uniform(-np.pi, np.pi, (*axes, 5)) * [1, 1, 1, 0.01, 0.01]
+    for gains in ((1.0, 1.0, 2.0), (0.0, 0.0, 0.0)):
+        yield here, asked, 0.01 * random.normal(size=(50, *axes, 3)), gains, 0.01
+        yield here, asked[:0], np.zeros((0, *axes, 3)), gains, 0.01
+
+
+@inputs("ekfsim.simulation.driven:written")
+def happened(random, runs):
+    axes, n = axes_of(runs), 6
+    fixes = random.normal(size=(n, *axes, 2))
+    readings = [Reading(Position(0.5, 0.4), fix) for fix in fixes]
+    told, u, truth = TwoWheels(0.5, 0.002), fixes, random.normal(size=(n, *axes, 3))
+    t = np.arange(n) / 7
+    for read in ([[]] * n, [readings[:2], [], [], readings[2:3], [], readings[3:]]):
+        yield Happened(told, u, truth, t, read, fixes), 12
+        yield Happened(told, u, truth, t, read, None), 0

@@ -21,21 +21,23 @@ class Inputs:
 
     make: Callable[[np.random.Generator, int | None], Iterator[tuple[Any, ...]]]
     within: float  # of the largest number of the same run
+    filled: bool  # whether the first argument is there to be changed
 
 
 INPUTS: dict[tuple[str, str], Inputs] = {}
 
 
-def inputs(of, given="", within=1e-12):
+def inputs(of, given="", within=1e-12, filled=False):
     """Mark what makes arguments for the text `of`; `given` is the class of the first argument,
     where the row has one.
 
     within : wider than 1e-12 only where the text itself has no more digits; say why
+    filled : the first argument takes what the others bring, and must be the same afterwards
     """
 
     def mark(make):
         assert (of, given) not in INPUTS, f"{of} {given} has inputs already"
-        INPUTS[of, given] = Inputs(make, within)
+        INPUTS[of, given] = Inputs(make, within, filled)
         return make
 
     return mark
