@@ -327,12 +327,11 @@ def test_a_town_in_a_wide_plain_is_no_crowd_in_one_cell():
     grid = Walls.of(town("houses", 5, 10.0)).grid
 
     def fullest(grid):
-        return max(
-            len(cell) if isinstance(cell, list) else fullest(cell)
-            for cell in grid.lists
-            if cell is not None
-        )
+        *_, cells = grid.plain
+        here = max(len(cell) for cell in cells if cell is not None)
+        return max([here, *map(fullest, grid.crowded.values())])
 
+    assert grid.crowded
     assert fullest(grid) <= 64
 
 

@@ -99,21 +99,20 @@ class Grid:
         return cls(segments, numbers, size, *place, start, wall[order], border, crowded)
 
     @cached_property
-    def lists(self) -> list["list[Wall] | Grid | None"]:
-        """What a single beam finds in each cell: its walls, or the grid of a crowd; None for the
-        border.
+    def plain(self) -> tuple[float, float, float, int, int, float, list[list[Wall] | None]]:
+        """What a single beam looks up, in plain numbers: left, bottom, cell, columns, rows, size,
+        and the walls of each cell, None for a crowded one and for the border.
         """
-        tuples = list(
-            zip(*self.segments.reshape(-1, 4).T.tolist(), self.numbers.tolist(), strict=True)
-        )
+        ends = self.segments.reshape(-1, 4).T.tolist()
+        tuples = list(zip(*ends, self.numbers.tolist(), strict=True))
         listed, bounds = [tuples[k] for k in self.walls.tolist()], self.start.tolist()
-        lists: list[list[Wall] | Grid | None] = [
+        lists: list[list[Wall] | None] = [
             None if outside else listed[a:b]
             for outside, a, b in zip(self.border.tolist(), bounds[:-1], bounds[1:], strict=True)
         ]
-        for c, nested in self.crowded.items():
-            lists[c] = nested
-        return lists
+        for c in self.crowded:
+            lists[c] = None
+        return self.left, self.bottom, self.cell, self.columns, self.rows, self.size, lists
 
 
 def crossed(segments: Array, columns: int, rows: int) -> tuple[Integers, Integers]:

@@ -41,53 +41,41 @@ def follow(grid: Grid, x: float, y: float, dx: float, dy: float) -> tuple[float,
 
 def walk(grid: Grid, x: float, y: float, dx: float, dy: float) -> tuple[float, int]:
     """Range and wall of a beam in the unit direction (dx, dy); nan and −1 where it meets none."""
-    span = grid.size + abs(x) + abs(y)
-    tie, doubt = TIE * span, 4 * REACH * span * span
-    cell, rows = grid.cell, grid.rows
-    u, v = (x - grid.left) / cell, (y - grid.bottom) / cell
+    left, bottom, cell, columns, rows, size, lists = grid.plain
+    u, v = (x - left) / cell, (y - bottom) / cell
     i, j = int(u), int(v)
-    if not (0 < i < grid.columns - 1 and 0 < j < rows - 1):
-        entry = _entry(u, v, dx, dy, grid.columns, rows)
+    if not (0 < i < columns - 1 and 0 < j < rows - 1):
+        entry = _entry(u, v, dx, dy, columns, rows)
         if entry is None:
             return nan, -1
         i, j = entry
     x_step, x_exit, x_cell = _way(u, i, dx, cell, rows)
     y_step, y_exit, y_cell = _way(v, j, dy, cell, 1)
 
-    at, lists = i * rows + j, grid.lists
+    span = size + abs(x) + abs(y)
+    tie, doubt = TIE * span, 4 * REACH * span * span
+    at, aim = i * rows + j, x * dy - y * dx
     best, limit = inf, inf
     found: list[tuple[float, int]] = []
-    while (listed := lists[at]) is not None:
-        if isinstance(listed, Grid):
-            r, wall = walk(listed, x, y, dx, dy)
+    while True:
+        listed = lists[at]
+        if listed is None:  # a crowded cell, or the border
+            if at not in grid.crowded:
+                break
+            r, wall = walk(grid.crowded[at], x, y, dx, dy)
             if r <= limit:
                 found.append((r, wall))
                 best = min(best, r)
                 limit = best + tie
             listed = NOTHING
         for ax, ay, bx, by, wall in listed:
-            ax -= x
-            ay -= y
-            bx -= x
-            by -= y
-            across_a = ax * dy - ay * dx
-            across_b = bx * dy - by * dx
-            sides = across_a * across_b
-            if sides > doubt:
+            if (ax * dy - ay * dx - aim) * (bx * dy - by * dx - aim) > doubt:
                 continue  # both ends on one side
-            along_a, along_b = ax * dx + ay * dy, bx * dx + by * dy
-            area = along_a * across_b - along_b * across_a
-            if sides < -doubt and not -doubt <= area <= doubt:
-                r = area / (across_b - across_a)
-            else:
-                r = _meet(along_a, across_a, along_b, across_b, REACH * span)
-            if not 0 <= r <= limit:
-                continue
-            if r < best - tie:
-                found = []
-            found.append((r, wall))
-            if r < best:
-                best, limit = r, r + tie
+            r = _crossing(ax - x, ay - y, bx - x, by - y, dx, dy, doubt, span)
+            if 0 <= r <= limit:
+                found.append((r, wall))
+                if r < best:
+                    best, limit = r, r + tie
         if x_exit < y_exit:
             if limit < x_exit:
                 break
@@ -101,6 +89,22 @@ def walk(grid: Grid, x: float, y: float, dx: float, dy: float) -> tuple[float, i
     if len(found) < 2:
         return found[0] if found else (nan, -1)
     return best, min(wall for r, wall in found if r <= limit)
+
+
+def _crossing(
+    ax: float, ay: float, bx: float, by: float, dx: float, dy: float, doubt: float, span: float
+) -> float:
+    """Where a beam from the origin meets a wall from a to b: less than 0 or nan where it does not.
+
+    Where the ends lie clearly on both sides, and the origin clearly off the wall, the crossing is
+    all.
+    """
+    across_a, across_b = ax * dy - ay * dx, bx * dy - by * dx
+    along_a, along_b = ax * dx + ay * dy, bx * dx + by * dy
+    area = along_a * across_b - along_b * across_a
+    if across_a * across_b < -doubt and not -doubt <= area <= doubt:
+        return area / (across_b - across_a)
+    return _meet(along_a, across_a, along_b, across_b, REACH * span)
 
 
 def _meet(along_a: float, across_a: float, along_b: float, across_b: float, reach: float) -> float:
