@@ -17,7 +17,10 @@ def shown(text: object) -> str:
     >>> print(shown("red\x1b[31m.yaml"), shown("gnp.exe\u202e"))
     red\x1b[31m.yaml gnp.exe\u202e
     """
-    return UNSHOWN.sub(lambda found: _escape(ord(found[0])), str(text))
+    told = str(text)
+    if told.isascii() and told.replace("\n", "").isprintable():  # as is nearly all, and soon seen
+        return told
+    return UNSHOWN.sub(lambda found: _escape(ord(found[0])), told)
 
 
 def in_a_line(text: object) -> str:

@@ -4,8 +4,10 @@ from ekfsim.diagnostics.nees import OUTSIDE, error, squared_mahalanobis
 from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.ellipse import cone_factor, radius_factor
+from ekfsim.twins import twinned
 
 
+@twinned
 def inside_ellipse(belief: Gaussian, truth: Array, probability: float) -> Booleans:
     """Whether the true position lies inside the ellipse : (…)
 
@@ -16,6 +18,7 @@ def inside_ellipse(belief: Gaussian, truth: Array, probability: float) -> Boolea
     return ~impossible & (value <= radius_factor(probability) ** 2)
 
 
+@twinned
 def inside_cone(belief: Gaussian, truth: Array, probability: float) -> Booleans:
     """Whether the true heading lies inside the cone : (…)"""
     e, variance = error(belief, truth)[..., 2], belief.covariance[..., 2, 2]

@@ -86,6 +86,13 @@ TWINS: tuple[Twin, ...] = (
         form="ekfsim.fast.summary:following",
         when="states that are a pose: inputs that follow one another are taken together",
     ),
+    Twin(
+        of="ekfsim.diagnostics.coverage:inside_ellipse",
+        form="ekfsim.fast.one.told:inside_ellipse",
+        when="one pose, its position clearly uncertain in both directions",
+    ),
+    Twin("ekfsim.diagnostics.coverage:inside_cone", "ekfsim.fast.one.told:inside_cone", "one pose"),
+    Twin("ekfsim.views.words.numbers:cleared", "ekfsim.fast.one.told:cleared", "small matrices"),
     Twin("ekfsim.simulation.driver:driven", "ekfsim.fast.one.driver:driven", "one robot"),
     Twin("ekfsim.simulation.driven:written", "ekfsim.fast.written:written", "any ticks"),
     Twin(

@@ -10,6 +10,7 @@ import numpy as np
 from ekfsim.geometry import Array
 from ekfsim.models.layout import Layout
 from ekfsim.models.protocols import Quantity
+from ekfsim.twins import twinned
 
 NOISE = 1e-15  # what is smaller is a rounding error of metres, radians or their squares
 GRAIN = 1e-11  # m, degrees: of a pose, what is smaller is what sums of many steps make of 0
@@ -175,23 +176,31 @@ def matrix(A: Array) -> str:
     [0 1e-06]]
     """
     rows, columns = A.shape
-    A = np.where(np.abs(A) < ROUNDING * _beside(A), 0.0, A)
     lines = [
         f"[{' '.join([*map(number, row[:MANY]), *(['…'] if columns > MANY else [])])}]"
-        for row in A[:MANY].tolist()
+        for row in cleared(A, ROUNDING)[:MANY]
     ]
     told = "\n".join([*lines, "…"] if rows > MANY else lines)
     return f"[{told}]\n"
 
 
-def _beside(A: Array) -> Array:
+@twinned
+def cleared(A: Array, rounding: float) -> list[list[float]]:
+    """The rows of a matrix, 0 in place of each number that is less than this of what it is small
+    beside.
+    """
+    rows: list[list[float]] = np.where(np.abs(A) < rounding * _beside(A, rounding), 0.0, A).tolist()
+    return rows
+
+
+def _beside(A: Array, rounding: float) -> Array:
     """What each number of a matrix is small beside: of a covariance σᵢ σⱼ, else the largest of its
     row and column.
     """
     if A.shape[0] == A.shape[1] and (A.diagonal() >= 0).all():
         σ = np.sqrt(A.diagonal())
         σσ: Array = np.outer(σ, σ)
-        if (np.abs(A - A.T) <= ROUNDING * σσ).all():
+        if (np.abs(A - A.T) <= rounding * σσ).all():
             return σσ
     size: Array = np.nan_to_num(np.abs(A))
     largest: Array = np.maximum(
