@@ -21,6 +21,13 @@ def inside_ellipse(belief: Gaussian, truth: Array, probability: float) -> Boolea
 @twinned
 def inside_cone(belief: Gaussian, truth: Array, probability: float) -> Booleans:
     """Whether the true heading lies inside the cone : (…)"""
-    e, variance = error(belief, truth)[..., 2], belief.covariance[..., 2, 2]
+    return within_cone(error(belief, truth)[..., 2], belief.covariance[..., 2, 2], probability)
+
+
+def within_cone(e: Array, variance: Array, probability: float) -> Booleans:
+    """Whether an error of the heading lies inside the cone : (…)
+
+    e² ≤ k² σ_θ²
+    """
     squared_reach = cone_factor(probability) ** 2 * variance
     return (e * e <= squared_reach) | ((variance <= 0) & (abs(e) <= OUTSIDE))

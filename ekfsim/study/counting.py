@@ -7,7 +7,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from ekfsim.diagnostics.coverage import inside_cone
+from ekfsim.diagnostics.coverage import within_cone
 from ekfsim.diagnostics.nees import OUTSIDE, ROUNDING, error, squared_mahalanobis
 from ekfsim.diagnostics.verdict import LOST
 from ekfsim.filters.belief import Gaussian
@@ -99,8 +99,10 @@ class Ends(NamedTuple):
         off = off | ~np.isfinite(square) | ~np.isfinite(e[..., :2]).all(axis=-1)
         drawn = (rank == 2) | off
         inside = drawn & ~off & (square <= radius_factor(COVERAGE) ** 2)
-        unsure = (P[..., 2, 2] > ROUNDING**2) | ~(abs(e[..., 2]) <= OUTSIDE)
-        return cls(nees, e, inside, drawn, unsure & inside_cone(pose, truth, COVERAGE), unsure)
+        eθ, variance = e[..., 2], P[..., 2, 2]
+        unsure = (variance > ROUNDING**2) | ~(abs(eθ) <= OUTSIDE)
+        in_cone = unsure & within_cone(eθ, variance, COVERAGE)
+        return cls(nees, e, inside, drawn, in_cone, unsure)
 
     @classmethod
     def unknown(cls, runs: int) -> Self:
@@ -128,9 +130,9 @@ class Ends(NamedTuple):
 
 def counted(ends: Ends) -> AtSteps:
     """What is counted of one step : () each"""
-    nees, squares = ends.nees, ends.e * ends.e
+    nees, known, squares = ends.nees, ends.nees.known, ends.e * ends.e
     return AtSteps(
-        judged=count(nees.known | nees.impossible),
+        judged=count(known | nees.impossible),
         impossible=count(nees.impossible),
         above_50=count(nees.above(0.5)),
         above_95=count(nees.above(0.95)),
@@ -139,9 +141,9 @@ def counted(ends: Ends) -> AtSteps:
         ellipse_runs=count(ends.drawn),
         in_cone=count(ends.in_cone),
         cone_runs=count(ends.unsure),
-        nees_runs=count(nees.known),
-        nees_dof=np.array(np.sum(nees.dof, where=nees.known)),
-        nees_sum=total(nees.value, nees.known),
+        nees_runs=count(known),
+        nees_dof=np.array(np.sum(nees.dof, where=known)),
+        nees_sum=total(nees.value, known),
         position_square=total(squares[..., :2]),
         heading_square=total(squares[..., 2]),
     )

@@ -2,6 +2,8 @@
 eigenvalues.
 """
 
+import functools
+
 import numpy as np
 
 from ekfsim.diagnostics.nees import OUTSIDE, ROUNDING, error
@@ -48,12 +50,17 @@ def squared_mahalanobis(e: Array, P: Array) -> tuple[Array, Integers, Booleans] 
             value, clear = _full_rank(front(e, 1), front(P))
     rank, impossible = np.full(len(e), n), np.zeros(len(e), bool)
     for judged in (singular, as_written(squares)):
-        rest = np.flatnonzero(~clear)
-        if not rest.size:
+        if clear.all():
             break
+        rest = those(~clear)
         value[rest], rank[rest], impossible[rest] = judged(e[rest], P[rest])
         clear[rest] = rank[rest] != UNCLEAR
     return value, rank, impossible
+
+
+def those(runs: Booleans) -> slice | Integers:
+    """An index of these runs: that of all of them takes no copy."""
+    return slice(None) if runs.all() else np.flatnonzero(runs)
 
 
 def _full_rank(e: Array, P: Array) -> tuple[Array, Booleans]:
@@ -92,40 +99,47 @@ def singular(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
     """
     n = e.shape[-1]
     e, P = front(e, 1), front(P)
-    variance = P[range(n), range(n)]
+    variance = P.diagonal().T
     there = variance > ROUNDING**2
     pairs = [(i, j) for i in range(n) for j in range(i)]
+    value, rank, outside = np.zeros(e.shape[1]), np.full(e.shape[1], UNCLEAR), np.zeros(e.shape[1])
     with np.errstate(all="ignore"):
-        apart = np.array(
-            [
-                np.where(
-                    there[i] & there[j], 1 - P[i, j] * (P[i, j] / variance[i]) / variance[j], 0
-                )
-                for i, j in pairs
-            ]
-        )
-        minors = apart.sum(axis=0)
-        value, outside = _line(e, P, variance, there)
-        rank = np.where(minors < NONE, there.any(axis=0), UNCLEAR)
-        widest = apart.argmax(axis=0)
-        for pair, (i, j) in enumerate(pairs):
-            some = np.flatnonzero((widest == pair) & (minors > PLANE))
-            if some.size and n == 3:
+        apart = [_apart(P[i, j], variance[i], variance[j]) for i, j in pairs]
+        minors = functools.reduce(np.add, apart)
+        if (line := minors < NONE).any():
+            some = those(line)
+            rank[some] = there[:, some].any(axis=0)
+            value[some], outside[some] = _line(e[:, some], P[:, :, some], there[:, some])
+        if n == 3 and (clear := minors > PLANE).any():
+            widest = np.where(clear, np.argmax(apart, axis=0), UNCLEAR)
+            for pair in np.unique(widest[clear]).tolist():
+                (i, j), some = pairs[pair], those(widest == pair)
                 k = 3 - i - j
                 found = _plane(e[:, some], P[:, :, some], there[k, some], i, j, k)
                 value[some], outside[some], third = found
-                least = apart[pair, some] * third / minors[some]  # λ₃
+                least = apart[pair][some] * third / minors[some]  # λ₃
                 rank[some] = np.where(abs(least) < NONE, 2, UNCLEAR)
     return value, rank, outside > OUTSIDE
 
 
-def _line(e: Array, P: Array, variance: Array, there: Booleans) -> tuple[Array, Array]:
-    """eᵀ P⁺ e of P = B Bᵀ, and the length of what of e is not along B : (N,) each"""
-    most = variance.argmax(axis=0)
-    column = np.take_along_axis(P, most[None, None], axis=1)[:, 0]
-    B = np.where(there, column / np.sqrt(np.take_along_axis(variance, most[None], axis=0)), 0.0)
-    y = np.where(there.any(axis=0), (B * e).sum(axis=0) / (B * B).sum(axis=0), 0.0)
-    return y * y, np.sqrt(((e - y * B) ** 2).sum(axis=0))
+def _apart(b: Array, a: Array, d: Array) -> Array:
+    """1 − ρ² of two entries with the variances a and d and the covariance b, 0 where one of them
+    has none : (N,)
+    """
+    return np.where((a > ROUNDING**2) & (d > ROUNDING**2), 1 - b / a * b / d, 0.0)
+
+
+def _line(e: Array, P: Array, there: Booleans) -> tuple[Array, Array]:
+    """eᵀ P⁺ e of P = B Bᵀ, and the length of what of e is not along B : (N,) each
+
+    B Bᵀ e / BᵀB = P e / tr P is the part of e along B.
+    """
+    inside = np.where(there, e, 0.0)
+    total = np.where(there, P.diagonal().T, 0.0).sum(axis=0)
+    along = np.einsum("ijk,jk->ik", P, inside)
+    along = np.where(there, along / total, 0.0)
+    value = np.where(there.any(axis=0), (inside * along).sum(axis=0) / total, 0.0)
+    return value, np.sqrt(((e - along) ** 2).sum(axis=0))
 
 
 def _plane(
