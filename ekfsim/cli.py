@@ -340,6 +340,7 @@ def study(
     from ekfsim.files.scenes import load_study
     from ekfsim.files.scenes.filter_checks import refuse_unread
     from ekfsim.study.doing import unkept
+    from ekfsim.study.engines import Paced
     from ekfsim.study.expectation import promised, verified
     from ekfsim.study.plan import Plan
     from ekfsim.views.study.promises import broken, verify
@@ -350,14 +351,16 @@ def study(
     plan = Plan.of(load_study.asked(**asked))
     refuse_unread(plan.settings, plan.filters)
     warn(plan.warnings)
-    plan, engine = promised(plan, asked["runs"]) if expect else plan, engine_of(workers, cluster)
+    plan = promised(plan, asked["runs"]) if expect else plan
+    engine = Paced(engine_of(workers, cluster))
     if out is None:
         with blocks_bar(plan.blocks * len(plan.cases)) as done:
             results = unkept(plan, engine, done)
     else:
         results = study_into(plan, engine, out, resume, force)
     if not expect:
-        click.echo(shown(conclude(plan, results, width())), nl=False)
+        pace = engine.pace if plan.request.fast else 0.0
+        click.echo(shown(conclude(plan, results, width(), pace)), nl=False)
         if out is None:
             say(
                 "nothing of this is kept; -o FOLDER writes it with tables of every step, "

@@ -9,6 +9,7 @@ import os
 import pickle
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -45,6 +46,30 @@ def serial(work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
     """One block after another, in this process."""
     for task in tasks:
         yield task, work.block(task.case)(task.first, task.runs)
+
+
+class Paced:
+    """An engine, and how many runs it does a second."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._runs = 0
+        self._began = self._last = time.monotonic()
+
+    def __call__(self, work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
+        """What becomes of each task, as the engine has it."""
+        self._began = time.monotonic()
+        for task, made in self._engine(work, tasks):
+            self._runs += task.runs
+            self._last = time.monotonic()
+            yield task, made
+
+    @property
+    def pace(self) -> float:
+        """Runs a second, the start of workers and of compiled code included; 0 where none was
+        done.
+        """
+        return self._runs / (self._last - self._began) if self._runs else 0.0
 
 
 def do_packed(packed: bytes, first: int, runs: int, version: str) -> Any:

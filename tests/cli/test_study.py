@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -644,8 +645,13 @@ def test_a_terminal_sees_how_far_it_is_and_how_many_are_lost_so_far():
 
 def test_a_fast_study_says_the_same(place):
     pytest.importorskip("numba")
+    told = []
     for out, more in (("plain", ()), ("fast", ("--fast",))):
-        assert ekfsim("study", "short.yaml", "--runs", 1500, *more, "-o", out).status == 0
+        done = ekfsim("study", "short.yaml", "--runs", 1500, *more, "-o", out)
+        assert done.status == 0
+        told.append(done.out.splitlines()[0])
+    assert told[0].endswith("at the last step")
+    assert re.fullmatch(re.escape(told[0]) + r"; [1-9]\d* runs a second", told[1])
     (plain,), (fast,) = rows("plain/summary.csv"), rows("fast/summary.csv")
     for name, value in plain.items():
         assert fast[name] == value or float(fast[name]) == pytest.approx(float(value), rel=1e-9)

@@ -47,17 +47,17 @@ HEAD = (
 MOST_RUNS = 10**9  # that are worth being told of
 
 
-def conclude(plan: Plan, results: Sequence[Result], width: int | None = None) -> str:
-    """All that is printed when a study is over. width : of the terminal; None where there is
-    none
+def conclude(
+    plan: Plan, results: Sequence[Result], width: int | None = None, pace: float = 0.0
+) -> str:
+    """All that is printed when a study is over.
+
+    width : of the terminal; None where there is none; pace : runs a second, 0 where it is not asked
     """
     request = plan.request
+    asked = f"{in_a_line(request.commands_name)}: {request.runs} runs of seed {plan.seed}"
     lines = [
-        *folded(
-            f"{in_a_line(request.commands_name)}: {request.runs} runs of seed {plan.seed}, at the "
-            f"last step",
-            width,
-        ),
+        *folded(f"{asked}, at the last step{paced(pace)}", width),
         *folded(
             "(RMSE in m and degrees; NEES above quantiles of χ², and the other shares, in %)", width
         ),
@@ -74,6 +74,15 @@ def conclude(plan: Plan, results: Sequence[Result], width: int | None = None) ->
         lines += [line for told in evidence(Verdict(result)) for line in folded(f"  {told}", width)]
         lines += [f"  {line}" for line in plays(plan, result)]  # whole, to be copied
     return "\n".join(lines) + "\n"
+
+
+def paced(pace: float) -> str:
+    """How many runs were done a second, in two digits.
+
+    >>> paced(118432.0), paced(0.0)
+    ('; 120000 runs a second', '')
+    """
+    return f"; {float(format(pace, '.2g')):.0f} runs a second" if pace else ""
 
 
 def _row(result: Result) -> list[str]:
