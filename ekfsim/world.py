@@ -4,6 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
+from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.raycast.walls import BOUNDARY as BOUNDARY
@@ -136,6 +139,19 @@ class World:
     def told_instruments(self) -> tuple[Instrument, ...]:
         """The instruments as the filter is told."""
         return self.instruments if self.told.instruments is None else self.told.instruments
+
+    def first_belief(self, reading: DocumentReading) -> Gaussian:
+        """What the filter is told of the start of a simulation: the document's own; the world file
+        may say how uncertain its pose is.
+        """
+        told = self.told
+        if self.told_robot is None:
+            return Gaussian(told.start, np.diag(told.sigma**2))
+        P = self.told_robot.first_covariance(reading).copy()
+        if np.any(told.sigma):
+            places = np.array(self.layout.places)
+            P[places[:, None], places] = np.diag(told.sigma**2)
+        return Gaussian(self.layout.state(told.start), P)
 
     def targets(self, reading: DocumentReading) -> list[tuple[Instrument, Target]]:
         """Everything that the instruments may read, with the sensors as the filter is told."""

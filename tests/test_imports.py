@@ -21,10 +21,10 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"raycast"},
     {"models"},
     {"filters"},
-    {"systems"},
-    {"world"},
     {"commands"},
     {"records"},
+    {"systems"},  # below the records: a system says which of them its authors' filter is given
+    {"world"},
     {"scene"},
     {"diagnostics"},
     {"provenance"},

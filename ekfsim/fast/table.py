@@ -49,6 +49,7 @@ TWINS: tuple[Twin, ...] = (
     Twin(SENSOR, "ekfsim.fast.many.sensors:laser_by_reading", ANY, "LaserByReading"),
     Twin(SENSOR, "ekfsim.fast.many.sensors:ultrasonic", ANY, "UltrasonicBeam"),
     Twin(SENSOR, "ekfsim.fast.many.sensors:infrared", ANY, "InfraredBeam"),
+    Twin(SENSOR, "ekfsim.fast.many.sensors:frozen", "as many x as it holds", "Frozen"),
     Twin(SENSOR, "ekfsim.fast.one.sensors:marker_angles", ALONE, "MarkerAngles"),
     Twin(f"{MARKER}.residual", "ekfsim.fast.one.sensors:marker_residual", ALONE),
     Twin(f"{AMBIGUITY}:sighting", "ekfsim.fast.one.ambiguity:sighting", ALONE),

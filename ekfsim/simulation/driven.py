@@ -19,11 +19,10 @@ from ekfsim.simulation.driver import Driver
 from ekfsim.simulation.past import Past
 from ekfsim.systems.drives import Drive
 from ekfsim.systems.faults import SOUND, SensorFaults
-from ekfsim.systems.instruments import Instrument, Pylon, Ranges, Target
-from ekfsim.systems.robots import PylonCart
+from ekfsim.systems.instruments import Instrument, Seen, Target
+from ekfsim.systems.robots import Gps
 from ekfsim.twins import twinned
 
-GPS_SIGMA, GPS_PERIOD = 0.4, 2.0  # m, s: of the pylon cart's GPS, which is recorded and not used
 SOON = 1e-9  # of a period: what rounding makes of an instant
 TICKS_AT_ONCE = 8_000  # of one run: the first picture does not wait for the last tick
 # ticks times runs that are worked out together: one by one is slow, all at once takes much memory
@@ -54,11 +53,8 @@ def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
     driver = Driver(
         course, wanted, start, robot.rate, _process(motion, world.layout), draws.stream(DISTURBANCE)
     )
-    inputs, gps, watches = (
-        draws.stream(INPUT),
-        _Gps(draws.stream(FIX)),
-        list(_watches(scene, draws)),
-    )
+    inputs, watches = draws.stream(INPUT), list(_watches(scene, draws))
+    gps = None if robot.gps is None else _Fixes(robot.gps, draws.stream(FIX))
     past = Past(start, max((watch.faults.delay for watch in watches), default=0.0) * robot.rate)
     yield Entry(0, None, start, t=0.0)
     index = 0
@@ -67,7 +63,7 @@ def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
         ideal = robot.ideal(moved)
         u = world.drive_faults.misread(ideal, robot.faults) + _noise(motion.M(ideal), inputs)
         past.goes_on(truth)
-        fixes = gps.fixes(ticks, truth, robot.rate) if isinstance(robot, PylonCart) else None
+        fixes = None if gps is None else gps.fixes(ticks, truth, robot.rate)
         readings = _readings(watches, ticks, past, u, robot.rate, world.layout)
         yield from written(
             Happened(told, u, truth, (ticks + 1) / robot.rate, readings, fixes), index
@@ -117,11 +113,8 @@ class _Watch(NamedTuple):
         not in view.
         """
         h, _, R = self.true.sensor.linearize(x)
-        bias: Array = np.broadcast_to(self.faults.bias or (0.0,), h.shape)
-        # the lidar's own noise, then turned by the yaw as it was measured
-        if isinstance(self.instrument, Pylon):
-            h, bias = _turned(h, u[..., 2] - pose[..., 2]), _turned(bias, u[..., 2])
-            R = np.broadcast_to(np.eye(2) * self.instrument.sigma**2, (*h.shape, 2))
+        bias = np.broadcast_to(self.faults.bias or (0.0,), h.shape)
+        h, bias, R = self.instrument.read(Seen(h, bias, R), pose, u)
         noise = _noise(np.nan_to_num(R), self.noise)
         if self.outliers is not None:
             struck = self.outliers.uniforms(len(noise)) < self.faults.outliers
@@ -129,15 +122,8 @@ class _Watch(NamedTuple):
         z = h + bias + noise
         for i in angles(self.true.sensor.outputs):
             z[..., i] = wrap(z[..., i])
-        if isinstance(self.instrument, Ranges) and isinstance(self.believed, Ranges):
-            z = self.instrument.as_corrected_by(self.believed, z)
+        z = self.instrument.as_given(z, self.believed)
         return np.where(self.instrument.sees(self.true, pose)[..., None], z, np.nan)
-
-
-def _turned(z: Array, angle: Array) -> Array:
-    """Vectors (…, 2) turned counter-clockwise : (…, 2)"""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.stack([c * z[..., 0] - s * z[..., 1], s * z[..., 0] + c * z[..., 1]], axis=-1)
 
 
 def _watches(scene: Scene, draws: Draws) -> Iterator[_Watch]:
@@ -169,18 +155,18 @@ def _readings(
     return read
 
 
-class _Gps:
-    """Fixes of the pylon cart's GPS, each held until the next."""
+class _Fixes:
+    """Fixes of a receiver that is recorded and not used, each held until the next."""
 
-    def __init__(self, stream: Stream) -> None:
-        self._stream = stream
+    def __init__(self, gps: Gps, stream: Stream) -> None:
+        self._gps, self._stream = gps, stream
         self._held: Array | None = None
 
     def fixes(self, ticks: Integers, truth: Array, rate: float) -> Array:
         """The newest fix at the end of each tick : (T, …, 2) m"""
-        fresh = _due(1 / GPS_PERIOD, ticks - 1, rate)
+        fresh = _due(1 / self._gps.period, ticks - 1, rate)
         n = self._stream.normals(int(np.count_nonzero(fresh)), 2)
-        taken = truth[fresh][..., :2] + GPS_SIGMA * n
+        taken = truth[fresh][..., :2] + self._gps.sigma * n
         known = taken if self._held is None else np.concatenate([self._held[None], taken])
         fixes: Array = known[np.cumsum(fresh) - (self._held is None)]
         self._held = fixes[-1]

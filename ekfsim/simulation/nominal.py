@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ekfsim.commands import Command, Move, expand
+from ekfsim.errors import UsageError
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.motions.move_turn import MoveTurn
@@ -15,11 +16,19 @@ from ekfsim.simulation.driver import ticks_of
 from ekfsim.systems.drives import Course
 from ekfsim.systems.robots import Robot
 
+NO_PLAN = (
+    "a recording does not tell the way that was planned, which it is linearised about; take "
+    "kf or ekf"
+)
+
 
 def nominal_trajectory(scene: Scene) -> Array:
-    """States before, between and after all motion inputs of a scene that is simulated : (T + 1,
-    n)
+    """States before, between and after all motion inputs of a scene that is simulated : (T + 1, n)
+
+    Raises UsageError where the scene was recorded.
     """
+    if scene.log is not None:
+        raise UsageError(f"{scene.commands_source}: {scene.filter}: {NO_PLAN}")
     world, robot = scene.world, scene.world.told_robot
     if world.robot is None or robot is None:
         return _commanded(scene.commands, world.told.start)

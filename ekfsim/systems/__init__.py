@@ -25,7 +25,7 @@ is where their equations stand:
          2 models/sensors/position.py · 3, 4 and the integrals models/motions/wheel_speeds.py
          5 to 7 filters/ekf.py
          as its authors have coded it: WheelSpeedsAsWritten, filters/listing.py,
-         simulation/interpolation.py
+         systems/interpolation.py
     004  pylon: King & Johnson, Lab 3: Extended Kalman Filter for Localization
          1 to 4 filters/ekf.py · 5 to 7, and R_t of 10 models/motions/planar_imu.py
          8, 9, and Q_t of 10 models/sensors/offset.py
@@ -35,8 +35,6 @@ is where their equations stand:
 Two more systems read published logs, with models that no document prints: landmarks (MRCLAM) and
 ranges (Plaza).
 """
-
-from dataclasses import dataclass
 
 from ekfsim.systems.instruments import (
     Bearings,
@@ -59,28 +57,18 @@ from ekfsim.systems.robots import (
     Pioneer,
     PylonCart,
     RangingMower,
-    Robot,
 )
+from ekfsim.systems.watched import Documented, System
 
-
-@dataclass(frozen=True)
-class System:
-    """One of the documents' systems: its robot and its instruments, each default the document's
-    number.
-    """
-
-    robot: Robot
-    instruments: tuple[Instrument, ...]
-
-
-SYSTEMS: dict[str, System] = {
-    "mower": System(Mower(), (Markers(),)),
-    "pioneer": System(Pioneer(), (Ultrasonic(), Infrared())),
-    "gnss": System(GnssMower(), (Gnss(),)),
-    "pylon": System(PylonCart(), (Pylon(),)),
-    "landmarks": System(IRobotCreate(), (RangeBearings(),)),
-    "ranges": System(RangingMower(), (Ranges(),)),
+SYSTEMS: dict[str, Documented] = {
+    "mower": Documented(Mower(), (Markers(),), listed=True),
+    "pioneer": Documented(Pioneer(), (Ultrasonic(), Infrared())),
+    "gnss": Documented(GnssMower(), (Gnss(),), listed=True, fix_per_input=True),
+    "pylon": Documented(PylonCart(), (Pylon(),)),
+    "landmarks": Documented(IRobotCreate(), (RangeBearings(),)),
+    "ranges": Documented(RangingMower(), (Ranges(),)),
 }
+CLASSROOM = System()
 INSTRUMENTS: dict[str, type[Instrument]] = {
     kind.name: kind
     for kind in (
@@ -97,3 +85,8 @@ INSTRUMENTS: dict[str, type[Instrument]] = {
         Gyro,
     )
 }
+
+
+def system_of(name: str) -> System:
+    """How the system of that name is watched."""
+    return SYSTEMS.get(name, CLASSROOM)

@@ -55,6 +55,14 @@ class Target(NamedTuple):
     place: tuple[float, float] | None = None  # m, where it stands; None for what has no place
 
 
+class Seen(NamedTuple):
+    """A reading of a target before its noise is drawn. Arrays carry leading axes (…)."""
+
+    h: Array  # (…, k) what would be read without noise
+    bias: Array  # (…, k)
+    R: Array  # (…, k, k) covariance of the noise
+
+
 class Instrument(Protocol):
     """What a simulation and a recorded log need to know of an instrument."""
 
@@ -71,6 +79,20 @@ class Instrument(Protocol):
 
     def sees(self, target: Target, pose: Array) -> Booleans:
         """Whether a target is in view from a true pose (…, 3) : (…)"""
+
+    def read(self, seen: Seen, pose: Array, u: Array) -> Seen:
+        """What it makes of a target that it sees from true poses (…, 3), where the robot measures
+        its motion as u (…, m).
+        """
+
+    def as_given(self, z: Array, believed: "Instrument") -> Array:
+        """Readings (…, k) as a filter is given them that believes this of the instrument."""
+
+
+def turned(z: Array, angle: Array) -> Array:
+    """Vectors (…, 2) turned counter-clockwise : (…, 2)"""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([c * z[..., 0] - s * z[..., 1], s * z[..., 0] + c * z[..., 1]], axis=-1)
 
 
 class _Looking:
@@ -92,6 +114,14 @@ class _Looking:
             middle, half = (start + end) / 2, (end - start) / 2
             inside |= np.abs(wrap(bearing - middle)) <= half
         return near & inside
+
+    def read(self, seen: Seen, pose: Array, u: Array) -> Seen:
+        """What it makes of a target that it sees: nothing else."""
+        return seen
+
+    def as_given(self, z: Array, believed: Instrument) -> Array:
+        """Readings as a filter is given them: as they are."""
+        return z
 
 
 @dataclass(frozen=True)
@@ -195,10 +225,10 @@ class Ranges(_Looking):
         """The range that a raw reading stands for, in m."""
         return (raw - self.bias) / self.scale
 
-    def as_corrected_by(self, believed: "Ranges", z: Array) -> Array:
-        """Readings of this radio where they are corrected with the scale and bias of another
-        one.
-        """
+    def as_given(self, z: Array, believed: Instrument) -> Array:
+        """Readings corrected by the scale and the bias that the radio is believed to have."""
+        if not isinstance(believed, Ranges):
+            return z
         if (self.scale, self.bias) == (believed.scale, believed.bias):
             return z
         return (self.scale * z + self.bias - believed.bias) / believed.scale
@@ -242,6 +272,11 @@ class Pylon(_Looking):
                 mark.x, mark.y, self.sigma, self.sigma, around.layout, yaw_sigma
             )
             yield Target("pylon", sensor, (mark.x, mark.y))
+
+    def read(self, seen: Seen, pose: Array, u: Array) -> Seen:
+        """What the lidar sees with its own noise, turned by the yaw as it was measured."""
+        h, bias = turned(seen.h, u[..., 2] - pose[..., 2]), turned(seen.bias, u[..., 2])
+        return Seen(h, bias, np.broadcast_to(np.eye(2) * self.sigma**2, (*h.shape, 2)))
 
 
 @dataclass(frozen=True)

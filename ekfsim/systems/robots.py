@@ -42,6 +42,13 @@ WHEELS: Entries = MappingProxyType({"left_scale": 0, "right_scale": 1})
 WAY_AND_TURN: Entries = MappingProxyType({"distance_scale": 0, "turn_scale": 1})
 
 
+class Gps(NamedTuple):
+    """A receiver of satellites whose fixes are recorded, and which no filter is given."""
+
+    sigma: float  # m, on each axis
+    period: float  # s
+
+
 class Robot(Protocol):
     """What a filter and a simulation need to know of a robot."""
 
@@ -49,6 +56,7 @@ class Robot(Protocol):
     readings: ClassVar[tuple[DocumentReading, ...]]
     # which of DriveFaults it may have, each with the entry of u that it is about
     faults: ClassVar[Entries]
+    gps: ClassVar[Gps | None]
 
     @property
     def rate(self) -> float:
@@ -85,6 +93,7 @@ class Mower:
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ("coded",)
     faults: ClassVar[Entries] = MappingProxyType({**WHEELS, "gyro_bias": 2})
+    gps: ClassVar[Gps | None] = None
     rate: float = 100.0
     width: float = 1.41  # m, b of eq. 20, as the listing has it
     wheel_sigma: float = 0.01  # m, of each wheel's way; the listing's varIn = 1e-4
@@ -124,6 +133,7 @@ class Pioneer:
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
     faults: ClassVar[Entries] = WHEELS
+    gps: ClassVar[Gps | None] = None
     rate: float = 10.0
     width: float = 0.38  # m, W of eq. 33; the document measures it and does not print it
     wheel_ratio: float = 0.05  # σ of a wheel's way, per m
@@ -170,6 +180,7 @@ class GnssMower:
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ("coded",)
     faults: ClassVar[Entries] = WHEELS
+    gps: ClassVar[Gps | None] = None
     rate: float = 200.0
     half_track: float = 0.27  # m, R of the document
     speed_density: float = 0.10  # m/s per √Hz
@@ -202,6 +213,7 @@ class PylonCart:
     faults: ClassVar[Entries] = MappingProxyType(
         {"forward_bias": 0, "lateral_bias": 1, "yaw_bias": 2}
     )
+    gps: ClassVar[Gps | None] = Gps(0.4, 2.0)
     rate: float = 10.0
     forward_sigma: float = math.sqrt(1.8373)  # m/s², R_t of eq. 10
     lateral_sigma: float = math.sqrt(1.1991)  # m/s²
@@ -238,6 +250,7 @@ class IRobotCreate:
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
     faults: ClassVar[Entries] = WAY_AND_TURN
+    gps: ClassVar[Gps | None] = None
     rate: float = 100.0
     distance_density: float = 0.02  # m per √s
     heading_density: float = 0.10  # rad per √s
@@ -262,6 +275,7 @@ class RangingMower:
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
     faults: ClassVar[Entries] = WAY_AND_TURN
+    gps: ClassVar[Gps | None] = None
     rate: float = 10.0
     distance_density: float = 0.05  # m per √s
     heading_density: float = 0.01  # rad per √s

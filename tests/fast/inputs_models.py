@@ -11,6 +11,7 @@ from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.motions.unicycle import Unicycle
 from ekfsim.models.motions.wheel_speeds import WheelSpeeds
 from ekfsim.models.motions.wheels import GyroWheels
+from ekfsim.models.sensors.frozen import Frozen
 from ekfsim.models.sensors.infrared import InfraredBeam
 from ekfsim.models.sensors.landmarks import MarkerAngles
 from ekfsim.models.sensors.laser import Laser
@@ -120,6 +121,15 @@ def marker_angles(random, runs):
             at_it = x.copy()
             at_it[..., sensor.layout.position] = sensor.x, sensor.y
             yield sensor, at_it
+
+
+@inputs(SENSOR, "Frozen", within=SHORT)
+def frozen_sensors(random, runs):
+    axes = axes_of(runs)
+    at = random.uniform(1, 7, (*axes, 3))
+    for sensor in (Laser(WALLS[0], 0.3, 0.05), next(markers())[0]):
+        yield Frozen(sensor, at), at + 1
+        yield Frozen(sensor, at), random.uniform(1, 7, (*axes, 7, 3))  # sigma points
 
 
 @inputs("ekfsim.models.sensors.landmarks:MarkerAngles.residual")

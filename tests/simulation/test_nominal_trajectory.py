@@ -12,7 +12,7 @@ from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
 from ekfsim.errors import UsageError
 from ekfsim.figures.crowd import crowd_of
 from ekfsim.files.scenes.load import load_scene
-from ekfsim.localization import filter_of, play
+from ekfsim.localization import filter_of, first_belief, play
 from ekfsim.records import Control, Log
 from ekfsim.simulation import simulate
 from ekfsim.simulation.nominal import nominal_trajectory
@@ -107,7 +107,10 @@ def test_from_an_unsure_start_it_does_better_than_the_ekf_on_the_pioneer_s_squar
 def test_a_recording_tells_no_plan():
     made = driven("pioneer")
     logged = replace(
-        made, drive=None, log=Log(tuple(simulate(made)), None), commands_source="my.yaml"
+        made,
+        drive=None,
+        log=Log(tuple(simulate(made)), first_belief(made)),
+        commands_source="my.yaml",
     )
     with pytest.raises(
         UsageError,

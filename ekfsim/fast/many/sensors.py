@@ -4,6 +4,7 @@ import numpy as np
 
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.soa import back, front, lanes
+from ekfsim.models.sensors.frozen import Frozen
 from ekfsim.models.sensors.infrared import InfraredBeam
 from ekfsim.models.sensors.laser import ALONG, Laser
 from ekfsim.models.sensors.laser_by_reading import LaserByReading
@@ -61,6 +62,11 @@ def infrared(sensor: InfraredBeam, x: Array) -> Linearized:
     H = np.where(lit[..., None], -sensor.reflectance * sensor.gain / r[..., None] * H_r, 0.0)
     R = np.where(lit, sensor.sigma**2, np.nan)[..., None]
     return np.where(lit, intensity, np.nan), H, R
+
+
+def frozen(sensor: Frozen, x: Array) -> Linearized | None:
+    """Twin of h, H and R of `Frozen`: by the twin of the sensor that it holds."""
+    return sensor.sensor.linearize(sensor.at) if sensor.at.shape == x.shape else None
 
 
 def _normal(walls: Walls, wall: Integers) -> Array:

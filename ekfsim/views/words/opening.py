@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any
 
-from ekfsim.filters import FILTERS
-from ekfsim.filters.pf import PF
+from ekfsim.filters.choice import kind_of
+from ekfsim.filters.tuning import reads
 from ekfsim.provenance import told_in_a_line
 from ekfsim.scene import Scene
 from ekfsim.views.words.numbers import number, pose
@@ -33,9 +33,9 @@ def opening(scene: Scene) -> str:
     document's reading.
     """
     told = [told_in_a_line(scene), *filter(None, [plain(scene.description)]), "", *_numbers(scene)]
-    if remark := FILTERS[scene.filter].remark:
+    if remark := kind_of(scene.filter).remark:
         told.append(f"The filter {scene.filter}: {remark}")
-    if FILTERS[scene.filter] is PF:
+    if reads(scene.filter, "particles"):
         told.append(f"The filter {scene.filter}: {scene.tuning.particles} particles")
     if scene.world.perfect_beam and scene.filter in LINEARISED:
         told.append(PERFECT)

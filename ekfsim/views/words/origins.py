@@ -11,8 +11,8 @@ from ekfsim.filters.nominal import NominalKF
 from ekfsim.filters.pf import PF
 from ekfsim.filters.ukf import UKF
 from ekfsim.filters.ukf_augmented import AugmentedUKF
-from ekfsim.localization import by_listing
 from ekfsim.scene import Scene
+from ekfsim.systems import system_of
 
 ASSIGNMENT = {"F": "J_x", "G": "J_u", "M": "P_u", "H": "J_H", "R": "C_v"}  # its names of them
 
@@ -101,7 +101,7 @@ def origins(scene: Scene) -> Origins:
     """Those of the filter that watches."""
     kind = FILTERS.get(scene.filter)
     own = A_FILE if kind is None else BY_FILTER.get(kind, A_FILE)
-    if by_listing(scene):
+    if system_of(scene.world.system).by_listing(scene.filter, scene.reading):
         before = "where the robot stood before the last motion"
         own = replace(own, predicted=f"h(x), x {before}", derivatives=f"H {before}")
     if scene.tuning.range_variance == "reading":

@@ -15,7 +15,7 @@ from ekfsim.models.layout import SPEED_POSE
 from ekfsim.models.sensors.position import Position
 from ekfsim.models.sensors.yaw import Yaw
 from ekfsim.records import Control, Entry, Reading
-from ekfsim.simulation.interpolation import stretched
+from ekfsim.systems.interpolation import stretched
 
 FIX = Position(1.0, 1.0)
 LOG = Path(__file__).resolve().parents[2] / ".." / "shared" / "data" / "mower_gnss"

@@ -1,0 +1,23 @@
+"""The filter that a scene names, as its run begins."""
+
+from ekfsim.filters import FILTERS
+from ekfsim.filters.by_reading import NoiseByReading
+from ekfsim.filters.protocol import Beginning, Filter
+from ekfsim.filters.shadows import ShadowsAlone
+
+
+def kind_of(name: str) -> type[Filter]:
+    """The filter of that name."""
+    return FILTERS[name]
+
+
+def begun(name: str, beginning: Beginning) -> Filter:
+    """The filter of that name for a run that begins so, in the counter-examples that its tuning
+    asks for.
+    """
+    filter: Filter = kind_of(name).begin(beginning)
+    if beginning.tuning.range_variance == "reading":
+        filter = NoiseByReading(filter)
+    if beginning.tuning.cross_covariances == "dropped":
+        filter = ShadowsAlone(filter)
+    return filter
