@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from ekfsim.systems.faults import NOTHING_WRONG, DriveFaults
 from ekfsim.systems.instruments import Instrument, Surroundings, Target
 from ekfsim.systems.instruments import Landmark as Landmark
 from ekfsim.systems.robots import PylonCart, Robot
+
+if TYPE_CHECKING:
+    from shapely import Polygon
 
 
 @dataclass(frozen=True)
@@ -39,6 +43,14 @@ class Map:
             yield BOUNDARY, self.boundary
         for obstacle in self.obstacles:
             yield obstacle.name, obstacle.points
+
+    @cached_property
+    def areas(self) -> "tuple[Polygon | None, tuple[Polygon, ...]]":
+        """The boundary and the obstacles as areas, for questions of inside and outside."""
+        from shapely import Polygon  # seldom asked, and slow to import
+
+        boundary = None if self.boundary is None else Polygon(self.boundary)
+        return boundary, tuple(Polygon(obstacle.points) for obstacle in self.obstacles)
 
     @cached_property
     def walls(self) -> Walls:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from statistics import NormalDist
 
 import numpy as np
@@ -90,11 +91,17 @@ def outline(center: Array, P: Array, probability: float, n: int = 73) -> Array:
     → (n, 2) m
     """
     e = ellipse(P, probability)
-    t = np.linspace(0, 2 * np.pi, n)
-    circle = np.stack([e.major * np.cos(t), e.minor * np.sin(t)], axis=-1)
     c, s = np.cos(e.orientation), np.sin(e.orientation)
+    circle = unit_circle(n) * np.stack([e.major, e.minor])
     points: Array = center[:2] + circle @ np.array([[c, s], [-s, c]])
     return points
+
+
+@cache
+def unit_circle(n: int) -> Array:
+    """Points on it, the last equal to the first : (n, 2)"""
+    t = np.linspace(0, 2 * np.pi, n)
+    return np.stack([np.cos(t), np.sin(t)], axis=-1)
 
 
 def cone_halfwidth(variance: float, probability: float) -> float:

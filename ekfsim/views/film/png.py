@@ -40,6 +40,8 @@ class Encoder:
     def __init__(self, height: int, width: int) -> None:
         self._shown: NDArray[np.uint32] = np.zeros((height, width), np.uint32)  # transparent
         edges = [*range(0, height, BAND), height]
+        # one for all bands: to make one takes as long as to deflate a band
+        self._deflate = zlib.compressobj(LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS)
         self.bands = {rows: Band(b"", 0, 0) for rows in pairwise(edges)}
 
     def encode(self, rgba: Pixels, metadata: Mapping[str, str]) -> bytes:
@@ -50,7 +52,7 @@ class Encoder:
         changed[1:] |= changed[:-1]  # a row is told as its difference to the one above
         for first, end in self.bands:
             if changed[first:end].any():
-                self.bands[first, end] = _band(rgba, first, end)
+                self.bands[first, end] = self._band(_filtered(rgba, first, end))
         height, width = pixels.shape
         header = width.to_bytes(4) + height.to_bytes(4) + RGB_8_BIT
         return b"".join(
@@ -63,9 +65,14 @@ class Encoder:
             ]
         )
 
+    def _band(self, rows: bytes) -> Band:
+        # a full flush ends on a whole byte, and forgets what came before
+        data = self._deflate.compress(rows) + self._deflate.flush(zlib.Z_FULL_FLUSH)
+        return Band(data, zlib.adler32(rows), len(rows))
 
-def _band(rgba: Pixels, first: int, end: int) -> Band:
-    """Rows `first` to `end`, without the last."""
+
+def _filtered(rgba: Pixels, first: int, end: int) -> bytes:
+    """Rows `first` to `end`, without the last, each as its difference to the one above."""
     differences = rgba[first:end].copy()
     if first == 0:  # above it is nothing
         differences[1:] -= rgba[: end - 1]
@@ -77,10 +84,7 @@ def _band(rgba: Pixels, first: int, end: int) -> Band:
     colors = rows[:, 1:].reshape(height, width, 3)
     for channel in range(3):  # three times as fast as all at once
         colors[..., channel] = differences[..., channel]
-    filtered = rows.tobytes()
-    deflate = zlib.compressobj(LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS)
-    data = deflate.compress(filtered) + deflate.flush(zlib.Z_FULL_FLUSH)  # ends on a whole byte
-    return Band(data, zlib.adler32(filtered), len(filtered))
+    return rows.tobytes()
 
 
 def _stream(bands: Collection[Band]) -> bytes:

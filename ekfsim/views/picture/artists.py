@@ -5,8 +5,9 @@ Each artist carries a gid. Colours are Okabe and Ito's; whatever a colour tells,
 marker tells too.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sized
 from itertools import compress
+from typing import cast
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -208,8 +209,9 @@ class BeliefArtists:
             self.particles.set_offsets(NOWHERE)
         path = view.path()
         place(self.path, path)
-        if not self._driven:
-            self.path.set_marker("." if len(path) <= DOTS else "")
+        dot = "" if self._driven or len(path) > DOTS else "."
+        if self.path.get_marker() != dot:
+            self.path.set_marker(dot)
         if self.body is not None:
             self.body.set_xy(robot(x, unit))
         place(self.reference, x[None, :2])
@@ -342,9 +344,9 @@ def empty(artist: Artist) -> bool:
     """Whether nothing is to be seen of an artist, which drawing it would only take time to find."""
     match artist:
         case Line2D():
-            return not np.size(artist.get_xdata(orig=True))
+            return not len(cast(Sized, artist.get_xdata(orig=True)))
         case PathCollection():
-            return not np.size(artist.get_offsets())
+            return not len(cast(Sized, artist.get_offsets()))
         case LineCollection():
             return not artist.get_paths()
         case OutlinedText():

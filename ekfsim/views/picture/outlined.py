@@ -55,30 +55,33 @@ class OutlinedText(PathPatch):
 
     def set_text(self, text: str) -> None:
         """Show another text, in as many lines as it has."""
-        self._text = drawable(text)
+        if (shown := drawable(text)) == self._text:
+            return
+        self._text = shown
         down = -SPACING * text_to_path.FONT_SCALE
-        glyphs = [
-            glyph
-            for i, line in enumerate(self._text.split("\n"))
-            for glyph in _line(line, i * down)
-        ]
-        vertices, codes = zip(NOTHING, *glyphs, strict=True)
-        self.set_path(Path(np.concatenate(vertices), np.concatenate(codes)))
+        outlines, places = [NOTHING], [(0.0, 0.0)]
+        for i, line in enumerate(shown.split("\n")):
+            for outline, right in _line(line):
+                outlines.append(outline)
+                places.append((right, i * down))
+        vertices, codes = zip(*outlines, strict=True)
+        offsets = np.repeat(places, [len(each) for each in codes], axis=0)
+        self.set_path(Path(np.concatenate(vertices) + offsets, np.concatenate(codes)))
 
     def get_text(self) -> str:
         """The text shown."""
         return self._text
 
 
-def _line(text: str, y: float) -> Iterator[Outline]:
-    """The glyphs of a line, from (0, y) to the right."""
-    if any(map(_shaped, text)):
-        yield _moved(_outline(text), 0.0, y)
+def _line(text: str) -> Iterator[tuple[Outline, float]]:
+    """The glyphs of a line, and how far to the right each begins."""
+    if not text.isascii() and any(map(_shaped, text)):
+        yield _outline(text), 0.0
         return
-    x = 0.0
+    right = 0.0
     for sign in text:
-        yield _moved(_glyph(sign), x, y)
-        x += _advance(sign)
+        yield _glyph(sign), right
+        right += _advance(sign)
 
 
 def _shaped(sign: str) -> bool:
@@ -114,8 +117,3 @@ def _width(text: str) -> float:
 @cache
 def _font() -> FontProperties:
     return FontProperties(family=families())
-
-
-def _moved(outline: Outline, x: float, y: float) -> Outline:
-    vertices, codes = outline
-    return vertices + np.array([x, y]), codes

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 
 from ekfsim.commands import Command, Repeat, Sense
@@ -136,18 +137,17 @@ class CloseUp:
         self.away = OutlinedText(0.05, 0.91, 8, *systems, "truth-away", halo=True)
         axes.add_artist(self.scale)
         axes.add_artist(self.away)
-        self.moving = [
-            *(child for child in axes.get_children() if child.get_gid()),
-            *axes.spines.values(),
-        ]
+        # the frame as one artist, drawn in a third of the time of four
+        axes.spines[:].set_visible(False)
+        axes.add_collection(frame(axes), autolim=False)
+        self.moving = [child for child in axes.get_children() if child.get_gid()]
 
     def show(self, view: View, read: Beam | Sight | None, world: Limits) -> None:
         """Move there, and show it."""
         x, truth = view.pose.mean, view.step.entry.truth
         width = close_width(view, self._probability, CERTAIN * world.size)
-        self.axes.set(
-            xlim=(x[0] - width / 2, x[0] + width / 2), ylim=(x[1] - width / 2, x[1] + width / 2)
-        )
+        self.axes.set_xlim(x[0] - width / 2, x[0] + width / 2)
+        self.axes.set_ylim(x[1] - width / 2, x[1] + width / 2)
         self.belief.show(view, CLOSE_BODY * width)
         for artists, other in zip(self.others, view.others, strict=False):
             artists.show(other, CLOSE_BODY * width)
@@ -166,6 +166,22 @@ def others(axes: Axes, scene: Scene, probability: float) -> list[OtherArtists]:
     return [
         OtherArtists(axes, name, number, probability) for number, name in enumerate(scene.beside)
     ]
+
+
+def frame(axes: Axes) -> LineCollection:
+    """The four sides of an Axes, as its spines would draw them."""
+    left = axes.spines["left"]
+    sides = [[(0, 0), (0, 1)], [(1, 0), (1, 1)], [(0, 0), (1, 0)], [(0, 1), (1, 1)]]
+    return LineCollection(
+        sides,
+        colors=[left.get_edgecolor()],
+        linewidths=left.get_linewidth(),
+        capstyle=left.get_capstyle(),
+        zorder=left.get_zorder(),
+        transform=axes.transAxes,
+        clip_on=False,
+        gid="frame",
+    )
 
 
 def close_width(view: View, probability: float, certain: float) -> float:

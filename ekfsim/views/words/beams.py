@@ -100,12 +100,13 @@ def landing(floor: Map, end: Array, gap: float, wall: str, tolerance: float) -> 
     if abs(gap) <= tolerance:
         return True, f"on {called(wall)}"
     point = shapely.Point(end)
-    for obstacle in floor.obstacles:
-        if shapely.Polygon(obstacle.points).contains(point):
+    boundary, areas = floor.areas
+    for obstacle, area in zip(floor.obstacles, areas, strict=True):
+        if area.contains(point):
             return True, f"inside {called(obstacle.name)}" + (
                 f", {length(gap)} too far" if gap > 0 else ""
             )
-    if floor.boundary is not None and not shapely.Polygon(floor.boundary).contains(point):
+    if boundary is not None and not boundary.contains(point):
         return True, "outside the room" + (f", {length(gap)} too far" if gap > 0 else "")
     if gap > 0:
         return True, f"{length(gap)} behind the edge of {called(wall)}"
