@@ -7,7 +7,7 @@ import pytest
 DOCUMENTS = Path(__file__).resolve().parents[1] / ".." / "shared" / "documents"
 
 
-def text_of(number):
+def as_written(number):
     """A document's text, every run of white space one blank. Skips the test where the text is not
     there."""
     found = sorted(DOCUMENTS.glob(f"{number}_*.txt"))
@@ -18,6 +18,6 @@ def text_of(number):
 
 def equation(number, tag):
     """What stands between the dollar signs of one equation, without blanks."""
-    before, found, _ = text_of(number).partition(rf"\quad ({tag})$$")
+    before, found, _ = as_written(number).partition(rf"\quad ({tag})$$")
     assert found, f"document {number} has no equation {tag}"
     return before.rpartition("$$")[2].replace(" ", "")

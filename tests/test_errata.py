@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from documents import equation, text_of
+from documents import as_written, equation
 
-from ekfsim.filters.conditioning import square_root
-from ekfsim.filters.unscented import sigma_points, unscented_transform, weights
+from ekfsim.filters.arithmetic.square_root import square_root
+from ekfsim.filters.arithmetic.unscented import sigma_points, unscented_transform, weights
 from ekfsim.geometry.ellipse import ellipse, radius_factor
 from ekfsim.models.layout import SPEED_POSE
 from ekfsim.models.motions.move_turn import MoveTurn
@@ -53,7 +53,7 @@ def test_erratum_classroom_sample_grows_a_variance_by_a_reading():
 def sample_of_the_classroom():
     """Document 002, the narrative: its two covariances, and what is printed of each ellipse and
     cone."""
-    _, _, sample = text_of("002").partition("==>The robot moved")
+    _, _, sample = as_written("002").partition("==>The robot moved")
     rows = re.findall(r"\[+([-\d. ]+)\]", sample)
     covariances = [
         np.array([[float(n) for n in row.split()] for row in rows[i : i + 3]]) for i in (0, 3)
@@ -137,7 +137,7 @@ def test_no_erratum_the_pioneer_s_eqs_14_20_21_and_33_are_right():
 def test_erratum_pioneer_eqs_20_and_21_have_weights_that_are_told_nowhere():
     """Document 001: W⁽ᵐ⁾ and W⁽ᶜ⁾ stand in eqs 20 to 25 alone; eq. 14 has one W, which is both for
     Julier's points."""
-    text = text_of("001")
+    text = as_written("001")
     before, after = text.split(r"\quad (14)$$")[0], text.split(r"\quad (25)$$")[1]
     assert "^{(m)}" not in before + after
     assert "^{(c)}" not in before + after
@@ -154,7 +154,7 @@ def test_erratum_pioneer_eqs_20_and_21_have_weights_that_are_told_nowhere():
 def test_erratum_pioneer_eqs_1_and_2_are_called_linear():
     """Document 001: a general F of state, input and noise is linear where it is eq. 3, and else
     not."""
-    text = text_of("001")
+    text = as_written("001")
     assert "governed by the linear equation given by (1) and (2)" in text
     assert "Figure 1 Discrete-time nonlinear dynamic system" in text
     assert equation("001", 1) == "x_{k+1}=F(x_k,u_k,w_k)"
@@ -167,7 +167,7 @@ def test_erratum_pioneer_eqs_1_and_2_are_called_linear():
 def test_erratum_pioneer_exchanges_R_and_Q_in_two_paragraphs():
     """Document 001, after eqs 4 and 8: eq. 3 adds w to the state and eq. 8 adds Q; eq. 4 adds v,
     eq. 9 R."""
-    text = text_of("001")
+    text = as_written("001")
     assert "w and v represent the process and measurement noise" in text
     assert "they have the covariance R and Q" in text
     assert "Q represents the covariance of the process noise v" in text
@@ -180,7 +180,7 @@ def test_erratum_pioneer_exchanges_R_and_Q_in_two_paragraphs():
 
 def test_erratum_pioneer_sigma_points_do_not_capture_every_covariance():
     """Document 001, section II C, against its own section II D."""
-    assert "capture the true mean and covariance of any nonlinear system" in text_of("001")
+    assert "capture the true mean and covariance of any nonlinear system" in as_written("001")
     told = unscented_transform(*polar_reading(), cartesian, weights(2))
     mean, covariance = cartesian_moments(polar_reading()[0], 0.02, math.radians(15))
     assert abs(told.mean - mean).max() < 1e-5
@@ -190,7 +190,7 @@ def test_erratum_pioneer_sigma_points_do_not_capture_every_covariance():
 
 def test_erratum_pioneer_figure_2_has_neither_its_mean_nor_its_circle():
     """Document 001, section II D, against 200 000 readings."""
-    text = text_of("001")
+    text = as_written("001")
     assert "not coinciding with the real one at (0,1)" in text
     assert "the covariance of the points is a circular one" in text
     random, (mean, P) = np.random.default_rng(1), polar_reading()
@@ -203,7 +203,7 @@ def test_erratum_pioneer_figure_2_has_neither_its_mean_nor_its_circle():
 def test_erratum_pioneer_figure_5_means_a_low_ratio():
     """Document 001, section IV B: much noise is hard: by the bound, ten times the noise, four times
     the σ of τ."""
-    assert "even in the case of the high signal to noise ratio" in text_of("001")
+    assert "even in the case of the high signal to noise ratio" in as_written("001")
     pair = Pair()
     loud, quiet = (flight_bound(pair.typical, sigma_of(snr), pair) for snr in (30.0, 10.0))
     assert quiet > 4 * loud
@@ -212,7 +212,7 @@ def test_erratum_pioneer_figure_5_means_a_low_ratio():
 def test_erratum_mower_has_its_markers_in_a_tenth_of_their_area():
     """Document 000, section 1 says so of 10 m²; section 2 has one marker in each square of roughly
     six metres."""
-    text = text_of("000")
+    text = as_written("000")
     assert "three to four markers per 10 m^2" in text
     assert "28 markers placed at roughly six meter intervals" in text
     assert 10 / 6**2 < 0.3
@@ -222,7 +222,7 @@ def test_erratum_mower_has_its_markers_in_a_tenth_of_their_area():
 def test_erratum_gnss_figure_2_names_fixes_that_have_no_heading():
     """Document 003: the caption of figure 2, which draws φ, names the detections of figure 1."""
     assert re.search(
-        r"Figure 2: [^:]*the GNSS detections, and the estimated \S*(phi|ϕ|φ)", text_of("003")
+        r"Figure 2: [^:]*the GNSS detections, and the estimated \S*(phi|ϕ|φ)", as_written("003")
     )
     heading = np.eye(4)[1]  # of the state (V, φ, x, y)
     _, H, _ = Position(0.1, 0.1, SPEED_POSE).linearize(np.zeros(4))
@@ -231,7 +231,7 @@ def test_erratum_gnss_figure_2_names_fixes_that_have_no_heading():
 
 def test_erratum_pylon_eq_1_predicts_at_a_state_that_nothing_defines():
     """Document 004, eq. 1: h(x̄), where the algorithm has a predicted mean μ̄."""
-    text = text_of("004")
+    text = as_written("004")
     assert text.count(r"h(\bar{x}_t)") == 1
     assert text.count(r"\bar{x}") == 1
     assert r"\bar{\mu}_t &= g(\mu_{t-1}, u_t)" in text
@@ -239,7 +239,7 @@ def test_erratum_pylon_eq_1_predicts_at_a_state_that_nothing_defines():
 
 def test_erratum_pylon_tells_variances_in_metres():
     """Document 004, figure 5: "variances … on the order of 10^{-5}m"."""
-    text = text_of("004")
+    text = as_written("004")
     assert text.count("on the order of $10^{-5}m$") == 2
     assert "Because the position variances are very small" in text
 
@@ -278,7 +278,7 @@ def test_who_looks_a_document_up_finds_its_title_and_its_authors(number):
     title, helped = row.split("*")[1], " ".join(DOCUMENTS.split())
     assert title in helped
     assert f"{number} {row.split('|')[2].strip()} " in helped
-    beginning = text_of(number)[:400]
+    beginning = as_written(number)[:400]
     assert title in beginning
     authors = row.split("|")[3].partition(", *")[0].replace(" and ", ", ").split(", ") * (
         number != "002"

@@ -6,11 +6,11 @@ from itertools import repeat
 import numpy as np
 
 from ekfsim.diagnostics.nees import nees
+from ekfsim.fast.many_steps import stretch
 from ekfsim.fast.records import records
 from ekfsim.filters.belief import Belief, Gaussian, Prediction
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.protocol import Filter
-from ekfsim.filters.stretch import stretch
 from ekfsim.geometry import Array
 from ekfsim.localization import advance
 from ekfsim.models.layout import POSE, Layout

@@ -24,58 +24,70 @@ class Twin:
     compiled: bool = False  # by Numba: only where that is asked for
 
 
-MANY = "ekfsim.fast.many"
-NEES = "ekfsim.diagnostics.nees"
-ALONE = "one robot: no leading axes"
-ANY = "whatever the leading axes"
+ONE, MANY, COMPILED = (f"ekfsim.fast.{room}" for room in ("one", "many", "compiled"))
+RAYS, SEARCHES = "ekfsim.raycast", "ekfsim.raycast.searches"
 MOTION, SENSOR = (f"ekfsim.models.protocols:{kind}.linearize" for kind in ("Motion", "Sensor"))
 MOTIONS, MARKER = "ekfsim.models.motions", "ekfsim.models.sensors.landmarks:MarkerAngles"
-AMBIGUITY = "ekfsim.diagnostics.ambiguity"
+KALMAN, ROOT = "ekfsim.filters.kalman", "ekfsim.filters.arithmetic.square_root"
+NEES, AMBIGUITY = "ekfsim.diagnostics.nees", "ekfsim.diagnostics.ambiguity"
 
+ALONE = "one robot: no leading axes"
+ANY = "whatever the leading axes"
+OF_MANY = "64 runs or more"
+ALIKE = f"{OF_MANY}, a state of three, a motion that is the same everywhere, of independent noises"
+ONE_NUMBER = f"{OF_MANY}, a state of three, one of it a heading, and a reading of one number"
+SOUND = "a covariance that needs no force but to be symmetric, as mostly"
+
+# The quickest of one function first. How to add a row is told in tests/fast/test_table.py.
 TWINS: tuple[Twin, ...] = (
-    Twin(MOTION, "ekfsim.fast.one.motions:move_turn", ALONE, "MoveTurn"),
-    Twin(MOTION, "ekfsim.fast.compiled.models:move_turn", "x, u : (N, …)", "MoveTurn", True),
-    Twin(MOTION, "ekfsim.fast.many.motions:move_turn", ANY, "MoveTurn"),
-    Twin(MOTION, "ekfsim.fast.one.motions:gyro_wheels", ALONE, "GyroWheels"),
-    Twin(MOTION, "ekfsim.fast.one.motions:unicycle", ALONE, "Unicycle"),
-    Twin(MOTION, "ekfsim.fast.one.motions:wheel_speeds", ALONE, "WheelSpeeds"),
-    Twin(f"{MOTIONS}.move_turn:MoveTurn.f", "ekfsim.fast.one.motions:move_turn_f", ALONE),
-    Twin(f"{MOTIONS}.move_turn:MoveTurn.f", "ekfsim.fast.many.motions:move_turn_f", ANY),
-    Twin(f"{MOTIONS}.wheels:GyroWheels.f", "ekfsim.fast.one.motions:gyro_wheels_f", ALONE),
-    Twin(f"{MOTIONS}.unicycle:Unicycle.f", "ekfsim.fast.one.motions:unicycle_f", ALONE),
-    Twin(SENSOR, "ekfsim.fast.one.sensors:laser", ALONE, "Laser"),
-    Twin(SENSOR, "ekfsim.fast.compiled.models:laser", "x : (N, …)", "Laser", True),
-    Twin(SENSOR, "ekfsim.fast.many.sensors:laser", ANY, "Laser"),
-    Twin(SENSOR, "ekfsim.fast.many.sensors:laser_by_reading", ANY, "LaserByReading"),
-    Twin(SENSOR, "ekfsim.fast.many.sensors:ultrasonic", ANY, "UltrasonicBeam"),
-    Twin(SENSOR, "ekfsim.fast.many.sensors:infrared", ANY, "InfraredBeam"),
-    Twin(SENSOR, "ekfsim.fast.many.sensors:frozen", "as many x as it holds", "Frozen"),
-    Twin(SENSOR, "ekfsim.fast.one.sensors:marker_angles", ALONE, "MarkerAngles"),
-    Twin(f"{MARKER}.residual", "ekfsim.fast.one.sensors:marker_residual", ALONE),
-    Twin(f"{AMBIGUITY}:sighting", "ekfsim.fast.one.ambiguity:sighting", ALONE),
-    Twin(
-        "ekfsim.raycast.walls:Walls.cast",
-        "ekfsim.raycast.searches.compiled:cast",
-        "many beams",
-        compiled=True,
-    ),
-    Twin("ekfsim.raycast.walls:Walls.cast", "ekfsim.raycast.searches.choice:cast", "any beams"),
-    Twin(
-        "ekfsim.raycast.walls:Walls.first", "ekfsim.raycast.searches.single_beam:first", "any beam"
-    ),
-    Twin("ekfsim.raycast.ground:Ground.reach", "ekfsim.fast.one.ground:reach", "from one place"),
-    Twin(f"{NEES}:nees", "ekfsim.fast.one.nees:nees", "one pose, its P clearly of full rank"),
-    Twin(f"{NEES}:nees", f"{MANY}.nees:nees", "64 runs or more"),
-    Twin(
-        f"{NEES}:squared_mahalanobis",
-        "ekfsim.fast.many.nees:squared_mahalanobis",
-        "64 runs or more",
-    ),
+    # raycast/
+    Twin(f"{RAYS}.walls:Walls.cast", f"{SEARCHES}.compiled:cast", "many beams", compiled=True),
+    Twin(f"{RAYS}.walls:Walls.cast", f"{SEARCHES}.choice:cast", "any beams"),
+    Twin(f"{RAYS}.walls:Walls.first", f"{SEARCHES}.single_beam:first", "any beam"),
+    Twin(f"{RAYS}.ground:Ground.reach", f"{ONE}.ground:reach", "from one place"),
+    # models/
+    Twin(MOTION, f"{ONE}.motions:move_turn", ALONE, "MoveTurn"),
+    Twin(MOTION, f"{COMPILED}.models:move_turn", "x, u : (N, …)", "MoveTurn", True),
+    Twin(MOTION, f"{MANY}.motions:move_turn", ANY, "MoveTurn"),
+    Twin(MOTION, f"{ONE}.motions:gyro_wheels", ALONE, "GyroWheels"),
+    Twin(MOTION, f"{ONE}.motions:unicycle", ALONE, "Unicycle"),
+    Twin(MOTION, f"{ONE}.motions:wheel_speeds", ALONE, "WheelSpeeds"),
+    Twin(f"{MOTIONS}.move_turn:MoveTurn.f", f"{ONE}.motions:move_turn_f", ALONE),
+    Twin(f"{MOTIONS}.move_turn:MoveTurn.f", f"{MANY}.motions:move_turn_f", ANY),
+    Twin(f"{MOTIONS}.wheels:GyroWheels.f", f"{ONE}.motions:gyro_wheels_f", ALONE),
+    Twin(f"{MOTIONS}.unicycle:Unicycle.f", f"{ONE}.motions:unicycle_f", ALONE),
+    Twin(SENSOR, f"{ONE}.sensors:laser", ALONE, "Laser"),
+    Twin(SENSOR, f"{COMPILED}.models:laser", "x : (N, …)", "Laser", True),
+    Twin(SENSOR, f"{MANY}.sensors:laser", ANY, "Laser"),
+    Twin(SENSOR, f"{MANY}.sensors:laser_by_reading", ANY, "LaserByReading"),
+    Twin(SENSOR, f"{MANY}.sensors:ultrasonic", ANY, "UltrasonicBeam"),
+    Twin(SENSOR, f"{MANY}.sensors:infrared", ANY, "InfraredBeam"),
+    Twin(SENSOR, f"{MANY}.sensors:frozen", "as many x as it holds", "Frozen"),
+    Twin(SENSOR, f"{ONE}.sensors:marker_angles", ALONE, "MarkerAngles"),
+    Twin(f"{MARKER}.residual", f"{ONE}.sensors:marker_residual", ALONE),
+    # filters/
+    Twin(f"{KALMAN}:predict", f"{COMPILED}.kalman:predict", ALIKE, compiled=True),
+    Twin(f"{KALMAN}:predict", f"{MANY}.kalman:predict", ALIKE),
+    Twin(f"{KALMAN}:update", f"{ONE}.kalman:update", ALONE),
+    Twin(f"{KALMAN}:update", f"{COMPILED}.kalman:update", ONE_NUMBER, compiled=True),
+    Twin(f"{KALMAN}:update", f"{MANY}.kalman:update", ONE_NUMBER),
+    Twin(f"{ROOT}:covariance", f"{ONE}.square_root:covariance", f"{ALONE}; {SOUND}"),
+    Twin(f"{ROOT}:covariance", f"{MANY}.square_root:covariance", f"{ANY}; {SOUND}"),
+    Twin(f"{ROOT}:square_root", f"{ONE}.square_root:square_root", ALONE),
+    Twin(f"{ROOT}:slope", f"{ONE}.square_root:slope", ALONE),
+    Twin(f"{ROOT}:conditioned", f"{ONE}.square_root:conditioned", ALONE),
+    Twin("ekfsim.filters.stretch:stretch", "ekfsim.fast.many_steps:stretch", ANY),
     Twin(
         of="ekfsim.filters.chi_square:quantile",
         form="ekfsim.fast.chi_square:quantile",
         when="up to 5 000 degrees of freedom, and a probability that is neither 0 nor 1",
     ),
+    # diagnostics/
+    Twin(f"{AMBIGUITY}:sighting", f"{ONE}.ambiguity:sighting", ALONE),
+    Twin(f"{NEES}:nees", f"{ONE}.nees:nees", f"{ALONE}; P clearly of full rank"),
+    Twin(f"{NEES}:nees", f"{MANY}.nees:nees", OF_MANY),
+    Twin(f"{NEES}:squared_mahalanobis", f"{MANY}.nees:squared_mahalanobis", OF_MANY),
+    # whole loops
     Twin(
         of="ekfsim.study.block:watched",
         form="ekfsim.fast.compiled.block:watched",

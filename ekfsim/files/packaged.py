@@ -114,12 +114,12 @@ def described(path: Path) -> str:
     """
     import yaml
 
-    from ekfsim.files.source import text_of
+    from ekfsim.files.source import as_written
     from ekfsim.files.yaml.marked import LOADER, Tree
 
     tree, text = Tree(str(path)), None
     try:
-        for event in yaml.parse(text_of(path, str(path)), Loader=LOADER):
+        for event in yaml.parse(as_written(path, str(path)), Loader=LOADER):
             tree.take(event)
             if tree.open and (description := tree.open[0].node.get("description")):
                 text = description.value

@@ -16,7 +16,7 @@ UNPRINTABLE = re.compile(
 )
 
 
-def text_of(path: Path, shown: str) -> str:
+def as_written(path: Path, shown: str) -> str:
     """The text of a file that a person wrote; `shown` is how messages name it.
 
     Raises UsageError where there is no such file to read, InputError where it holds no text.

@@ -1,42 +1,29 @@
-"""A textbook table a file: predict and update of each filter, and the records that go in and come
-out.
+"""A textbook table a file: predict and update of each filter, and the records that go in and out.
 
-    protocol.py    what every filter offers              kf.py      linear, about the first belief
-    belief.py      Gaussian, Particles, Correction
-    nominal.py linear, about a trajectory that is planned
-    algebra.py     inverse, wrapping, refusals           ekf.py     extended: read this one first
-    conditioning.py  what a reading leaves of P          iekf.py
-    iterated, by the search of descent.py
-    correcting.py  the end that the updates share        ukf.py
-    unscented, by the transform of unscented.py
-    chi_square.py  quantiles of χ²
-    ukf_augmented.py  the same, with noise in its sigma points
-    tuning.py      numbers that a person may set         pf.py      particles
-    shadows.py     a counter-example: P without σ_xθ, σ_yθ
-                                                         listing.py the EKF that two of the
-                                                         documents' listings are
+    ekf.py     extended: read this one first    kalman.py    predict, gain, update: what the Kalman
+    kf.py      linear, about the first belief                filters share, and how readings are
+    iekf.py    iterated                                      refused
+    ukf.py     unscented                        protocol.py  what every filter offers
+    pf.py      particles                        belief.py    Gaussian, Particles, Correction
+    stretch.py many predictions in a row        tuning.py    numbers that a person may set
+                                                chi_square.py  quantiles of χ²
+
+    variants/    about a plan; noise in the sigma points; a document's listing; a counter-example
+    arithmetic/  square roots of P, sigma points, the iterated filter's search
 
 The filters know no robot and no sensor: f, F, G, M, Q and h, H, R come from the models (see
-models/protocols.py).
-
-Four files are speed alone; tests hold each equal to what ekf.py, correcting.py and conditioning.py
-have:
-
-    conditioning_one.py  one robot, in plain floats
-    unrolled.py
-    many runs side by side, a state of three and a reading of one number: entry by entry
-    compiled.py    the same by Numba, where twins.py has been told to take it
-    stretch.py     many predictions of one run in a row, for planar odometry
+models/protocols.py). What is quicker than kalman.py and square_root.py as they stand is in
+ekfsim/fast/.
 """
 
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.iekf import IEKF
 from ekfsim.filters.kf import KF
-from ekfsim.filters.nominal import NominalKF
 from ekfsim.filters.pf import PF
 from ekfsim.filters.protocol import Filter
 from ekfsim.filters.ukf import UKF
-from ekfsim.filters.ukf_augmented import AugmentedUKF
+from ekfsim.filters.variants.nominal import NominalKF
+from ekfsim.filters.variants.ukf_augmented import AugmentedUKF
 
 FILTERS: dict[str, type[Filter]] = {
     "kf": KF,

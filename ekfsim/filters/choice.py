@@ -3,7 +3,7 @@
 from ekfsim.filters import FILTERS
 from ekfsim.filters.by_reading import NoiseByReading
 from ekfsim.filters.protocol import Beginning, Filter
-from ekfsim.filters.shadows import ShadowsAlone
+from ekfsim.filters.variants.shadows import ShadowsAlone
 
 
 def kind_of(name: str) -> type[Filter]:

@@ -1,12 +1,10 @@
-"""The extended Kalman filter."""
+"""The extended Kalman filter: read this one first, and kalman.py beside it."""
 
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from ekfsim.filters import unrolled
+from ekfsim.filters import kalman
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
-from ekfsim.filters.conditioning import covariance
-from ekfsim.filters.correcting import Linearized, corrected
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion, Sensor
@@ -16,6 +14,8 @@ from ekfsim.models.protocols import Motion, Sensor
 class EKF:
     """Extended Kalman filter: Thrun, Burgard & Fox, Probabilistic Robotics, 2005, Table 3.3;
     assignment, section 3.
+
+    f and h are linearised at the newest estimate: F = ∂f/∂x, G = ∂f/∂u and H = ∂h/∂x there.
     """
 
     remark: ClassVar[str] = ""
@@ -34,23 +34,15 @@ class EKF:
         """
         x, P = belief
         f, F, G, M, Q = motion.linearize(x, u)
-        P_new = unrolled.predicted(P, F, G, M, Q) if F.ndim == 3 else None
-        if P_new is None:
-            P_new = covariance(F @ P @ F.mT + G @ M @ G.mT + Q)
-        return Gaussian(f, P_new), Prediction(F, G)
+        return Gaussian(f, kalman.predict(P, F, G, M, Q)), Prediction(F, G)
 
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
     ) -> tuple[Gaussian, Correction]:
         """ν = z − h(x⁻)      S = H P⁻ Hᵀ + R      K = P⁻ Hᵀ S⁻¹          eqs 9, 11; z : (…, k)
         x = x⁻ + K ν      P = (I − KH) P⁻          eqs 10, 12
-
-        Where the reading is refused the belief stays as it is; ν, S, K and NIS are told all the
-        same.
         """
         x, P = prior
         h, H, R = sensor.linearize(x)
-        reading = Linearized(z, h, sensor.residual(z, h), H, R)
-        if unrolled.knows(x, z, H) and len(self.headings) == 1:
-            return unrolled.updated(Gaussian(x, P), reading, skip, self.gate, self.headings[0])
-        return corrected(Gaussian(x, P), reading, skip, self.gate, self.headings)
+        reading = kalman.Linearized(z, h, sensor.residual(z, h), H, R)
+        return kalman.update(Gaussian(x, P), reading, kalman.Rule(self.gate, skip, self.headings))

@@ -6,12 +6,19 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from ekfsim.filters.algebra import gain, inverse, normalized_square, refusal, symmetric, wrapped
+from ekfsim.filters.arithmetic.algebra import (
+    gain,
+    inverse,
+    normalized_square,
+    symmetric,
+    wrapped,
+)
+from ekfsim.filters.arithmetic.square_root import square_root
+from ekfsim.filters.arithmetic.unscented import weighted_mean
 from ekfsim.filters.belief import Belief, Correction, Particles, Prediction, Refused
-from ekfsim.filters.conditioning import square_root
+from ekfsim.filters.kalman import Rule, refusal
 from ekfsim.filters.protocol import Beginning
 from ekfsim.filters.tuning import Tuning
-from ekfsim.filters.unscented import weighted_mean
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.protocols import Motion, Sensor, angles
 
@@ -119,7 +126,7 @@ class PF:
         spread, noise = symmetric(δz.mT @ weighted), np.sum(weights[..., None, None] * R, axis=-3)
         cross, S, innovation = δx.mT @ weighted, spread + noise, sensor.residual(z, predicted)
         nis = normalized_square(innovation, S)
-        refused = refusal(z, predicted, nis, skip, self.gate)
+        refused = refusal(z, predicted, nis, Rule(self.gate, skip, self.headings))
         H = np.nan_to_num(cross).mT @ inverse(crowd.covariance)
         return Correction(predicted, innovation, noise, S, H, gain(cross, S), nis, refused), spread
 

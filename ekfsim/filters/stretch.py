@@ -1,54 +1,25 @@
-"""Many EKF predictions in a row at once, for planar odometry."""
+"""Many EKF predictions in a row, for planar odometry."""
 
 import numpy as np
 
 from ekfsim.filters.belief import Belief, Gaussian
-from ekfsim.filters.conditioning import covariance
+from ekfsim.filters.ekf import EKF
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap
 from ekfsim.models.protocols import Motion
+from ekfsim.twins import twinned
 
 
+@twinned
 def stretch(belief: Belief, motion: Motion, U: Array) -> Gaussian:
     """The beliefs after each of N inputs, as EKF.predict gives them one by one: (N, …, 3), (N, …,
     3, 3). U : (N, …, m)
 
     For motions of x = (x, y, θ) that are the same everywhere: a robot that is moved and turned goes
-    the same way, moved and turned, D(θ) = Rot(θ) D(0). Headings and places are then cumulative
-    sums, and with p the way from the start
-
-        F = A(Δp)      A(p) = [1 0 −p_y;  0 1 p_x;  0 0 1]      A(p) A(q) = A(p + q)
-        P_k = A(p_k) (P₀ + Σ_j≤k A(−p_j) W_j A(−p_j)ᵀ) A(p_k)ᵀ      W = G M Gᵀ + Q
-
-    so that the covariances are cumulative sums, too. Held equal to EKF.predict in a loop by a test.
+    the same way, moved and turned.
     """
     x, P = belief
-    mean = moved(x, motion, U)
-    before = np.concatenate([x[None], mean[:-1]])[: len(mean)]
-    G = motion.G(before, U)
-    W = G @ motion.M(U) @ G.mT + motion.Q(U)
-    way = (mean - x)[..., :2].T
-    from_start = P.T[..., None] + np.cumsum(_sheared(np.ascontiguousarray(W.T), -way), axis=-1)
-    return Gaussian(mean, covariance(_sheared(from_start, way).T))
-
-
-def moved(x: Array, motion: Motion, U: Array) -> Array:
-    """Where such a motion leads after each of N inputs : (N, …, 3)"""
-    # seen from where each step begins; time last, as is fastest
-    along, aside, turn = motion.f(np.zeros_like(x), U).T
-    start = x.T[..., None]
-    θ = wrap(start[2] + np.cumsum(turn, axis=-1))
-    before = np.concatenate([start[2], θ[..., :-1]], axis=-1)[..., : θ.shape[-1]]
-    c, s = np.cos(before), np.sin(before)
-    way = np.cumsum([c * along - s * aside, s * along + c * aside], axis=-1)
-    return np.stack([start[0] + way[0], start[1] + way[1], θ]).T
-
-
-def _sheared(P: Array, way: Array) -> Array:
-    """A(p) P A(p)ᵀ : (3, 3, …, N), in place; the uncertainty of a heading, seen a way p : (2, …, N)
-    further.
-    """
-    c = np.stack([-way[1], way[0]])
-    P[:2] += c[:, None] * P[2:]
-    P[:, :2] += c * P[:, 2:]
-    return P
+    means, covariances = np.empty((len(U), *x.shape)), np.empty((len(U), *P.shape))
+    for i, u in enumerate(U):
+        belief, _ = EKF().predict(belief, motion, u)
+        means[i], covariances[i] = belief
+    return Gaussian(means, covariances)

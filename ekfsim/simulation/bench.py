@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ekfsim.filters.conditioning import square_root
+from ekfsim.filters.arithmetic.square_root import square_root
 from ekfsim.geometry import Array
 from ekfsim.models.protocols import Sensor
 from ekfsim.systems.echo import Pair, height

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ekfsim.filters.conditioning import square_root
+from ekfsim.filters.arithmetic.square_root import square_root
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.layout import Layout

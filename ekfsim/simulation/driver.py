@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ekfsim.filters.conditioning import square_root
+from ekfsim.filters.arithmetic.square_root import square_root
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.simulation.draws import Stream

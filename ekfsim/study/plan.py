@@ -16,7 +16,7 @@ from ekfsim.files.packaged import world_beside
 from ekfsim.files.scenes.load import read, read_scene
 from ekfsim.files.scenes.load_study import Request
 from ekfsim.files.scenes.settings import Setting
-from ekfsim.files.source import bytes_of, text_of
+from ekfsim.files.source import as_written, bytes_of
 from ekfsim.files.yaml.marked import parse
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import BLOCK
@@ -167,7 +167,7 @@ def world_of(request: Request) -> Path:
     """The world file of a study."""
     if request.world is not None:
         return request.world
-    root, _ = parse(text_of(request.commands, str(request.commands)), str(request.commands))
+    root, _ = parse(as_written(request.commands, str(request.commands)), str(request.commands))
     named = root.at(("world",))
     assert named is not None  # else there had been no scene
     return world_beside(request.commands, named.written)

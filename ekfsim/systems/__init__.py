@@ -6,25 +6,26 @@ SYSTEMS names them. The classroom has no entry: its robot obeys commands one by 
 is where their equations stand:
 
     000  mower: Kiriy & Buehler, Three-state Extended Kalman Filter for Mobile Robot Localization
-         8, 9 filters/ekf.py · 10 to 12, 27, 28 filters/correcting.py
+         8, 9 filters/ekf.py · 10 to 12, 27, 28 filters/kalman.py
          16 to 22, 26, 29 models/motions/wheels.py, midpoint.py
          23 to 25, 30 models/sensors/landmarks.py
-         its listing: filters/listing.py, models/sensors/frozen.py
+         its listing: filters/variants/listing.py, models/sensors/frozen.py
     001  pioneer: Tamás, Lazea, Robotin, Marcu, Herle & Szekely, State Estimation Based on Kalman
          Filtering Techniques in Navigation
-         7 to 11 filters/kf.py, nominal.py · 12, 13 filters/ekf.py · 14 to 17 filters/unscented.py
-         20 to 28 filters/ukf.py, ukf_augmented.py (22)
+         7 to 11 filters/kf.py, variants/nominal.py · 12, 13 filters/ekf.py
+         14 to 17 filters/arithmetic/unscented.py
+         20 to 28 filters/ukf.py, variants/ukf_augmented.py (22)
          18, 19 models/sensors/polar.py · 29 to 35 models/motions/odometry.py
          36, 37 models/sensors/yaw.py, which it does not use itself
          38 models/sensors/echo.py, and its estimate systems/echo.py
          fig. 4 models/sensors/infrared.py · fig. 6 models/sensors/ultrasonic.py
     002  classroom: Localization and the extended Kalman filter, an assignment
          1, 3, 6 models/motions/move_turn.py · 8, and the Jacobian J_H models/sensors/laser.py
-         4, 7, 9 to 12 filters/ekf.py
+         4, 9 filters/ekf.py · 7, 10 to 12 filters/kalman.py
     003  gnss: Sahni, Assignment 3: Sensor fusion for lawn mower
          2 models/sensors/position.py · 3, 4 and the integrals models/motions/wheel_speeds.py
          5 to 7 filters/ekf.py
-         as its authors have coded it: WheelSpeedsAsWritten, filters/listing.py,
+         as its authors have coded it: WheelSpeedsAsWritten, filters/variants/listing.py,
          systems/interpolation.py
     004  pylon: King & Johnson, Lab 3: Extended Kalman Filter for Localization
          1 to 4 filters/ekf.py · 5 to 7, and R_t of 10 models/motions/planar_imu.py

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ekfsim.filters.choice import begun
-from ekfsim.filters.listing import ListingEKF
 from ekfsim.filters.protocol import Beginning, Filter
+from ekfsim.filters.variants.listing import ListingEKF
 from ekfsim.records import Entry
 from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.instruments import Instrument

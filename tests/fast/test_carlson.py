@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from ekfsim.filters.algebra import ROUNDING
+from ekfsim.filters.arithmetic.tolerances import ROUNDING
 from ekfsim.filters.belief import Gaussian, Refused
-from ekfsim.filters.correcting import Linearized, corrected
+from ekfsim.filters.kalman import Linearized, Rule, update
+from ekfsim.twins import as_written
 
 pytest.importorskip("numba")
 UPPER = np.triu_indices(3)
@@ -30,7 +31,7 @@ def test_an_update_by_the_square_root_of_P_is_the_texts(rank, R, gate):
     H[::5, 0, 1] = 0.0
     h = np.ones((N, 1))
     reading = Linearized(z, h, z - h, H, np.full((N, 1, 1), R))
-    posterior, correction = corrected(Gaussian(x, P), reading, False, gate, (2,))
+    posterior, correction = as_written(update)(Gaussian(x, P), reading, Rule(gate, False, (2,)))
     assert gate is None or rank == 0 or {0, 4} == set(correction.refused.tolist())
 
     from ekfsim.filters.chi_square import quantile

@@ -117,11 +117,9 @@ def _numbers(told, right, within, name, runs):
     else:
         odd = ~np.isfinite(right)
         sizes = np.where(odd, 0.0, np.abs(right))
-        each = runs is not None and sizes.ndim > 1 and len(sizes) == runs
-        axes = tuple(range(1, sizes.ndim)) if each else None
-        scale = sizes if runs is not None and not each else sizes.max(axes, initial=0.0)
-        if each:
-            scale = scale.reshape(-1, *[1] * (sizes.ndim - 1))
+        by_run = runs is not None and sizes.ndim > 0 and len(sizes) == runs
+        axes = tuple(range(1, sizes.ndim)) if by_run else None
+        scale = sizes.max(axes, initial=0.0, keepdims=True)
         same = np.isclose(told, right, rtol=0, atol=0, equal_nan=True)
         with np.errstate(invalid="ignore"):
             near = ~odd & (np.abs(told - right) <= within * scale)

@@ -7,17 +7,19 @@ import mpmath
 import numpy as np
 import pytest
 from backends import BACKENDS
-from problems import begun
+from problems import ROOM, begun
 from scenes import DESK, scene
 
 from ekfsim import play
 from ekfsim.commands import Move, Sense
+from ekfsim.filters.arithmetic.square_root import covariance
 from ekfsim.filters.belief import Gaussian
-from ekfsim.filters.conditioning import covariance
+from ekfsim.filters.ekf import EKF
 from ekfsim.filters.stretch import stretch
 from ekfsim.localization import first_belief
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.protocols import Quantity
+from ekfsim.models.sensors.laser import Laser
 from ekfsim.twins import taking
 from ekfsim.world import Noise
 
@@ -149,6 +151,16 @@ def test_an_update_is_right_to_six_digits_where_noises_have_much_in_common(seed)
             np.broadcast_to(np.diag(P_new), first.mean.shape), rel=1e-6
         )
         assert (np.abs(correction.K - K) <= 1e-6 * unit).all()
+
+
+@pytest.mark.parametrize("name", BACKENDS)
+def test_a_sharp_laser_leaves_its_own_doubt_and_no_rounding(name):
+    """A beam along x, the heading known: of 0.01 m² its R is left, be that as small as it may."""
+    x, P = np.tile([3.0, 4.0, 0.0], (MANY, 1)), np.tile(np.diag([0.01, 0.01, 0.0]), (MANY, 1, 1))
+    laser = Laser(ROOM, 0.0, 1e-8)
+    with taking(name):
+        posterior, correction = EKF().update(Gaussian(x, P), laser, np.full((MANY, 1), 7.0))
+    np.testing.assert_allclose(posterior.covariance[:, 0, 0], correction.R[:, 0, 0], rtol=1e-9)
 
 
 @pytest.mark.parametrize("backend", BACKENDS)

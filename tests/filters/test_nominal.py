@@ -8,7 +8,7 @@ from problems import begun, classroom, landmark
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.kf import KF
-from ekfsim.filters.nominal import NominalKF
+from ekfsim.filters.variants.nominal import NominalKF
 from ekfsim.models.motions.move_turn import MoveTurn
 
 PLAN = np.array([[1.0, 1.0, 0.2], [2.0, 1.2, 1.3], [2.3, 2.1, 3.1]])

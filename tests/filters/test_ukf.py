@@ -9,12 +9,12 @@ from problems import close, landmark, problem
 from systems_scenes import gnss
 
 from ekfsim.files.scenes.load import load_scene
+from ekfsim.filters.arithmetic.square_root import square_root
+from ekfsim.filters.arithmetic.unscented import reach
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.chi_square import quantile
-from ekfsim.filters.conditioning import square_root
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.ukf import UKF
-from ekfsim.filters.unscented import reach
 from ekfsim.localization import play
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.protocols import Quantity

@@ -8,7 +8,7 @@ from test_ukf import Bent
 
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ukf import UKF
-from ekfsim.filters.ukf_augmented import AugmentedUKF, augmented
+from ekfsim.filters.variants.ukf_augmented import AugmentedUKF, augmented
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.yaw import Yaw

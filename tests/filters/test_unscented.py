@@ -5,8 +5,8 @@ import pytest
 from filterpy.kalman import JulierSigmaPoints, MerweScaledSigmaPoints
 from numerics import covariance, definite
 
-from ekfsim.filters.conditioning import square_root
-from ekfsim.filters.unscented import (
+from ekfsim.filters.arithmetic.square_root import square_root
+from ekfsim.filters.arithmetic.unscented import (
     nearest_definite,
     sigma_points,
     statistical_slope,

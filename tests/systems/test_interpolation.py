@@ -9,7 +9,7 @@ from recordings import speeds
 
 from ekfsim.figures.track import Track, rmse
 from ekfsim.files.scenes.load import load_scene
-from ekfsim.filters.listing import ListingEKF
+from ekfsim.filters.variants.listing import ListingEKF
 from ekfsim.localization import filter_of, play
 from ekfsim.models.layout import SPEED_POSE
 from ekfsim.models.sensors.position import Position

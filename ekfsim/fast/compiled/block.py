@@ -15,7 +15,7 @@ from ekfsim.diagnostics.nees import OUTSIDE, RANK, ROUNDING, squared_mahalanobis
 from ekfsim.diagnostics.verdict import LOST
 from ekfsim.fast.compiled import beams, judging, steps
 from ekfsim.fast.many.nees import CLEAR
-from ekfsim.filters import algebra
+from ekfsim.filters.arithmetic import tolerances
 from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
@@ -128,7 +128,7 @@ class Block:
         h, wall, way = cast(walls, self.x, bearing)
         self.readings += steps.read(
             self.x, self.P, np.maximum(z, 0.0), h, wall, way, walls.normals,
-            self.world.told.noise.range, ALONG, algebra.SHARP, algebra.ROUNDING, self.gate,
+            self.world.told.noise.range, ALONG, tolerances.SHARP, tolerances.ROUNDING, self.gate,
             self.nis, self.nis_dof,
         )  # fmt: skip
 

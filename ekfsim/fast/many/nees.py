@@ -42,7 +42,7 @@ def squared_mahalanobis(e: Array, P: Array) -> tuple[Array, Integers, Booleans] 
     if e.ndim != 2 or len(e) < MANY or n not in (2, 3) or e.shape != P.shape[:-1]:
         return None
     if n == 3 and taken() == "compiled":
-        from ekfsim.filters import compiled
+        from ekfsim.fast.compiled import nees as compiled
 
         value, clear = compiled.squares(front(e, 1), front(P), ROUNDING**2, CLEAR)
     else:

@@ -11,10 +11,10 @@ from ekfsim.figures.album import BLACK, BLUE, GREEN, ORANGE, SKY, VERMILLION, Al
 from ekfsim.figures.crowd import Crowd, crowd_of, over_runs, set_down
 from ekfsim.figures.pioneer.square import corners, shade_corners
 from ekfsim.figures.track import rmse
+from ekfsim.filters.arithmetic.square_root import square_root
+from ekfsim.filters.arithmetic.unscented import sigma_points, weights
 from ekfsim.filters.belief import Belief, Correction, Gaussian
-from ekfsim.filters.conditioning import square_root
 from ekfsim.filters.ekf import EKF
-from ekfsim.filters.unscented import sigma_points, weights
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Sensor
 from ekfsim.scene import Scene

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ekfsim.figures.album import BLACK, BLUE, GREY, VERMILLION, Album, labelled
-from ekfsim.filters.conditioning import square_root
-from ekfsim.filters.unscented import sigma_points, unscented_transform, weights
+from ekfsim.filters.arithmetic.square_root import square_root
+from ekfsim.filters.arithmetic.unscented import sigma_points, unscented_transform, weights
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import outline
 from ekfsim.models.sensors.polar import cartesian, cartesian_jacobian, cartesian_moments

@@ -58,7 +58,7 @@ def numbered(reading: Reading, kinds: tuple[str, ...], path: Path) -> tuple[str,
     return kind, int(number or 0)
 
 
-def text_of(
+def as_written(
     rows: Iterable[Iterable[float | int]], separator: str, header: str = "", ending: str = ""
 ) -> str:
     """A table with 17 digits, from which every number can be read back as it was."""

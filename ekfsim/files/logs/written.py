@@ -11,7 +11,7 @@ import numpy as np
 
 from ekfsim.errors import UsageError
 from ekfsim.files.logs.formats.pylon import CLOCK, EARTH_RADIUS
-from ekfsim.files.logs.ticks import Run, numbered, text_of
+from ekfsim.files.logs.ticks import Run, as_written, numbered
 from ekfsim.files.results.writing import whole_folder
 from ekfsim.models.sensors.offset import from_global
 from ekfsim.provenance import told_in_a_line
@@ -113,9 +113,9 @@ def _mower(scene: Scene, run: Run, out: Path) -> Files:
             _, id = numbered(reading, ("marker",), out)
             angles.append([tick.t - dt / 2, row_of[id], *reading.z.tolist()])
     return {
-        "marker-001-poselog.txt": text_of(poses, " "),
-        "marker-001-003-angles.txt": text_of(angles, " "),
-        "marker-001-map.txt": text_of(scene.world.landmarks, " "),
+        "marker-001-poselog.txt": as_written(poses, " "),
+        "marker-001-003-angles.txt": as_written(angles, " "),
+        "marker-001-map.txt": as_written(scene.world.landmarks, " "),
     }
 
 
@@ -133,8 +133,8 @@ def _gnss(scene: Scene, run: Run, out: Path) -> Files:
             numbered(reading, ("gnss",), out)
             fixes.append([tick.t, *reading.z.tolist()])
     return {
-        "wheelspeeds.csv": text_of(wheels, ",", "t,vr,vl"),
-        "gnss.csv": text_of(fixes, ",", "t,x,y"),
+        "wheelspeeds.csv": as_written(wheels, ",", "t,vr,vl"),
+        "gnss.csv": as_written(fixes, ",", "t,x,y"),
         "groundtruth.csv": _truth(run, "phi"),
     }
 
@@ -154,7 +154,7 @@ def _pylon(scene: Scene, run: Run, out: Path) -> Files:
         latitude, longitude = _degrees(*((0.0, 0.0) if tick.fix is None else tick.fix.tolist()))
         yaw = math.degrees(-θ) % 360
         rows.append([x, y, 0.0, stamp, latitude, longitude, yaw, 0.0, 0.0, ahead, left, 0.0])
-    return {"pylon.csv": text_of(rows, ",", ending=",")}
+    return {"pylon.csv": as_written(rows, ",", ending=",")}
 
 
 def _degrees(x: float, y: float) -> tuple[float, float]:
@@ -185,10 +185,10 @@ def _pioneer(scene: Scene, run: Run, out: Path) -> Files:
             else:
                 read[kind].append([tick.t, beam, *reading.z.tolist()])
     return {
-        "odometry.csv": text_of(ways, ",", "t,left,right"),
-        "ultrasonic.csv": text_of(read["ultrasonic"], ",", "t,beam,range"),
-        "infrared.csv": text_of(read["infrared"], ",", "t,pair,intensity"),
-        **{f"{name}.csv": text_of(rows, ",", "t,yaw") for name, rows in yaws.items()},
+        "odometry.csv": as_written(ways, ",", "t,left,right"),
+        "ultrasonic.csv": as_written(read["ultrasonic"], ",", "t,beam,range"),
+        "infrared.csv": as_written(read["infrared"], ",", "t,pair,intensity"),
+        **{f"{name}.csv": as_written(rows, ",", "t,yaw") for name, rows in yaws.items()},
         "groundtruth.csv": _truth(run, "heading"),
     }
 
@@ -196,7 +196,7 @@ def _pioneer(scene: Scene, run: Run, out: Path) -> Files:
 def _truth(run: Run, heading: str) -> str:
     """The true poses, from the start on."""
     rows = [[run.t, *run.truth.tolist()], *([tick.t, *tick.truth.tolist()] for tick in run.ticks)]
-    return text_of(rows, ",", f"t,x,y,{heading}")
+    return as_written(rows, ",", f"t,x,y,{heading}")
 
 
 WRITERS: dict[str, Writer] = {"mower": _mower, "gnss": _gnss, "pylon": _pylon, "pioneer": _pioneer}

@@ -33,7 +33,7 @@ from ekfsim.files.scenes.settings import (
     remark,
 )
 from ekfsim.files.scenes.system_checks import check_fit, check_system, check_ways, system_warnings
-from ekfsim.files.source import bytes_of, text_of
+from ekfsim.files.source import as_written, bytes_of
 from ekfsim.files.yaml.marked import Mark, Node, parse, without_collection
 from ekfsim.files.yaml.marked import Path as Route
 from ekfsim.files.yaml.schema import MODELS, Kind
@@ -252,7 +252,7 @@ def kind_of(path: str | Path) -> Kind:
     """Whether a file is a world or a commands file. Raises UsageError or InputError where it cannot
     be read.
     """
-    root, _ = parse(text_of(Path(path), str(path)), str(path))
+    root, _ = parse(as_written(Path(path), str(path)), str(path))
     return kind_of_tree(root)
 
 
@@ -294,7 +294,7 @@ def read(path: Path, shown: str, kind: Kind | None, settings: Sequence[Setting] 
     file.
     """
     try:
-        root, mistakes = parse(text_of(path, shown), shown)
+        root, mistakes = parse(as_written(path, shown), shown)
     except InputError as error:
         return File(kind or "world", error.mistakes)
     kind = kind or kind_of_tree(root)

@@ -22,7 +22,7 @@ from ekfsim.files.scenes.settings import (
     setting,
     swept,
 )
-from ekfsim.files.source import text_of
+from ekfsim.files.source import as_written
 from ekfsim.files.yaml.marked import Node, field_of, parse
 from ekfsim.files.yaml.marked import Path as Route
 from ekfsim.files.yaml.telling import at, tell
@@ -122,7 +122,7 @@ def read_request(name: str) -> Request:
     Raises UsageError where there is no such file, InputError with all mistakes of a study file.
     """
     path = resolve(name, "commands")
-    root, mistakes = parse(text_of(path, str(path)), str(path))
+    root, mistakes = parse(as_written(path, str(path)), str(path))
     if "study" not in root.keys:
         return Request(path, name=name, commands_name=name)
     try:
@@ -160,7 +160,7 @@ def beside(path: Path, named: str, folder: str, root: Node) -> tuple[Path, str]:
     known = packaged("worlds" if folder == "worlds" else "commands")
     if named not in known or _is_there(near):
         try:
-            text_of(near, str(near))
+            as_written(near, str(near))
         except UsageError as error:
             if isinstance(error, InputError):
                 return near, str(near)

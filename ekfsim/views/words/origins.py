@@ -7,10 +7,10 @@ from ekfsim.filters import FILTERS, protocol
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.iekf import IEKF
 from ekfsim.filters.kf import KF
-from ekfsim.filters.nominal import NominalKF
 from ekfsim.filters.pf import PF
 from ekfsim.filters.ukf import UKF
-from ekfsim.filters.ukf_augmented import AugmentedUKF
+from ekfsim.filters.variants.nominal import NominalKF
+from ekfsim.filters.variants.ukf_augmented import AugmentedUKF
 from ekfsim.scene import Scene
 from ekfsim.systems import system_of
 

@@ -12,8 +12,8 @@ from ekfsim.files.packaged import resolve
 from ekfsim.files.scenes.load import check, read_scene
 from ekfsim.files.scenes.load_study import asked
 from ekfsim.filters import FILTERS
-from ekfsim.filters.shadows import ShadowsAlone
 from ekfsim.filters.tuning import UNTUNED
+from ekfsim.filters.variants.shadows import ShadowsAlone
 from ekfsim.localization import filter_of, play
 from ekfsim.records import Reading
 from ekfsim.study.comparison import Comparison, with_sides

@@ -196,7 +196,7 @@ NAMES = {  # where a name of a file's comes into a message; @ is a quoted text w
 
 
 @pytest.mark.parametrize("what", NAMES)
-def test_no_text_of_a_file_breaks_a_line_of_a_message(place, what):
+def test_no_as_written_a_file_breaks_a_line_of_a_message(place, what):
     (place / "m.yaml").write_text(DRIVEN)
     for sign in BREAKS:
         escaped = "".join(f"\\u{ord(char):04x}" for char in f"a{sign}b")

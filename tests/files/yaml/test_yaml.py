@@ -3,7 +3,7 @@
 import pytest
 
 from ekfsim.errors import InputError
-from ekfsim.files.source import text_of
+from ekfsim.files.source import as_written
 from ekfsim.files.yaml.marked import NOTHING, parse, scalar
 
 
@@ -59,7 +59,7 @@ def test_quoted_text_is_text():
 def test_aliases_and_byte_order_marks_and_windows_line_ends_load(tmp_path):
     path = tmp_path / "f.yaml"
     path.write_bytes(b"\xef\xbb\xbfa: &x [1, 2]\r\nb: *x\r\n...\r\n")
-    assert plain(text_of(path, "f.yaml")) == {"a": [1, 2], "b": [1, 2]}
+    assert plain(as_written(path, "f.yaml")) == {"a": [1, 2], "b": [1, 2]}
 
 
 def test_a_value_is_found_at_its_place():
@@ -73,7 +73,7 @@ def test_a_value_is_found_at_its_place():
 def told_of(path):
     """Every mistake in a file, as it is told."""
     try:
-        _, mistakes = parse(text_of(path, "f.yaml"), "f.yaml")
+        _, mistakes = parse(as_written(path, "f.yaml"), "f.yaml")
     except InputError as error:
         mistakes = error.mistakes
     return list(map(str, mistakes))

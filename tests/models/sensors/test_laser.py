@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 import shapely
+from backends import BACKENDS
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from numerics import jacobian
@@ -10,6 +11,7 @@ from numerics import jacobian
 from ekfsim.diagnostics.ambiguity import sighting
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.raycast.walls import Walls
+from ekfsim.twins import taking
 
 ROOM = np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])
 KITE = np.array([[4, 3], [6, 2.5], [6.5, 4], [5, 5.5]])
@@ -131,3 +133,27 @@ def test_a_batch_equals_its_runs(axes):
     for k in np.ndindex(axes):
         for batch, one in zip((h[k], H[k], R[k]), sensor.linearize(x[k]), strict=True):
             assert batch == pytest.approx(one, abs=1e-12, nan_ok=True)
+
+
+@pytest.mark.parametrize("name", BACKENDS)
+def test_a_beam_along_a_wall_among_others(name):
+    random = np.random.default_rng(11)
+    x = random.uniform((1, 1, -3), (9, 7, 3), (200, 3))
+    x[::3] = [-1.0, 0.0, 0.0]
+    sensor = laser(0.0, Walls.of({"boundary": ROOM}), 0.02)
+    with taking(name):
+        many = sensor.linearize(x)
+    assert np.isnan(many[0][::3]).all()
+    for k in range(200):
+        for each, one in zip(many, sensor.linearize(x[k]), strict=True):
+            np.testing.assert_allclose(each[k], one, rtol=1e-12, atol=1e-12)
+
+
+def test_nothing_in_a_map_without_walls_is_met():
+    x = np.random.default_rng(11).uniform((1, 1, -3), (9, 7, 3), (200, 3))
+    for name in BACKENDS:
+        with taking(name):
+            h, H, R = Laser(Walls.of({}), 0.1, 0.01).linearize(x)
+        assert np.isnan(h).all()
+        assert np.isnan(R).all()
+        assert (H == 0).all()

@@ -119,9 +119,9 @@ def _stamps(rows: Rows, lines: Lines) -> list[int]:
     itself.
     """
     stamps, mistakes = list[int](), list[Mistake]()
-    text_of = dict(zip(lines.numbers, lines.texts, strict=True))
+    as_written = dict(zip(lines.numbers, lines.texts, strict=True))
     for number in rows.lines.tolist():
-        fields = text_of[number].split(",")
+        fields = as_written[number].split(",")
         text = fields[STAMP].strip()
         value = int(text) if text.isdecimal() else _whole(float(text)) if is_number(text) else -1
         if not 0 <= value < 1 << 64:

@@ -4,12 +4,12 @@ only lead down.
 
 import numpy as np
 
-from ekfsim.filters.algebra import ROUNDING, wrapped
-from ekfsim.filters.conditioning import conditioned, slope
+from ekfsim.filters.arithmetic.algebra import wrapped
+from ekfsim.filters.arithmetic.square_root import conditioned, slope
+from ekfsim.filters.arithmetic.tolerances import CONVERGED, ROUNDING
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.protocols import Sensor
 
-CONVERGED = 1e-10  # standard deviations; a step that is shorter is the last
 SHORTEST = 2.0**-10  # a step that must be shortened so much before it leads down leads nowhere
 # for each whole step: in a narrow bent valley, as a far too sharp sensor makes one, no step gets
 # far

@@ -1,18 +1,26 @@
-"""What unrolled.py does, and the NEES, compiled by Numba: the extra `fast`.
-
-Imported only where twins.py has been told to take it. All arrays have their entries in
-front and the runs behind, (3, 3, N), one stretch of memory. Most loops are short on purpose: then
-several runs are taken at once.
-"""
+"""many/kalman.py, compiled."""
 
 import numpy as np
 
+from ekfsim.fast.many.kalman import predicted, updated
+from ekfsim.filters.belief import Correction, Gaussian
+from ekfsim.filters.kalman import Linearized, Rule
 from ekfsim.geometry import Array, Booleans
 from ekfsim.twins import compiled
 
 
+def predict(P: Array, F: Array, G: Array, M: Array, Q: Array | float) -> Array | None:
+    """F P Fᵀ + G M Gᵀ + Q : (N, 3, 3), exactly symmetric"""
+    return predicted(P, F, G, M, Q, propagated, sound)
+
+
+def update(prior: Gaussian, reading: Linearized, rule: Rule) -> tuple[Gaussian, Correction] | None:
+    """K = P⁻ Hᵀ/S      x = x⁻ + K ν      P = P⁻ − P⁻ Hᵀ H P⁻/S          of one number in N runs"""
+    return updated(prior, reading, rule, revised, sound)
+
+
 def propagated(P: Array, F: Array, G: Array, M: Array) -> Array | None:
-    """F P Fᵀ + G M Gᵀ : (3, 3, N); None where F or M are not such as unrolled.py knows"""
+    """F P Fᵀ + G M Gᵀ : (3, 3, N); None where F or M are not such as many/kalman.py knows"""
     new = np.empty(P.shape)
     P, F, G, M = (np.ascontiguousarray(each) for each in (P, F, G, M))
     return new if _propagate(P, F, G, M, new) else None
@@ -21,7 +29,7 @@ def propagated(P: Array, F: Array, G: Array, M: Array) -> Array | None:
 def revised(
     x: Array, P: Array, H: Array, r: Array, ν: Array, sharp: float
 ) -> tuple[Array, Array, Array, Array, Array, Booleans]:
-    """S, K, x, P and NIS as in unrolled.py, and for which runs they may be trusted."""
+    """S, K, x, P and NIS as there, and for which runs they may be trusted."""
     new = (
         np.empty(r.shape),
         np.empty(x.shape),
@@ -40,18 +48,9 @@ def sound(P: Array) -> bool:
     return bool(_is_sound(np.ascontiguousarray(P)))
 
 
-def squares(e: Array, P: Array, tiny: float, sure: float) -> tuple[Array, Booleans]:
-    """eᵀ P⁻¹ e of three entries : (N,), and where P is clearly of full rank, as in
-    fast/nees.py
-    """
-    value, clear = np.empty(e.shape[1:]), np.empty(e.shape[1:], bool)
-    _square(np.ascontiguousarray(e), np.ascontiguousarray(P), tiny, sure, value, clear)
-    return value, clear
-
-
 @compiled
 def _propagate(P: Array, F: Array, G: Array, M: Array, new: Array) -> bool:
-    """F P Fᵀ + G M Gᵀ into `new`, and whether F and M are such as unrolled.py knows."""
+    """F P Fᵀ + G M Gᵀ into `new`, and whether F and M are such as many/kalman.py knows."""
     m, N = M.shape[0], P.shape[2]
     strange = 0
     for n in range(N):
@@ -134,21 +133,3 @@ def _is_sound(P: Array) -> bool:
         )
         beyond += not fine
     return beyond == 0
-
-
-@compiled
-def _square(e: Array, P: Array, tiny: float, sure: float, value: Array, clear: Booleans) -> None:
-    """The same, by P = L D Lᵀ."""
-    for n in range(e.shape[1]):
-        a, b, d = P[0, 0, n], P[0, 1, n], P[1, 1, n]
-        p, q, r = P[2, 0, n], P[2, 1, n], P[2, 2, n]
-        k = b / a
-        D = d - k * b
-        y = e[1, n] - k * e[0, n]
-        m = p / a
-        c = q - m * b
-        o = c / D
-        D3 = r - m * p - o * c
-        y3 = e[2, n] - m * e[0, n] - o * y
-        value[n] = e[0, n] * e[0, n] / a + y * y / D + y3 * y3 / D3
-        clear[n] = (a > tiny) & (d > tiny) & (r > tiny) & (sure * d < D) & (sure * d * r < D * D3)

@@ -1,17 +1,10 @@
 """The few lines of matrix algebra that the filters share."""
 
-import math
-
 import numpy as np
 
-from ekfsim.filters.belief import Refused
-from ekfsim.filters.chi_square import quantile
-from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.geometry.angles import wrap, wrap_one
-
-# a difference below this share of what it is taken of is rounding
-ROUNDING = 16 * float(np.finfo(float).eps)
-SHARP = 1e-4  # of Σ Hᵢ² Pᵢᵢ; a sensor of less noise leaves less than P − K H P may be trusted with
+from ekfsim.filters.arithmetic.tolerances import ROUNDING
+from ekfsim.geometry import Array
+from ekfsim.geometry.angles import wrap
 
 
 def symmetric(P: Array) -> Array:
@@ -62,30 +55,5 @@ def normalized_square(innovation: Array, S: Array) -> Array:
 def wrapped(x: Array, headings: tuple[int, ...]) -> Array:
     """x : (…, n) with its headings in (−π, π], changed in place."""
     for i in headings:
-        x[..., i] = wrap_one(float(x[i])) if x.ndim == 1 else wrap(x[..., i])
+        x[..., i] = wrap(x[..., i])
     return x
-
-
-def refusal(z: Array, h: Array, nis: Array, skip: Booleans | bool, gate: float | None) -> Integers:
-    """Why each reading is refused : (…) of `Refused`; the first reason that holds. z, h : (…, k)"""
-    limit = np.inf if gate is None else quantile(gate, z.shape[-1])
-    reasons = [
-        (np.isnan(z).any(axis=-1), Refused.NO_ECHO),
-        (np.isnan(h).any(axis=-1), Refused.NO_WALL),
-        (np.asarray(skip), Refused.GUARD),
-        (nis > limit, Refused.GATE),
-    ]
-    shape = np.broadcast_shapes(nis.shape, *(holds.shape for holds, _ in reasons))
-    conditions = [np.broadcast_to(holds, shape) for holds, _ in reasons]
-    return np.select(conditions, [np.int64(reason) for _, reason in reasons], np.int64(Refused.NOT))
-
-
-def refusal_one(z: Array, h: Array, nis: float, skip: bool, gate: float | None) -> Refused:
-    """The same for one reading of one robot."""
-    if any(map(math.isnan, z.tolist())):
-        return Refused.NO_ECHO
-    if any(map(math.isnan, h.tolist())):
-        return Refused.NO_WALL
-    if skip:
-        return Refused.GUARD
-    return Refused.GATE if gate is not None and nis > quantile(gate, len(z)) else Refused.NOT

@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from ekfsim.filters.algebra import symmetric
-from ekfsim.filters.conditioning import covariance as as_covariance
-from ekfsim.filters.conditioning import square_root
+from ekfsim.filters.arithmetic.algebra import symmetric
+from ekfsim.filters.arithmetic.square_root import covariance as as_covariance
+from ekfsim.filters.arithmetic.square_root import square_root
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 
@@ -24,6 +25,10 @@ class Weights(NamedTuple):
     mean: Array  # (2n + 1,) Wᵐ
     covariance: Array  # (2n + 1,) Wᶜ
 
+    def definite(self, P: Array) -> Array:
+        """P, which need not be a covariance where the first point counts negatively."""
+        return nearest_definite(P) if self.covariance[0] < 0 else P
+
 
 class Transformed(NamedTuple):
     """A Gaussian after a function y = g(x)."""
@@ -36,7 +41,13 @@ class Transformed(NamedTuple):
     slope: Array
     bend: Array  # Ω = P_yy − D Dᵀ : (…, k, k), what no straight line through the points explains
 
+    @property
+    def jacobian(self) -> Array:
+        """P_yx P⁺ : (…, k, n), what stands for a derivative"""
+        return statistical_slope(self.slope, self.root)
 
+
+@lru_cache(maxsize=64)
 def weights(n: int, alpha: float = 1.0, beta: float = 0.0, kappa: float | None = None) -> Weights:
     """λ = α² (n + κ) − n      W₀ᵐ = λ/(n + λ)      W₀ᶜ = W₀ᵐ + 1 − α² + β      Wᵢ = 1/(2(n + λ))
 
@@ -113,7 +124,7 @@ def unscented_transform(
     function: Callable[[Array], Array],
     weights: Weights,
     angles: tuple[int, ...] = (),
-    turning: Array | None = None,
+    J: Array | None = None,
     headings: tuple[int, ...] = (),
 ) -> Transformed:
     """ȳ = Σ Wᵢᵐ yᵢ      P_yy = Σ Wᵢᶜ (yᵢ − ȳ)(yᵢ − ȳ)ᵀ      P_xy = Σ Wᵢᶜ (xᵢ − x̄)(yᵢ − ȳ)ᵀ
@@ -122,7 +133,8 @@ def unscented_transform(
     function : (…, n) → (…, k), whose entries `angles` are directions. All is summed in differences
     δᵢ = yᵢ − y₀ to the first point. That of a direction is not known but for whole turns, and a
     heading may be uncertain by more than one. So it is taken next to T (xᵢ − x̄), what the state's
-    own headings turn y by, however far. turning : (…, k, n) is T.
+    own headings turn y by, however far. J : (…, k, n) is the function's Jacobian at x̄, of which T
+    has the columns of the headings; None: it is turned by none.
 
     The points come in pairs, δᵢ± = δ̄ + sᵢ ± dᵢ, and 2 Wᵢ (n + λ) = 1. So the sums are, without a
     small difference of large numbers,
@@ -141,7 +153,7 @@ def unscented_transform(
         arms = L * far[..., None, :]
         # X − x̄, never wrapped
         arms = np.concatenate([np.zeros_like(L[..., :1]), arms, -arms], axis=-1)
-        turned = np.zeros_like(δ) if turning is None else (turning @ arms).mT
+        turned = np.zeros_like(δ) if J is None else (_turning(J, headings) @ arms).mT
         for i in angles:
             δ[..., i] = turned[..., i] + wrap(δ[..., i] - turned[..., i])
     δ_mean = np.vecmat(weights.mean, δ)
@@ -155,6 +167,14 @@ def unscented_transform(
     W = np.append(weights.covariance[0], 2 * weights.covariance[1 : n + 1])
     bend = s.mT @ (W[:, None] * s)
     return Transformed(y_mean, as_covariance(D @ D.mT + bend), L @ D.mT, L, D, bend)
+
+
+def _turning(J: Array, headings: tuple[int, ...]) -> Array:
+    """T : (…, k, n), what of a Jacobian the headings of the state do"""
+    T = np.zeros_like(J)
+    for i in headings:
+        T[..., i] = J[..., i]
+    return T
 
 
 def statistical_slope(D: Array, L: Array) -> Array:

@@ -1,13 +1,50 @@
-"""conditioning.py of one robot in plain floats: much faster, each function held equal to its twin
-by a test.
-"""
+"""arithmetic/square_root.py of one robot."""
 
 import math
 from operator import mul
 
-from ekfsim.filters.algebra import ROUNDING
+import numpy as np
+
+from ekfsim.filters.arithmetic.square_root import Conditioned
+from ekfsim.filters.arithmetic.tolerances import ROUNDING
+from ekfsim.geometry import Array
 
 Rows = list[list[float]]
+
+
+def covariance(P: Array) -> Array | None:
+    """The symmetric part where that is a covariance, as it mostly is."""
+    if P.ndim != 2:
+        return None
+    P = 0.5 * (P + P.T)
+    return P if is_covariance_one(P.tolist()) else None
+
+
+def square_root(P: Array, seen: Array | None = None) -> Array | None:
+    """L, its rows in an order of their own where it is told what is seen."""
+    if P.ndim != 2 or (seen is not None and seen.ndim != 1):
+        return None
+    rows = P.tolist()
+    order = list(range(len(rows)))
+    if seen is not None:
+        weights = [-s * rows[i][i] for i, s in enumerate(seen.tolist())]
+        order.sort(key=weights.__getitem__)
+    return np.array(_cholesky_one(rows, order))
+
+
+def slope(H: Array, L: Array) -> Array | None:
+    """D = H L"""
+    if H.ndim != 2 or L.ndim != 2:
+        return None
+    return np.array(slope_one(H.tolist(), L.tolist()))
+
+
+def conditioned(L: Array, D: Array, R: Array, h: Array) -> Conditioned | None:
+    """The root of P, K, T and s."""
+    if not L.ndim == D.ndim == R.ndim == 2 or h.ndim != 1:
+        return None
+    told = conditioned_one(L.tolist(), D.tolist(), R.tolist(), h.tolist())
+    return Conditioned(*map(np.array, told))
 
 
 def is_covariance_one(P: Rows) -> bool:
@@ -23,10 +60,14 @@ def is_covariance_one(P: Rows) -> bool:
 
 
 def square_root_one(P: Rows, H: Rows) -> Rows:
-    """`square_root` of one robot in plain floats, held equal to it by a test."""
+    """The root of P, its rows in the order in which a reading of Jacobian H sees them."""
     n = len(P)
     seen = [-sum([row[i] * row[i] for row in H]) * P[i][i] for i in range(n)]
-    order = sorted(range(n), key=seen.__getitem__)
+    return _cholesky_one(P, sorted(range(n), key=seen.__getitem__))
+
+
+def _cholesky_one(P: Rows, order: list[int]) -> Rows:
+    n = len(P)
     L = [[0.0] * n for _ in range(n)]
     for j, p in enumerate(order):
         P_p, L_p = P[p], L[p]

@@ -1,0 +1,7 @@
+"""Filters beside those of every textbook, and counter-examples.
+
+nominal.py        the Kalman filter, linear about a trajectory that is planned
+ukf_augmented.py  the unscented one, with noise in its sigma points
+listing.py        the EKF that the listings of documents 000 and 003 are
+shadows.py        a counter-example: P without σ_xθ and σ_yθ
+"""
