@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """Drive `distance` m straight ahead, then turn in place by `angle` rad; slipping wheels move
-    the robot less.
+    """Drive `distance` m straight ahead, then turn in place by `angle` rad.
+
+    Slipping wheels move the robot less.
     """
 
     distance: float

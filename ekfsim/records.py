@@ -61,9 +61,7 @@ class Log:
 
 @dataclass(frozen=True, slots=True)
 class Nees:
-    """The error of a belief, squared and measured by its covariance: eᵀ P⁺ e. Arrays carry leading
-    axes (…).
-    """
+    """The squared error of a belief by its covariance: eᵀ P⁺ e. Arrays carry leading axes (…)."""
 
     value: Array  # (…) nan where the belief is impossible
     dof: Integers  # (…) the rank of P
@@ -71,8 +69,9 @@ class Nees:
 
 
 class Remark(Protocol):
-    """What is to be said of a reading before it is used. What else there is to it, only who made it
-    and who tells it know.
+    """What is to be said of a reading before it is used.
+
+    What else there is to it, only who made it and who tells it know.
     """
 
     @property

@@ -1,6 +1,4 @@
-"""A scene: a world, what is done in it or was recorded of it, and the settings of the filter that
-watches.
-"""
+"""A scene: a world, what is done in it or was recorded of it, and how the filter is set."""
 
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -19,8 +17,9 @@ Share = tuple[float, float]  # from, to; both in [0, 1]
 
 @dataclass(frozen=True, slots=True)
 class Expect:
-    """What a study of this scene must find: the word that the scene keeps. None where it promises
-    nothing.
+    """What a study of this scene must find: the word that the scene keeps.
+
+    None where it promises nothing.
     """
 
     lost: Share | None = None

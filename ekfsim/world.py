@@ -82,9 +82,7 @@ class Faults:
 
 @dataclass(frozen=True)
 class Told:
-    """What the filter is told: its first belief, its noise, its map. The truth may differ in
-    each.
-    """
+    """What the filter is told: its first belief, noise and map. The truth may differ in each."""
 
     start: Array  # (3,) x, y, θ in m, m, rad
     sigma: Array  # (3,) standard deviations of the first belief
@@ -125,9 +123,7 @@ class World:
         return POSE if self.robot is None else self.robot.layout
 
     def follows(self, reading: DocumentReading) -> bool:
-        """Whether anything of its robot and its instruments is printed, or coded, otherwise than it
-        is right.
-        """
+        """Whether anything of robot or instruments is printed, or coded, otherwise than right."""
         own = () if self.robot is None else self.robot.readings
         return reading in own or any(
             reading in instrument.readings for instrument in self.instruments

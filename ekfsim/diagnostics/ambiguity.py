@@ -1,6 +1,4 @@
-"""Whether a beam could as well meet another wall: what should be known of it before its reading is
-used.
-"""
+"""Whether a beam could as well meet another wall: to be known before its reading is used."""
 
 from dataclasses import dataclass
 

@@ -10,8 +10,9 @@ from ekfsim.geometry import Array
 
 @dataclass(frozen=True)
 class Layout:
-    """The order of a state's entries. Every state holds a pose; what else it holds, only its models
-    know.
+    """The order of a state's entries.
+
+    Every state holds a pose; what else it holds, only its models know.
     """
 
     names: tuple[str, ...]

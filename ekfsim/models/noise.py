@@ -1,6 +1,4 @@
-"""Covariances of noises that do not depend on each other, and what a step's length makes of
-them.
-"""
+"""Covariances of independent noises, and what the length of a step makes of them."""
 
 from functools import lru_cache
 
@@ -22,8 +20,9 @@ def independent(*sigmas: float) -> Array:
 
 
 def per_second(dt: Array) -> Array:
-    """1/dt : (…), 0 where no time has passed. White noise that is held over dt s has the variance
-    density² / dt.
+    """1/dt : (…), 0 where no time has passed.
+
+    White noise that is held over dt s has the variance density² / dt.
     """
     return np.divide(1.0, dt, out=np.zeros_like(dt), where=dt > 0)
 

@@ -7,8 +7,9 @@ from ekfsim.twins import twinned
 
 
 class Quantity(NamedTuple):
-    """One number of a motion input or a reading, as people call it. unit : "m", "rad", "m/s", "s",
-    …, "" for none
+    """One number of a motion input or a reading, as people call it.
+
+    unit : "m", "rad", "m/s", "s", …, "" for none
     """
 
     name: str
@@ -16,8 +17,9 @@ class Quantity(NamedTuple):
 
 
 class Motion(Protocol):
-    """x⁺ = f(x, u + noise of covariance M) + noise of covariance Q, linearised by F = ∂f/∂x and G =
-    ∂f/∂u.
+    """x⁺ = f(x, u + noise of covariance M) + noise of covariance Q
+
+    Linearised by F = ∂f/∂x and G = ∂f/∂u.
     """
 
     __slots__ = ()
@@ -54,8 +56,9 @@ class Sensor(Protocol):
 
     @property
     def outputs(self) -> tuple[Quantity, ...]:
-        """What the entries of z are. Those in rad are directions: z − h wraps them, and a mean of
-        them is circular.
+        """What the entries of z are.
+
+        Those in rad are directions: z − h wraps them, and a mean of them is circular.
         """
 
     def h(self, x: Array) -> Array:

@@ -21,16 +21,18 @@ def gaussian(mean: Array, covariance: Array, generator: "Generator") -> Array:
 
 
 def readings(sensor: Sensor, x: Array, generator: "Generator") -> Array:
-    """z = h(x) + noise of covariance R for each state : (…, k), nan where the sensor meets nothing.
-    x : (…, n)
+    """z = h(x) + noise of covariance R for each state x (…, n) : (…, k)
+
+    nan where the sensor meets nothing.
     """
     h, _, R = sensor.linearize(x)
     return gaussian(h, np.nan_to_num(R), generator)
 
 
 def echoes(pair: Pair, n: int, generator: "Generator") -> Array:
-    """n echoes of 1 V height from anywhere in the pair's range, T and α as the pair's vary : (n, 4)
-    V, s, s, 1
+    """n echoes of 1 V height from anywhere in the pair's range : (n, 4) V, s, s, 1
+
+    T and α as the pair's vary.
     """
     τ = pair.flight(generator.uniform(pair.nearest, pair.farthest, n))
     T, α = (
@@ -41,8 +43,9 @@ def echoes(pair: Pair, n: int, generator: "Generator") -> Array:
 
 
 def sigma_of(snr: float) -> float:
-    """σ of the noise in V, where a carrier of 1 V height stands `snr` dB above it: SNR = 10 log₁₀
-    (½ V²/σ²).
+    """σ of the noise in V, where a carrier of 1 V height stands `snr` dB above it.
+
+    SNR = 10 log₁₀ (½ V²/σ²)
 
     >>> round(sigma_of(20.0), 4)
     0.0707

@@ -22,9 +22,7 @@ FEW = 32  # walls near any of the robots that are sooner looked at one by one
 
 
 def obey(scene: Scene, draws: Draws) -> Iterator[Entry]:
-    """The log of a robot that obeys commands. Entry 0 is the start; then one for each expanded
-    command.
-    """
+    """The log of a robot that obeys: the start, then an entry for each expanded command."""
     world, drawn = scene.world, 0
     motion = MoveTurn(world.told.noise.odometry_distance, world.told.noise.odometry_angle)
     truth = true_start(world, draws)

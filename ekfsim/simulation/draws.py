@@ -20,9 +20,12 @@ PARTICLES, STREAMS = 1, 2
 class Draws:
     """The random numbers of some runs: a function of (seed, index, run) alone.
 
-    Draw i of the runs 1024·b … 1024·b + 1023 comes from Generator(PCG64(SeedSequence([seed, i,
-    b]))): normals of shape (1024, 4) first, then uniforms of shape (1024, 2). So another ratio,
-    filter or gate changes no draw, and any run of a study can be played alone.
+    Draw i of the runs 1024·b … 1024·b + 1023 comes from
+
+        Generator(PCG64(SeedSequence([seed, i, b])))
+
+    normals of shape (1024, 4) first, then uniforms of shape (1024, 2). So another ratio, filter or
+    gate changes no draw, and any run of a study can be played alone.
     """
 
     def __init__(self, seed: int, runs: Integers) -> None:

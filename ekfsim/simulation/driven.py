@@ -1,6 +1,4 @@
-"""A robot that is driven along a way, its instruments read at their own rates: world + drive +
-draws → Entries.
-"""
+"""A robot that is driven, its instruments read at their own rates: drive + draws → Entries."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -32,8 +30,7 @@ DISTURBANCE, INPUT, FIX, READING, OUTLIER = range(5)
 
 
 def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
-    """The log of a driven robot: at every tick its motion input, then the readings of that instant,
-    one after another.
+    """The log of a driven robot: at every tick its motion input, then what is read at that instant.
 
     The truth follows the right equations and the robot's own numbers, whatever reading of the
     document and whatever numbers the filter is told. What disturbs the motion, the noise of its

@@ -92,8 +92,9 @@ def ticks_of(course: Course, poses: Array, dt: float) -> Tick:
 
 
 def _ticks(states: Array, dt: float) -> Tick:
-    """T ticks, of x, y, θ, way and turn before each and after the last : (T + 1, …, 5). Arcs, by
-    the mid-point rule.
+    """T ticks, of x, y, θ, way and turn before each and after the last : (T + 1, …, 5)
+
+    Arcs, by the mid-point rule.
     """
     pose, distance, turn = states[:-1, ..., :3], states[..., 3], states[..., 4]
     middle = states[..., 2] + turn / 2

@@ -15,18 +15,15 @@ class Past:
         self._kept = int(np.ceil(longest)) + 1
 
     def goes_on(self, truth: Array) -> None:
-        """Add the poses (T, …, 3) at the ends of the next ticks, and forget what no one asks for
-        any more.
-        """
+        """Add the poses (T, …, 3) at the ends of the next ticks; forget what is too long ago."""
         known = self._poses[-self._kept :]
         self._first += len(self._poses) - len(known)
         self._poses = np.concatenate([known, truth])
 
     def before(self, ends: Integers, ticks: float) -> Array:
-        """The poses so many ticks before ends : (D,) of ticks, counted from 1; between two ticks on
-        the straight line
+        """The poses so many ticks before ends : (D,) of ticks, counted from 1 → (D, …, 3)
 
-        between their poses : (D, …, 3)
+        Between two ticks they lie on the straight line between their poses.
         """
         when = np.maximum(ends - ticks, 0.0) - self._first
         one = np.floor(when).astype(int)

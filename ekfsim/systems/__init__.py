@@ -1,5 +1,4 @@
-"""The systems of the documents, put together: what each robot measures of its motion, and what its
-instruments read.
+"""The systems of the documents: what each robot measures of its motion, what its instruments read.
 
 SYSTEMS names them. The classroom has no entry: its robot obeys commands one by one (see
 `simulation`). "Document 000" and so on, wherever the package cites an equation, are these, and here

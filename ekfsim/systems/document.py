@@ -1,6 +1,4 @@
-"""Which reading of a document a run follows, where its print, its own code and the right equation
-differ.
-"""
+"""Which reading of a document a run follows, where print, code and the right equation differ."""
 
 from typing import Literal, get_args
 

@@ -1,6 +1,4 @@
-"""The ways that a simulated robot is driven: as a list of speeds, or along a path that its driver
-holds it to.
-"""
+"""How a simulated robot is driven: by a list of speeds, or along a path that it is held to."""
 
 import math
 from dataclasses import dataclass
@@ -19,8 +17,9 @@ class Course(NamedTuple):
     held: bool  # whether the driver steers back when the robot strays from it
 
     def poses(self, start: Array, dt: float) -> Array:
-        """Where a robot without noise stands before, between and after the steps : (N + 1, 3) m, m,
-        rad unwrapped
+        """Where a robot without noise stands before, between and after the steps : (N + 1, 3)
+
+        In m, m, rad; the headings are not wrapped.
         """
         heading = start[2] + np.concatenate([[0.0], np.cumsum(self.turn_rate * dt)])
         middle = (heading[1:] + heading[:-1]) / 2
@@ -68,8 +67,9 @@ class Square:
     clockwise: bool = False
 
     def course(self, dt: float) -> Course:
-        """Speeds and turn rates, `dt` s each; each side and each turn is made exactly, at a speed
-        just below.
+        """Speeds and turn rates, `dt` s each.
+
+        Each side and each turn is made exactly, at a speed just below.
         """
         sign = -1.0 if self.clockwise else 1.0
         along = _whole(self.side / self.speed, dt)
@@ -99,8 +99,9 @@ class Circle:
 
 @dataclass(frozen=True)
 class Spiral:
-    """From the outside of a field inwards, round and round, at a constant speed; it starts as the
-    pose looks.
+    """From the outside of a field inwards, round and round, at a constant speed.
+
+    It starts as the pose looks.
     """
 
     width: float = 50.0  # m, of the field across the first heading

@@ -1,5 +1,4 @@
-"""When an ultrasonic echo arrives: its envelope's parameters by an unscented Kalman filter
-(document 001, IV B).
+"""When an ultrasonic echo arrives, by an unscented Kalman filter (document 001, IV B).
 
 The three steps of the document: acquire the echo, take the modulus of its Hilbert transform,
 estimate A₀, τ, T and α of eq. 38 from that. And what it is measured against: a threshold detector,
@@ -29,8 +28,9 @@ BEFORE, AFTER = 4.0, 6.0  # √α T, around the highest sample: the part of the 
 
 @dataclass(frozen=True)
 class Pair:
-    """An SR40 emitter and its receiver: what is known of an echo before it is heard. T and α are
-    specific to a pair.
+    """An SR40 emitter and its receiver: what is known of an echo before it is heard.
+
+    T and α are specific to a pair.
     """
 
     rise: float = 1.5e-4  # s, T
@@ -43,8 +43,9 @@ class Pair:
 
     @property
     def times(self) -> Array:
-        """When samples are taken: from the emission until an echo from the farthest has passed :
-        (k,) s
+        """When samples are taken : (k,) s
+
+        From the emission until an echo from the farthest has passed.
         """
         last = self.flight(self.farthest) + (self.power + AFTER * math.sqrt(self.power)) * self.rise
         return np.arange(math.ceil(last * self.rate)) / self.rate
@@ -59,8 +60,9 @@ class Pair:
         return 2 * distance / SOUND
 
     def received(self, echo: Array) -> Array:
-        """A(t) cos 2πf (t − τ) : (…, k) V, without noise. echo = (A₀, τ, T, α) : (…, 4) in V, s, s,
-        1
+        """A(t) cos 2πf (t − τ) : (…, k) V, without noise
+
+        echo = (A₀, τ, T, α) : (…, 4) in V, s, s, 1
         """
         A0, τ, T, α = (echo[..., i, None] for i in range(4))
         carried: Array = envelope(self.times, A0, τ, T, α) * np.cos(
@@ -93,8 +95,9 @@ def noise_of(samples: Array, pair: Pair) -> Array:
 
 
 def without_noise(measured: Array, sigma: Array) -> Array:
-    """√max(e² − 2σ², 0): noise lifts an envelope, for E e² = A² + 2σ². measured : (…, k), sigma :
-    (…)
+    """√max(e² − 2σ², 0): noise lifts an envelope, for E e² = A² + 2σ².
+
+    measured : (…, k), sigma : (…)
     """
     return np.sqrt(np.maximum(measured**2 - 2 * sigma[..., None] ** 2, 0.0))
 
@@ -110,8 +113,9 @@ def highest(measured: Array, pair: Pair) -> Integers:
 
 
 def estimate_echo(measured: Array, sigma: Array, pair: Pair) -> Gaussian:
-    """(A₀, τ, T, α) in V, s, s, 1 and their covariance, of a Hilbert envelope (…, k) with noise of
-    σ (…) in the signal.
+    """(A₀, τ, T, α) in V, s, s, 1 and their covariance, of a Hilbert envelope (…, k).
+
+    sigma : (…), of the noise in the signal.
 
     The first guess is the pair's typical echo, put where the envelope is highest. The parameters
     are a state that does not move (models/constant), the samples its readings (models/echo): combs
@@ -172,8 +176,9 @@ def typical_delay(pair: Pair, share: float = SHARE) -> float:
 
 
 def flight_bound(echo: Array, sigma: float, pair: Pair) -> Array:
-    """σ of τ that no unbiased estimator undercuts (Cramér and Rao), with what is known of T and α :
-    (…) s
+    """σ of τ that no unbiased estimator undercuts, T and α known as they are : (…) s
+
+    The bound of Cramér and Rao.
 
     (Σ Hᵀ H/2σ² + P⁻¹)⁻¹: the carrier lets through half of the envelope's information.
     """

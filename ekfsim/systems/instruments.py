@@ -1,5 +1,4 @@
-"""The instruments that the robots carry: how often each is read, what it can see, and the sensor
-model of each target.
+"""The instruments that the robots carry: how often they are read, what they see, their sensors.
 
 An instrument makes one sensor for each thing that it may see: a landmark, a direction, the sky.
 """
@@ -81,8 +80,9 @@ class Instrument(Protocol):
         """Whether a target is in view from a true pose (…, 3) : (…)"""
 
     def read(self, seen: Seen, pose: Array, u: Array) -> Seen:
-        """What it makes of a target that it sees from true poses (…, 3), where the robot measures
-        its motion as u (…, m).
+        """What it makes of a target that it sees from true poses (…, 3).
+
+        u : (…, m), the motion input as the robot measures it
         """
 
     def as_given(self, z: Array, believed: "Instrument") -> Array:
@@ -126,9 +126,7 @@ class _Looking:
 
 @dataclass(frozen=True)
 class Markers(_Looking):
-    """Document 000: cameras in front and behind that tell azimuth and elevation of surveyed
-    markers.
-    """
+    """Document 000: cameras in front and behind, for azimuth and elevation of surveyed markers."""
 
     name: ClassVar[str] = "markers"
     readings: ClassVar[tuple[DocumentReading, ...]] = ("printed",)
@@ -200,8 +198,9 @@ class Bearings(_Looking):
 
 @dataclass(frozen=True)
 class Ranges(_Looking):
-    """A radio that tells the range to nodes alone. What it says is scale · r + bias, and is
-    corrected before use.
+    """A radio that tells the range to nodes alone.
+
+    What it says is scale · r + bias, and is corrected before use.
     """
 
     name: ClassVar[str] = "range"
@@ -251,9 +250,7 @@ class Gnss(_Looking):
 
 @dataclass(frozen=True)
 class Pylon(_Looking):
-    """Document 004: a lidar that tells the offset of one pylon, turned into the global frame by the
-    yaw.
-    """
+    """Document 004: a lidar that tells a pylon's offset, turned into the global frame by the yaw."""
 
     name: ClassVar[str] = "pylon"
     readings: ClassVar[tuple[DocumentReading, ...]] = ("printed", "coded")
@@ -263,8 +260,9 @@ class Pylon(_Looking):
     views: tuple[tuple[float, float], ...] = ALL_ROUND
 
     def targets(self, around: Surroundings) -> Iterator[Target]:
-        """A sensor for each pylon; only `corrected` knows that an error of the yaw moves the
-        reading sideways.
+        """A sensor for each pylon.
+
+        Only `corrected` knows that an error of the yaw moves the reading sideways.
         """
         yaw_sigma = around.yaw_sigma if around.reading == "corrected" else 0.0
         for mark in around.landmarks:
@@ -281,9 +279,7 @@ class Pylon(_Looking):
 
 @dataclass(frozen=True)
 class Lidar(_Looking):
-    """The same lidar, its reading left as it sees the pylon: what document 004's conclusion asks
-    for.
-    """
+    """The same lidar, its reading left as it sees the pylon, as document 004's conclusion wants."""
 
     name: ClassVar[str] = "lidar"
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
@@ -327,8 +323,9 @@ class Ultrasonic(_Looking):
 
 @dataclass(frozen=True)
 class Infrared(_Looking):
-    """Document 001: pairs of an infrared emitter and receiver; the intensity falls with the
-    distance (fig. 4).
+    """Document 001: pairs of an infrared emitter and receiver (fig. 4).
+
+    The intensity falls with the distance.
     """
 
     name: ClassVar[str] = "infrared"
@@ -354,8 +351,9 @@ class Infrared(_Looking):
 
 @dataclass(frozen=True)
 class Compass(_Looking):
-    """Document 001: tells the absolute yaw; "in indoor conditions" of "rather poor quality", and so
-    left out there.
+    """Document 001: tells the absolute yaw.
+
+    "In indoor conditions" it is of "rather poor quality", and so left out there.
     """
 
     name: ClassVar[str] = "compass"
@@ -370,8 +368,7 @@ class Compass(_Looking):
 
 @dataclass(frozen=True)
 class Gyro(_Looking):
-    """Document 001: a gyroscope that tells the yaw relative to the mark, along which it was set to
-    0.
+    """Document 001: a gyroscope that tells the yaw from the mark, along which it was set to 0.
 
     It has summed up its rates itself. What it drifts is no white noise: no filter here is told, see
     `faults`.

@@ -1,6 +1,4 @@
-"""A fix at every row of the wheels, by its number: what the authors of document 003 give to their
-filter.
-"""
+"""A fix at every row of the wheels, by its number, as the authors of document 003 have it."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -13,8 +11,7 @@ from ekfsim.records import Control, Entry, Reading
 
 
 def stretched(entries: Iterable[Entry]) -> Iterator[Entry]:
-    """The same log with a reading after each motion input; what was recorded is spread evenly over
-    them, by its number.
+    """The same log with a fix after each motion input: those recorded, spread evenly by number.
 
     Row i of n, the start being row 0, has the fix at place i (K − 1)/n of the K that were recorded,
     on the straight line from the one before that place to the one after it. No stamp is looked at:

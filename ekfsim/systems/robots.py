@@ -1,5 +1,4 @@
-"""The robots of the documents: what each measures of its own motion, with the noise that the
-document states.
+"""The robots of the documents: what each measures of its motion, and the noise that is stated.
 
 A robot tells the motion model that its filter uses, the first covariance, and (for a simulation)
 what its instruments would say of a true motion were they free of noise.
@@ -127,8 +126,9 @@ class Mower:
 
 @dataclass(frozen=True)
 class Pioneer:
-    """Document 001: a P3 robot; u = (ΔD_L, ΔD_R) as its wheels count them, or skid-steered (u_L,
-    u_R, dt).
+    """Document 001: a P3 robot.
+
+    u = (ΔD_L, ΔD_R) as its wheels count them, or skid-steered (u_L, u_R, dt).
     """
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
@@ -145,8 +145,9 @@ class Pioneer:
     layout: Layout = field(default=POSE, init=False)
 
     def motion(self, reading: DocumentReading) -> Motion:
-        """Eqs 31 to 33, or another model of the same wheels; alike in every reading, for they are
-        right as printed.
+        """Eqs 31 to 33, or another model of the same wheels.
+
+        Alike in every reading, for they are right as printed.
         """
         match self.odometry:
             case "skidSteer":
@@ -174,9 +175,7 @@ class Pioneer:
 
 @dataclass(frozen=True)
 class GnssMower:
-    """Document 003: a lawn mower that measures the speed of its wheels at 200 Hz; u = (v_L, v_R,
-    dt).
-    """
+    """Document 003: a lawn mower that measures its wheels at 200 Hz; u = (v_L, v_R, dt)."""
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ("coded",)
     faults: ClassVar[Entries] = WHEELS
@@ -188,9 +187,7 @@ class GnssMower:
     layout: Layout = field(default=SPEED_POSE, init=False)
 
     def motion(self, reading: DocumentReading) -> Motion:
-        """The document's integrals; `coded` is the recipe of its authors, kept as a
-        counter-example.
-        """
+        """The document's integrals; `coded`, its authors' recipe, kept as a counter-example."""
         if reading == "coded":
             return WheelSpeedsAsWritten(self.half_track)
         return WheelSpeeds(self.half_track, self.speed_density, self.turn_density)
@@ -221,8 +218,9 @@ class PylonCart:
     layout: Layout = field(default=INERTIAL, init=False)
 
     def motion(self, reading: DocumentReading) -> Motion:
-        """Eqs 5 to 7; `printed` has eq. 5's minus, and the authors' code does not wrap the
-        difference of two yaws.
+        """Eqs 5 to 7.
+
+        `printed` has eq. 5's minus; the authors' code does not wrap the difference of two yaws.
         """
         return PlanarImu(
             self.forward_sigma,

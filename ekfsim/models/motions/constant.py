@@ -1,6 +1,4 @@
-"""What does not change but for its noise: parameters that a filter estimates as if they were a
-state.
-"""
+"""What does not change but for its noise: parameters, estimated as if they were a state."""
 
 from dataclasses import dataclass
 

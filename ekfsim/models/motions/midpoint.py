@@ -1,6 +1,6 @@
-"""The mid-point rule: a way D m is driven at the heading in the middle of a turn of T rad (document
-000, section 3.1).
+"""The mid-point rule (document 000, section 3.1).
 
+A way of D m is driven at the heading in the middle of a turn of T rad.
 x = (x, y, θ) in m, m, rad : (…, 3); D, T : (…)
 """
 

@@ -12,8 +12,9 @@ from ekfsim.twins import twinned
 
 @dataclass(frozen=True, slots=True)
 class MoveTurn(Motion):
-    """x = (x, y, θ) in m, m, rad; u = (d, a) in m, rad, as the odometry measured them, σ
-    proportional to each.
+    """x = (x, y, θ) in m, m, rad; u = (d, a) in m, rad, as the odometry measured them.
+
+    The σ of each is proportional to it.
     """
 
     distance_ratio: float

@@ -1,6 +1,4 @@
-"""Odometry of a robot whose wheels drive its left and its right side (document 001, section
-III).
-"""
+"""Odometry of a robot with wheels on its left and on its right (document 001, section III)."""
 
 from dataclasses import dataclass
 
@@ -14,9 +12,7 @@ from ekfsim.models.protocols import Motion, Quantity
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ArctanOdometry(Motion):
-    """x = (x, y, ω) in m, m, rad; u = (Δd_L, Δd_R) in m, the ways of the left and the right wheels
-    (eqs 34, 35).
-    """
+    """x = (x, y, ω) in m, m, rad; u = (Δd_L, Δd_R) in m, the ways of the wheels (eqs 34, 35)."""
 
     width: float  # m, W: between the centres of left and right wheels
     wheel_ratio: float  # σ of a wheel's way per m of it
@@ -29,8 +25,9 @@ class ArctanOdometry(Motion):
         return Quantity("left", "m"), Quantity("right", "m")
 
     def f(self, x: Array, u: Array) -> Array:
-        """(x + d cos ω,  y + d sin ω,  ω + tan⁻¹((Δd_R − Δd_L)/W)), at the new ω
-        eqs 31 to 33
+        """(x + d cos ω,  y + d sin ω,  ω + tan⁻¹((Δd_R − Δd_L)/W)) : (…, 3)          eqs 31 to 33
+
+        The way goes along the new ω.
         """
         d, ω = self._way(u), x[..., 2] + self._turn(u)
         return np.stack([x[..., 0] + d * np.cos(ω), x[..., 1] + d * np.sin(ω), wrap(ω)], axis=-1)
@@ -45,8 +42,9 @@ class ArctanOdometry(Motion):
         return J
 
     def G(self, x: Array, u: Array) -> Array:
-        """∂f/∂u : (…, 3, 2)
-        eqs 31 to 33; ∂ω/∂Δd_R = −∂ω/∂Δd_L = W/(W² + (Δd_R − Δd_L)²)
+        """∂f/∂u : (…, 3, 2)          eqs 31 to 33
+
+        ∂ω/∂Δd_R = −∂ω/∂Δd_L = W/(W² + (Δd_R − Δd_L)²)
         """
         d, ω = self._way(u), x[..., 2] + self._turn(u)
         c, s = np.cos(ω), np.sin(ω)
@@ -84,8 +82,7 @@ class ArctanOdometry(Motion):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SkidSteer(Motion):
-    """x = (x, y, θ) in m, m, rad; u = (u_L, u_R, dt) in m/s, m/s, s, the speeds of the wheels on
-    either side.
+    """x = (x, y, θ) in m, m, rad; u = (u_L, u_R, dt) in m/s, m/s, s: speeds of the two sides.
 
     How the sides' speeds move the body depends on the terrain: the coefficients are measured.
     """
@@ -101,11 +98,10 @@ class SkidSteer(Motion):
         return Quantity("left", "m/s"), Quantity("right", "m/s"), Quantity("dt", "s")
 
     def f(self, x: Array, u: Array) -> Array:
-        """The body's velocity V = (u_x, u_y, ω_R) = A (u_R, u_L), held for dt at the mid heading
-        eqs 29, 30
+        """V = (u_x, u_y, ω_R) = A (u_R, u_L), held for dt at the mid heading m          eqs 29, 30
 
-        m = θ + ω_R dt/2
         (x + (u_x cos m − u_y sin m) dt,  y + (u_x sin m + u_y cos m) dt,  θ + ω_R dt)
+        m = θ + ω_R dt/2
         """
         east, north, ω = self._velocity(x, u)
         dt = u[..., 2]

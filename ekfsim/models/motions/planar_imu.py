@@ -12,11 +12,11 @@ from ekfsim.models.protocols import Motion, Quantity
 
 @dataclass(frozen=True, slots=True)
 class PlanarImu(Motion):
-    """x = (ẋ, x, ẏ, y, θ̇, θ, θ_p) in m/s, m, m/s, m, rad/s, rad, rad, all global; u = (a_x, a_y,
-    yaw, dt).
+    """x = (ẋ, x, ẏ, y, θ̇, θ, θ_p) in m/s, m, m/s, m, rad/s, rad, rad, all global.
 
-    The accelerations are along the robot (a_x) and to its left (a_y) in m/s², the yaw is global in
-    rad, dt in s. Eq. 5 prints eight entries on its left, among them a θ̇_p: the state has seven.
+    u = (a_x, a_y, yaw, dt): the accelerations are along the robot (a_x) and to its left (a_y) in
+    m/s², the yaw is global in rad, dt in s. Eq. 5 prints eight entries on its left, among them a
+    θ̇_p: the state has seven.
     """
 
     forward_sigma: float = 1.8373**0.5  # m/s², of a_x
@@ -39,10 +39,9 @@ class PlanarImu(Motion):
     def f(self, x: Array, u: Array) -> Array:
         """The next state; on the right are old values throughout.          eq. 5, with a plus in ẏ
 
-            ẋ = ẋ + (a_x cos yaw − a_y sin yaw) dt        x = x + ẋ dt        θ̇ = (θ − θ_p)/dt
-            θ = yaw
+            ẋ = ẋ + (a_x cos yaw − a_y sin yaw) dt        x = x + ẋ dt
             ẏ = ẏ + (a_x sin yaw + a_y cos yaw) dt        y = y + ẏ dt
-            θ_p = θ
+            θ̇ = (θ − θ_p)/dt        θ = yaw        θ_p = θ
 
         Where no time has passed (dt = 0), θ̇ stays as it was.
         """
@@ -72,11 +71,10 @@ class PlanarImu(Motion):
         return J
 
     def G(self, x: Array, u: Array) -> Array:
-        """G_u = ∂f/∂u : (…, 7, 4)
-        eq. 7, and the row of θ = yaw and the column of dt, which it leaves out
+        """G_u = ∂f/∂u : (…, 7, 4)          eq. 7
 
-        Eq. 7 has the right sign whatever `lateral_sign` makes of f: as printed, eqs 5 and 7 do not
-        agree.
+        And the row of θ = yaw and the column of dt, which it leaves out. Eq. 7 has the right sign
+        whatever `lateral_sign` makes of f: as printed, eqs 5 and 7 do not agree.
         """
         ax, ay, yaw, dt = np.moveaxis(u, -1, 0)
         c, s = np.cos(yaw), np.sin(yaw)

@@ -1,8 +1,7 @@
-"""A robot whose speed and turn rate are told, or its way and turn since the last time; no document
-prints it.
+"""A robot whose speed and turn rate are told, or its way and turn since the last time.
 
-Both drive their way by the mid-point rule. Their noise grows with the time: the errors of way and
-heading after t s are density · √t.
+No document prints it. Both drive their way by the mid-point rule. Their noise grows with the time:
+the errors of way and heading after t s are density · √t.
 """
 
 from dataclasses import dataclass

@@ -26,11 +26,12 @@ class WheelSpeeds(Motion):
         return INPUTS
 
     def f(self, x: Array, u: Array) -> Array:
-        """The document's three integrals as sums, at the new V and φ : (…, 4)
-        eq. 3; section 2
+        """The document's three integrals as sums : (…, 4)          eq. 3; section 2
 
-        V = (v_L + v_R)/2      φ = φ + (v_R − v_L)/(2R) dt      x = x + V cos φ dt
-        y = y + V sin φ dt
+            V = (v_L + v_R)/2         φ = φ + (v_R − v_L)/(2R) dt
+            x = x + V cos φ dt        y = y + V sin φ dt
+
+        At the new V and φ.
         """
         V, rate, dt = self._motion(u)
         φ = x[..., 1] + rate * dt
@@ -38,8 +39,9 @@ class WheelSpeeds(Motion):
         return np.stack(np.broadcast_arrays(*after), axis=-1)
 
     def F(self, x: Array, u: Array) -> Array:
-        """∂f/∂x : (…, 4, 4)
-        eq. 4.  The old V counts for nothing: the wheels tell the new one
+        """∂f/∂x : (…, 4, 4)          eq. 4
+
+        The old V counts for nothing: the wheels tell the new one.
         """
         V, rate, dt = self._motion(u)
         φ = x[..., 1] + rate * dt
@@ -69,8 +71,8 @@ class WheelSpeeds(Motion):
     def M(self, u: Array) -> Array:
         """Covariance of (v_L, v_R, dt) : (…, 3, 3), 0 where no time has passed
 
-        White noise over dt has the variances q_V = density_V²/dt of V and q_φ = density_φ²/dt of
-        φ̇. The wheels are v_L = V − R φ̇ and v_R = V + R φ̇, so each has q_V + R² q_φ, and both
+        White noise over dt has the variances q_V = density_V²/dt of V, q_φ = density_φ²/dt of φ̇.
+        The wheels are v_L = V − R φ̇ and v_R = V + R φ̇, so each has q_V + R² q_φ, and both
         together q_V − R² q_φ.
         """
         rate = per_second(u[..., 2])
@@ -92,8 +94,7 @@ class WheelSpeeds(Motion):
 
 @dataclass(frozen=True, slots=True)
 class WheelSpeedsAsWritten(Motion):
-    """A counter-example: the recipe by which the authors of document 003 predict. Do not drive by
-    it.
+    """A counter-example, not to be driven by: how the authors of document 003 predict.
 
     What is wrong with it: the yaw rate is made of the mean speed, V R, where (v_R − v_L)/(2R)
     belongs; the position moves by V per step, where V dt belongs; its F is not the derivative of
@@ -110,8 +111,9 @@ class WheelSpeedsAsWritten(Motion):
         return INPUTS
 
     def f(self, x: Array, u: Array) -> Array:
-        """V = (v_L + v_R)/2      φ = φ + V R dt      x = x + V cos φ
-        y = y + V sin φ, at the old φ : (…, 4)
+        """The recipe : (…, 4), at the old φ
+
+        V = (v_L + v_R)/2      φ = φ + V R dt      x = x + V cos φ      y = y + V sin φ
         """
         V, φ = (u[..., 0] + u[..., 1]) / 2, x[..., 1]
         after = (

@@ -1,6 +1,4 @@
-"""Two wheels whose ways are measured, without and with a gyro for the heading (document 000,
-section 3.1).
-"""
+"""Two wheels whose ways are measured, without and with a gyro (document 000, section 3.1)."""
 
 from dataclasses import dataclass
 
@@ -29,9 +27,7 @@ def _B(middle: Array, ΔD: Array, b: float) -> Array:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TwoWheels(Motion):
-    """x = (x, y, Φ) in m, m, rad; u = (ΔD_L, ΔD_R) in m, the ways of the left and the right
-    wheel.
-    """
+    """x = (x, y, Φ) in m, m, rad; u = (ΔD_L, ΔD_R) in m, the ways of the two wheels."""
 
     width: float  # m, b: between the wheels
     wheel_sigma: float  # m, σ_γ of each wheel's way
@@ -71,11 +67,11 @@ class TwoWheels(Motion):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GyroWheels(Motion):
-    """x = (x, y, Φ) in m, m, rad; u = (ΔD_L, ΔD_R, ω, dt) in m, m, rad/s, s: the gyro turns, the
-    wheels drive.
+    """x = (x, y, Φ) in m, m, rad; u = (ΔD_L, ΔD_R, ω, dt) in m, m, rad/s, s.
 
-    The heading's noise is the wheels' all the same (eq. 22), as the text and its listing mean it:
-    G's first two columns are B, not the derivative of an f that takes no turn from the wheels.
+    The gyro turns, the wheels drive. The heading's noise is the wheels' all the same (eq. 22), as
+    the text and its listing mean it: G's first two columns are B, not the derivative of an f that
+    takes no turn from the wheels.
     """
 
     width: float  # m, b: between the wheels
@@ -95,10 +91,9 @@ class GyroWheels(Motion):
 
     @twinned
     def f(self, x: Array, u: Array) -> Array:
-        """(x + ΔD cos(Φ + ω dt/2),  y + ΔD sin(Φ + ω dt/2),  Φ + ω dt)
-        eqs 16 to 19, listing
+        """(x + ΔD cos(Φ + ω dt/2),  y + ΔD sin(Φ + ω dt/2),  Φ + ω dt) : (…, 3)
 
-        The listing keeps Φ in (−2π, 2π); here it is (−π, π].
+        Eqs 16 to 19, and the listing, which keeps Φ in (−2π, 2π); here it is in (−π, π].
         """
         return arrival(x, *self._way(u))
 
@@ -137,9 +132,7 @@ class GyroWheels(Motion):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WheelsBesideGyro(GyroWheels):
-    """The same input where the wheels tell the turn, too, and no one asks the gyro: eqs 16 to 22 as
-    they stand.
-    """
+    """The same input where the wheels tell the turn, and no one asks the gyro: eqs 16 to 22."""
 
     def f(self, x: Array, u: Array) -> Array:
         """(x + ΔD cos(Φ + ΔΦ/2),  y + ΔD sin(Φ + ΔΦ/2),  Φ + ΔΦ)          eqs 16 to 18"""

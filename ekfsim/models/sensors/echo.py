@@ -1,6 +1,4 @@
-"""The envelope of an ultrasonic echo, whose parameters tell the time of flight (document 001,
-section IV B).
-"""
+"""The envelope of an ultrasonic echo, which tells the time of flight (document 001, IV B)."""
 
 from dataclasses import dataclass
 
@@ -40,8 +38,7 @@ def printed_envelope(
 def _envelope(
     t: Array, A0: Array | float, τ: Array | float, T: Array | float, α: Array | float
 ) -> tuple[Array, Array, Array]:
-    """A(t), and with it A/A₀ and s, 1 where there is no echo. No parameters, however wild, break
-    it.
+    """A(t), and with it A/A₀ and s, 1 where there is no echo; no parameters are too wild for it.
 
     s^α e^(−s) = e^(α ln s − s), whose exponent is bounded.
     """
@@ -55,10 +52,9 @@ def _envelope(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Echo(Sensor):
-    """x = (A₀, τ, T, α) in V, s, s, 1: parameters to be estimated, no pose. z: the envelope at all
-    sample times.
+    """x = (A₀, τ, T, α) in V, s, s, 1: parameters to be estimated, no pose.
 
-    Times may as well be told in ms, if τ and T are too.
+    z : (…, k) the envelope at all sample times, which may as well be told in ms, if τ and T are.
     """
 
     times: Array  # (k,) s

@@ -1,6 +1,4 @@
-"""Infrared light that the first wall sends back, the more the nearer and brighter it is (document
-001, fig. 4).
-"""
+"""Infrared light that a wall sends back, the more the nearer it is (document 001, fig. 4)."""
 
 from dataclasses import dataclass
 
@@ -24,8 +22,9 @@ COLOURS: dict[str, float] = {  # reflectances; fig. 4 tells that they matter, an
 
 @dataclass(frozen=True, slots=True)
 class InfraredBeam(Sensor):
-    """A pair of emitter and receiver that look `bearing` rad from straight ahead, from x = (x, y,
-    θ) in m, m, rad.
+    """A pair of emitter and receiver that look `bearing` rad from straight ahead.
+
+    x = (x, y, θ) in m, m, rad.
     """
 
     walls: Walls

@@ -13,9 +13,7 @@ ALONG = 1e-9  # rad; a beam this close to its wall's direction has no usable der
 
 @dataclass(frozen=True, slots=True)
 class Laser(Sensor):
-    """A beam `bearing` rad from straight ahead, counter-clockwise, from x = (x, y, θ) in m, m,
-    rad.
-    """
+    """A beam `bearing` rad from straight ahead, counter-clockwise; x = (x, y, θ) in m, m, rad."""
 
     walls: Walls
     bearing: float

@@ -12,8 +12,7 @@ from ekfsim.models.protocols import Quantity, Sensor
 
 @dataclass(frozen=True, slots=True)
 class LidarOffset(Sensor):
-    """z = (x_L, y_L), how far to the right and how far ahead of the robot the landmark stands, in
-    m.
+    """z = (x_L, y_L) in m, how far to the right and how far ahead of the robot the landmark stands.
 
     Document 004 turns this into the global frame by the yaw before its filter reads it
     (models/sensors/offset.py), "so that the uncertainty in yaw is not incorporated into the

@@ -1,6 +1,4 @@
-"""A landmark seen by a lidar, and turned into the global frame by the robot's yaw (document
-004).
-"""
+"""A landmark seen by a lidar, and turned into the global frame by the yaw (document 004)."""
 
 from dataclasses import dataclass
 
@@ -40,8 +38,9 @@ def from_global(z: Array, θ: Array | float) -> Array:
 
 
 def to_global_as_printed(z: Array, θ: Array | float) -> Array:
-    """Eq. 8 to the letter: x_p = x_L cos θ + y_L sin θ, y_p = −x_L sin θ + y_L cos θ; wrong for its
-    lidar's frame.
+    """Eq. 8 to the letter, wrong for its lidar's frame.
+
+    x_p = x_L cos θ + y_L sin θ        y_p = −x_L sin θ + y_L cos θ
     """
     right, ahead, s, c = z[..., 0], z[..., 1], np.sin(θ), np.cos(θ)
     return np.stack([right * c + ahead * s, -right * s + ahead * c], axis=-1)

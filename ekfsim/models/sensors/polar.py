@@ -24,8 +24,7 @@ def cartesian_jacobian(reading: Array) -> Array:
 def cartesian_moments(
     reading: Array, range_sigma: float, bearing_sigma: float
 ) -> tuple[Array, Array]:
-    """Mean (2,) and covariance (2, 2) of (x, y) where range and bearing are Gaussian, without
-    approximation.
+    """Exact mean (2,) and covariance (2, 2) of (x, y) where range and bearing are Gaussian.
 
     E x = r e^(−σ²/2) cos θ      E y = r e^(−σ²/2) sin θ      with q = r² + σ_r² and k = e^(−2σ²)
     E x² = q (1 + k cos 2θ)/2      E y² = q (1 − k cos 2θ)/2      E xy = q k sin 2θ / 2

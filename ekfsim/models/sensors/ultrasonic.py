@@ -1,6 +1,4 @@
-"""An ultrasonic beam to the first wall, less certain the further that is (document 001, section IV
-B).
-"""
+"""An ultrasonic beam to the first wall, less certain the further that is (document 001, IV B)."""
 
 from dataclasses import dataclass
 
@@ -14,9 +12,7 @@ from ekfsim.raycast.walls import Walls
 
 @dataclass(frozen=True, slots=True)
 class UltrasonicBeam(Sensor):
-    """A beam `bearing` rad from straight ahead, counter-clockwise, from x = (x, y, θ) in m, m,
-    rad.
-    """
+    """A beam `bearing` rad from straight ahead, counter-clockwise; x = (x, y, θ) in m, m, rad."""
 
     walls: Walls
     bearing: float  # rad

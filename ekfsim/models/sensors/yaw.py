@@ -13,8 +13,7 @@ from ekfsim.models.protocols import Quantity, Sensor
 
 @dataclass(frozen=True, slots=True)
 class Yaw(Sensor):
-    """z = ω in rad, the yaw of which eqs 36 and 37 make the direction θ = ω − β in which the robot
-    drives.
+    """z = ω in rad, the yaw. The robot drives in the direction θ = ω − β          eqs 36, 37
 
     An absolute yaw (compass) has one β for good: how the body lies to the instrument. A relative
     yaw (gyroscope) is 0 where it was set to 0, so −β is the heading that the robot had there.
