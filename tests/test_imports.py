@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import ekfsim.cli
+from ekfsim.systems import INSTRUMENTS, SYSTEMS
 
 PACKAGE = Path(ekfsim.cli.__file__).parent
 MODULES = {
@@ -110,6 +111,58 @@ def test_a_module_imports_only_from_rooms_above_its_own(module):
         and (module, other) != tuple(f"ekfsim.{end}" for end in DOOR)
     }
     assert below == set()
+
+
+TEXT = ("models", "diagnostics")  # rooms of the textbook alone; what is quicker stands in fast/
+
+
+@pytest.mark.parametrize("module", [module for module in MODULES if room_of(module) in TEXT])
+def test_the_text_asks_for_no_form_no_axes_and_no_way(module):
+    """No form for one robot beside that for many, no question how many axes there are, none what is
+    installed."""
+    tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
+    forms = [n.name for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)]
+    asked = [
+        part.lineno
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Compare)
+        for part in (node.left, *node.comparators)
+        if isinstance(part, ast.Attribute) and part.attr == "ndim"
+    ]
+    assert [name for name in forms if name.endswith("_one")] == []
+    assert asked == []
+    assert {
+        alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module in ("ekfsim", "ekfsim.twins")
+        for alias in node.names
+    } <= {"twinned"}
+
+
+EQUATIONS = {"motions": {"inputs", *"fFGMQ"}, "sensors": {"outputs", *"hHR", "residual"}}
+
+
+@pytest.mark.parametrize(
+    ("module", "kind"),
+    [(m, kind) for kind in EQUATIONS for m in MODULES if m.startswith(f"ekfsim.models.{kind}.")],
+)
+def test_a_model_is_its_equations_and_nothing_else(module, kind):
+    for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ClassDef):
+            told = {one.name for one in node.body if isinstance(one, ast.FunctionDef)}
+            assert {name for name in told if not name.startswith("_")} <= EQUATIONS[kind]
+
+
+def test_no_system_is_known_by_name_where_runs_are_made_and_filtered():
+    own = {type(part).__name__ for s in SYSTEMS.values() for part in (s.robot, *s.instruments)}
+    own |= {kind.__name__ for kind in INSTRUMENTS.values()}
+    words = {*SYSTEMS, "coded", "printed"}
+    for module in MODULES:
+        if room_of(module) in ("localization", "simulation"):
+            nodes = list(ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))))
+            named = {node.id for node in nodes if isinstance(node, ast.Name)}
+            told = {node.value for node in nodes if isinstance(node, ast.Constant)}
+            assert (named & own, told & words) == (set(), set()), module
 
 
 def test_modules_import_no_rings():

@@ -250,7 +250,7 @@ class Gnss(_Looking):
 
 @dataclass(frozen=True)
 class Pylon(_Looking):
-    """Document 004: a lidar that tells a pylon's offset, turned into the global frame by the yaw."""
+    """Document 004: a lidar; a pylon's offset, turned into the global frame by the yaw."""
 
     name: ClassVar[str] = "pylon"
     readings: ClassVar[tuple[DocumentReading, ...]] = ("printed", "coded")

@@ -22,7 +22,7 @@ class LaserByReading(Laser):
         to take it from: there it is the laser's.
         """
         h = self.h(x)
-        z = self.z if h.ndim == self.z.ndim else self.z[..., None, :]
+        z = self.z.reshape(*self.z.shape[:-1], *(1,) * (h.ndim - self.z.ndim), 1)
         r = np.where(np.isnan(h) | np.isnan(z), h, z)
         return np.square(self.range_ratio * r)[..., None]
 
