@@ -66,9 +66,11 @@ def by_rank(probability: float) -> Array:
 
 def bounds(probability: float, dof: Integers) -> Array:
     """The quantile of χ² for each of many degrees of freedom, however large : (N,)"""
-    kinds, which = np.unique(dof, return_inverse=True)
-    table: Array = np.array([quantile(probability, int(kind)) for kind in kinds])
-    return table[which]
+    kinds = np.flatnonzero(np.bincount(dof))
+    table = np.zeros(dof.max(initial=0) + 1)
+    table[kinds] = [quantile(probability, kind) for kind in kinds.tolist()]
+    bounds: Array = table[dof]
+    return bounds
 
 
 def count(runs: Booleans) -> Integers:

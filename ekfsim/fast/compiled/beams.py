@@ -14,6 +14,7 @@ import math
 
 import numpy as np
 
+from ekfsim.fast.compiled.angles import directions
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.twins import compiled
 
@@ -36,13 +37,12 @@ def cast(
     way : (2, N); size : m, the largest coordinate of any wall; tie, doubt : shares of it
     """
     N = place.shape[1]
-    for n in range(N):
-        direction = place[2, n] + bearing
-        way[0, n], way[1, n] = math.cos(direction), math.sin(direction)
+    directions(place[2] + bearing, way[0], way[1])
     near, numbers, every = np.empty(ends.shape), np.empty(len(ends), np.int64), np.arange(len(ends))
+    least, none = np.empty(len(ends)), np.zeros(len(ends))
     alone = np.empty(N, np.bool_)
     lone = _part(place, way, APART * _extent(ends), alone)
-    count = _before(ends, place, way, alone, size, near, numbers)
+    count = _before(ends, place, way, alone, size, near, numbers, least)
     walk = len(ends) > MANY and 4 * lone > N
     left = 0
     for n in range(N):
@@ -50,11 +50,11 @@ def cast(
         span = size + abs(x) + abs(y)
         hair = doubt * span * span
         if not alone[n]:
-            hit = _first(near, numbers, count, x, y, dx, dy, tie * span, hair)
+            hit = _first(near, numbers, least, count, x, y, dx, dy, tie * span, hair)
         elif walk or not (-1 <= dx <= 1 and span < math.inf):
             hit = math.nan, DOUBT
         else:
-            hit = _first(ends, every, len(ends), x, y, dx, dy, tie * span, hair)
+            hit = _first(ends, every, none, len(ends), x, y, dx, dy, tie * span, hair)
         ranges[n], walls[n] = hit
         left += walls[n] == DOUBT
     return left
@@ -76,22 +76,30 @@ def stop(
         far = max(far, abs(way[n]) + 2 * clearance)
     left, right = place[0].min() - far, place[0].max() + far
     bottom, top = place[1].min() - far, place[1].max() + far
-    near, numbers, count = np.empty(ends.shape), np.arange(len(ends)), 0
+    around, some = np.empty(ends.shape), 0
     for w in range(len(ends)):
         if _touches(ends, w, left, bottom, right, top):
-            near[count] = ends[w]
-            count += 1
+            around[some] = ends[w]
+            some += 1
+    if not some:
+        return 0
+    aim, alone = np.empty((2, N)), np.empty(N, np.bool_)
+    directions(np.where(way < 0, place[2] + math.pi, place[2]), aim[0], aim[1])
+    near, numbers, least = np.empty(ends.shape), np.empty(len(ends), np.int64), np.empty(len(ends))
+    every, none = np.arange(some), np.zeros(some)
+    _part(place, aim, APART * _extent(ends), alone)
+    count = _before(around[:some], place, aim, alone, size, near, numbers, least)
     doubtful = 0
-    for n in range(N if count else 0):
-        x, y, reach = place[0, n], place[1, n], abs(way[n]) + 2 * clearance
-        touched = False
-        for w in range(count):
-            touched |= _touches(near, w, x - reach, y - reach, x + reach, y + reach)
-        if not touched:
+    for n in range(N):
+        x, y, dx, dy = place[0, n], place[1, n], aim[0, n], aim[1, n]
+        span = size + abs(x) + abs(y)
+        hair = doubt * span * span
+        if alone[n]:
+            r, wall = _first(around, every, none, some, x, y, dx, dy, tie * span, hair)
+        elif count and least[0] <= abs(way[n]) + 2 * clearance:
+            r, wall = _first(near, numbers, least, count, x, y, dx, dy, tie * span, hair)
+        else:
             continue
-        heading = place[2, n] + math.pi if way[n] < 0 else place[2, n]
-        dx, dy, span = math.cos(heading), math.sin(heading), size + abs(x) + abs(y)
-        r, wall = _first(near, numbers, count, x, y, dx, dy, tie * span, doubt * span * span)
         if wall == DOUBT:
             unsure[doubtful] = n
             doubtful += 1
@@ -111,17 +119,19 @@ def _touches(ends: Array, w: int, left: float, bottom: float, right: float, top:
 
 @compiled
 def _first(
-    ends: Array, numbers: Integers, count: int,
+    ends: Array, numbers: Integers, least: Array, count: int,
     x: float, y: float, dx: float, dy: float, tie: float, doubt: float,
 ) -> tuple[float, int]:  # fmt: skip
     """Range and wall of a beam among the first `count` walls; of those within a tie the lowest.
 
-    The nearest ranges so far are from `low` to `high`. A range within a tie of one of them but not
-    of all is left in doubt.
+    least : (W,) m, no wall is nearer than that, and none that follows it. The nearest ranges so far
+    are from `low` to `high`. A range within a tie of one of them but not of all is left in doubt.
     """
     low = high = math.inf
     nearest = -1
     for k in range(count):
+        if least[k] > low + tie:
+            break
         ax, ay, bx, by = ends[k, 0] - x, ends[k, 1] - y, ends[k, 2] - x, ends[k, 3] - y
         across_a, across_b = ax * dy - ay * dx, bx * dy - by * dx
         sides = across_a * across_b
@@ -172,11 +182,11 @@ def _part(place: Array, way: Array, apart: float, alone: Booleans) -> int:
 @compiled
 def _before(
     ends: Array, place: Array, way: Array, alone: Booleans, size: float,
-    near: Array, numbers: Integers,
+    near: Array, numbers: Integers, least: Array,
 ) -> int:  # fmt: skip
-    """The walls that beams of the bundle may meet, in their order, and how many those are.
+    """The walls that beams of the bundle may meet, the nearest first, and how many those are.
 
-    near : (W, 4), numbers : (W,), to be filled in
+    near : (W, 4), numbers : (W,), least : (W,) m, how far they are off at least, to be filled in
     """
     N, together = len(alone), 0
     mx = my = ux = uy = 0.0
@@ -209,8 +219,21 @@ def _before(
             nearest, farthest = min(along_a, along_b), max(along_a, along_b)
             beside = (right_a and right_b) or (left_a and left_b)
             if found and not beside and -ρ <= farthest and nearest <= limit:
-                near[count], numbers[count] = ends[w], w
+                distance = _distance(ax, ay, bx, by) - ρ
+                at = count
+                while at and least[at - 1] > distance:
+                    near[at], numbers[at], least[at] = near[at - 1], numbers[at - 1], least[at - 1]
+                    at -= 1
+                near[at], numbers[at], least[at] = ends[w], w, distance
                 count += 1
             if nearest > ρ and ((right_a and left_b) or (left_a and right_b)):
                 limit = min(limit, farthest)
     return count
+
+
+@compiled
+def _distance(ax: float, ay: float, bx: float, by: float) -> float:
+    """From the origin to a wall, in m."""
+    east, north = bx - ax, by - ay
+    foot = min(max(-(ax * east + ay * north) / (east * east + north * north), 0.0), 1.0)
+    return math.hypot(ax + foot * east, ay + foot * north)

@@ -162,8 +162,10 @@ def count(
     quantiles : (3, 4), of χ² at three probabilities for each rank; ellipse, cone : the squares of
     their factors; lost_from : (N,), row : (14,)
     """
-    row[:] = 0.0
     tiny = rounding * rounding
+    judged = off_runs = above_50 = above_95 = above_999 = 0
+    inside_runs = drawn_runs = in_cone_runs = unsure_runs = known_runs = dof = 0
+    nees = position = heading = 0.0
     for n in range(e.shape[1]):
         off = impossible[n]
         if not (off or value[n] > quantiles[2, rank[n]]):
@@ -173,10 +175,11 @@ def count(
         if not told:
             continue
         known = rank[n] > 0 and not off
-        row[0] += known or off
-        row[1] += off
-        for k in range(3):
-            row[2 + k] += off or value[n] > quantiles[k, rank[n]]
+        judged += known or off
+        off_runs += off
+        above_50 += off or value[n] > quantiles[0, rank[n]]
+        above_95 += off or value[n] > quantiles[1, rank[n]]
+        above_999 += off or value[n] > quantiles[2, rank[n]]
         e0, e1, e2, v = e[0, n], e[1, n], e[2, n], P[5, n]
         square, area, rest = _square_2(e0, e1, P[0, n], P[1, n], P[3, n], tiny, counts)
         astray = rest > outside or not math.isfinite(square) or not math.isfinite(e0 + e1)
@@ -184,13 +187,16 @@ def count(
         drawn[n] = area == 2 or astray
         unsure[n] = v > tiny or not abs(e2) <= outside
         in_cone[n] = unsure[n] and (e2 * e2 <= cone * v or (v <= 0 and abs(e2) <= outside))
-        row[5] += inside[n]
-        row[6] += drawn[n]
-        row[7] += in_cone[n]
-        row[8] += unsure[n]
+        inside_runs += inside[n]
+        drawn_runs += drawn[n]
+        in_cone_runs += in_cone[n]
+        unsure_runs += unsure[n]
         if known:
-            row[9] += 1
-            row[10] += rank[n]
-            row[11] += value[n]
-        row[12] += e0 * e0 + e1 * e1
-        row[13] += e2 * e2
+            known_runs += 1
+            dof += rank[n]
+            nees += value[n]
+        position += e0 * e0 + e1 * e1
+        heading += e2 * e2
+    row[0], row[1], row[2], row[3], row[4] = judged, off_runs, above_50, above_95, above_999
+    row[5], row[6], row[7], row[8] = inside_runs, drawn_runs, in_cone_runs, unsure_runs
+    row[9], row[10], row[11], row[12], row[13] = known_runs, dof, nees, position, heading

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from ekfsim.fast.compiled.angles import wrapped
+from ekfsim.fast.compiled.angles import directions, wrapped
 from ekfsim.fast.compiled.carlson import carlson
 from ekfsim.geometry import Array, Integers
 from ekfsim.twins import compiled
@@ -23,18 +23,20 @@ def move(
 
     The twin of `MoveTurn` and `EKF.predict`. way, turn, d, a : (N,)
     """
-    for n in range(x.shape[1]):
-        θ = truth[2, n]
-        truth[0, n] += way[n] * math.cos(θ)
-        truth[1, n] += way[n] * math.sin(θ)
-        truth[2, n] = wrapped(θ + turn[n])
-
-        θ = x[2, n]
-        c, s = math.cos(θ), math.sin(θ)
+    N = x.shape[1]
+    cosine, sine = np.empty(N), np.empty(N)
+    directions(truth[2], cosine, sine)
+    for n in range(N):
+        truth[0, n] += way[n] * cosine[n]
+        truth[1, n] += way[n] * sine[n]
+        truth[2, n] = wrapped(truth[2, n] + turn[n])
+    directions(x[2], cosine, sine)
+    for n in range(N):
+        c, s = cosine[n], sine[n]
         α, β = -d[n] * s, d[n] * c
         x[0, n] += β
         x[1, n] -= α
-        x[2, n] = wrapped(θ + a[n])
+        x[2, n] = wrapped(x[2, n] + a[n])
         xθ, yθ, θθ = P[2, n] + α * P[5, n], P[4, n] + β * P[5, n], P[5, n]
         M_d, M_a = (distance_ratio * d[n]) ** 2, (angle_ratio * a[n]) ** 2
         P[0, n] += α * (P[2, n] + xθ) + c * M_d * c
