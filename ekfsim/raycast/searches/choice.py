@@ -55,10 +55,11 @@ def in_blocks(search: Search, walls: Walls, x: Array, y: Array, heading: Array) 
     ranges, met = np.full(x.shape, np.nan), np.full(x.shape, -1)
     for start in range(0, len(x) if walls.grid else 0, BLOCK):
         part = slice(start, start + BLOCK)
-        beams = np.stack([x[part], y[part], heading[part], heading[part]])
+        beams = np.empty((4, len(x[part])))
+        beams[0], beams[1] = x[part], y[part]
         with np.errstate(invalid="ignore"):
-            np.cos(beams[2], out=beams[2])
-            np.sin(beams[3], out=beams[3])
+            np.cos(heading[part], out=beams[2])
+            np.sin(heading[part], out=beams[3])
         ranges[part], met[part], doubtful = search(walls, beams)
         if doubtful.size:
             again = start + doubtful

@@ -73,6 +73,8 @@ def nearby_beams(
         before = _before(ends, wedge, SAFE * float(span.max()))
         return _first_of(ends, before, beams, span) if len(before) <= MANY else None
     close = _close(beams, apart)
+    if close is None:
+        return None
     some, lone = np.flatnonzero(close), np.flatnonzero(~close)
     if len(lone) > LONE * n:
         return None
@@ -88,14 +90,20 @@ def nearby_beams(
     return ranges, walls, np.concatenate([some[doubtful], lone])
 
 
-def _close(beams: Array, apart: float) -> Booleans:
-    """Which beams are close to most : (n,). Some that stray far move a mean, but not a median; that
-    of every so many beams will do.
+def _close(beams: Array, apart: float) -> Booleans | None:
+    """Which beams are close to most : (n,); None where even of a few beams hardly any are.
+
+    Some that stray far move a mean, but not a median; that of every so many beams will do.
     """
-    x, y, dx, dy = beams
-    mx, my, ux, uy = np.median(beams[:, :: beams.shape[1] // ASKED], axis=1).tolist()
-    aligned = dx * ux + dy * uy >= cos(SPREAD) * hypot(ux, uy)
-    close: Booleans = (np.abs(x - mx) <= apart) & (np.abs(y - my) <= apart) & aligned
+    few = beams[:, :: beams.shape[1] // ASKED]
+    mx, my, ux, uy = np.median(few, axis=1).tolist()
+    aligned = cos(SPREAD) * hypot(ux, uy)
+    close: Booleans
+    for x, y, dx, dy in (few, beams):
+        close = (np.abs(x - mx) <= apart) & (np.abs(y - my) <= apart)
+        close &= dx * ux + dy * uy >= aligned
+        if np.count_nonzero(close) < len(close) / 2:
+            return None
     return close
 
 
