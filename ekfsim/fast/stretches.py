@@ -42,16 +42,26 @@ def _localized(
     entries: Iterable[Entry], filter: EKF, belief: Belief, guard: Guard, layout: Layout
 ) -> Iterator[Step]:
     most = min(MOST, AT_ONCE // max(belief.mean.size // 3, 1))
+    step: Step | None = None
     for together in _gathered(entries, most):
         made = _stretched(belief, together, layout) if len(together) >= FEW else None
         if made is None:
             for entry in together:
-                step = advance(filter, belief, entry, guard, layout)
+                step = _still(step, entry) or advance(filter, belief, entry, guard, layout)
                 belief = step.posterior
                 yield step
         else:
-            belief = made[-1].posterior
+            step = made[-1]
+            belief = step.posterior
             yield from made
+
+
+def _still(before: Step | None, entry: Entry) -> Step | None:
+    """The step of an entry at which nothing happens: its NEES is that of the step before."""
+    if before is None or entry.given is not None or entry.truth is not before.entry.truth:
+        return None
+    belief = before.posterior
+    return Step(entry, belief, belief, nees=before.nees, layout=before.layout)
 
 
 def _gathered(entries: Iterable[Entry], most: int) -> Iterator[list[Entry]]:

@@ -95,6 +95,11 @@ TWINS: tuple[Twin, ...] = (
         compiled=True,
     ),
     Twin(
+        of="ekfsim.study.block:follow",
+        form="ekfsim.fast.many.following:follow",
+        when="any instants: those that are not told of are taken together",
+    ),
+    Twin(
         of="ekfsim.diagnostics.summary:Summary.following",
         form="ekfsim.fast.summary:following",
         when="states that are a pose: inputs that follow one another are taken together",

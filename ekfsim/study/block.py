@@ -56,7 +56,7 @@ def watched(scene: Scene, first: int, runs: int) -> "Watched":
     """The runs first … first + runs − 1, each told apart at its end."""
     numbers = np.arange(first, first + runs)
     start = Watched.empty(numbers, steps_told(length_of(scene)))
-    return functools.reduce(judge, instants(play(scene, numbers)), start)
+    return follow(start, instants(play(scene, numbers)))
 
 
 def length_of(scene: Scene) -> int:
@@ -157,6 +157,12 @@ class Watched(NamedTuple):
             spread=spread(self.ends.nees, self.numbers),
             worst=worst(self.ends.nees, self.numbers),
         )
+
+
+@twinned
+def follow(so_far: Watched, moments: Iterable[Instant]) -> Watched:
+    """Hold the beliefs of one instant after another against the truth."""
+    return functools.reduce(judge, moments, so_far)
 
 
 def judge(so_far: Watched, now: Instant) -> Watched:
