@@ -56,6 +56,14 @@ def test_every_key_is_told_with_its_bounds_and_an_example(kind):
             assert part["examples"], path
 
 
+@pytest.mark.parametrize("kind", [*KINDS, "study"])
+def test_no_description_is_broken_into_the_lines_of_the_code(kind):
+    schema = json_schema(kind)
+    for path, part in parts(schema):
+        told = part.get("description", "")
+        assert told.count("\n") == (2 if part is schema else 0), path  # what no schema can tell
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_mapping_has_an_example_where_it_is_used(kind):
     for path, part in parts(json_schema(kind)):
