@@ -14,8 +14,8 @@ from ekfsim.raycast.walls import BOUNDARY as BOUNDARY
 from ekfsim.raycast.walls import Walls
 from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.faults import NOTHING_WRONG, DriveFaults
-from ekfsim.systems.instruments import Instrument, Surroundings, Target
-from ekfsim.systems.instruments import Landmark as Landmark
+from ekfsim.systems.instrument import Instrument, Surroundings, Target
+from ekfsim.systems.instrument import Landmark as Landmark
 from ekfsim.systems.robots import PylonCart, Robot
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from scenes import SILENT
 from ekfsim.scene import Scene
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.drives import Circle, Square
-from ekfsim.systems.instruments import Bearings, Compass, Gyro, Infrared, Landmark, Ultrasonic
+from ekfsim.systems.instrument import Landmark
+from ekfsim.systems.instruments import Bearings, Compass, Gyro, Infrared, Ultrasonic
 from ekfsim.world import Map, Obstacle, Told, World
 
 FIELD = tuple(

@@ -17,7 +17,7 @@ from ekfsim.simulation.driver import Driver
 from ekfsim.simulation.past import Past
 from ekfsim.systems.drives import Drive
 from ekfsim.systems.faults import SOUND, SensorFaults
-from ekfsim.systems.instruments import Instrument, Seen, Target
+from ekfsim.systems.instrument import Instrument, Seen, Target
 from ekfsim.systems.robots import Gps
 from ekfsim.twins import twinned
 

@@ -36,14 +36,10 @@ Two more systems read published logs, with models that no document prints: landm
 ranges (Plaza).
 """
 
+from ekfsim.systems.instruments import INSTRUMENTS as INSTRUMENTS
 from ekfsim.systems.instruments import (
-    Bearings,
-    Compass,
     Gnss,
-    Gyro,
     Infrared,
-    Instrument,
-    Lidar,
     Markers,
     Pylon,
     RangeBearings,
@@ -69,22 +65,6 @@ SYSTEMS: dict[str, Documented] = {
     "ranges": Documented(RangingMower(), (Ranges(),)),
 }
 CLASSROOM = System()
-INSTRUMENTS: dict[str, type[Instrument]] = {
-    kind.name: kind
-    for kind in (
-        Markers,
-        RangeBearings,
-        Ranges,
-        Bearings,
-        Gnss,
-        Pylon,
-        Lidar,
-        Ultrasonic,
-        Infrared,
-        Compass,
-        Gyro,
-    )
-}
 
 
 def system_of(name: str) -> System:

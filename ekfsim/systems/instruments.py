@@ -6,14 +6,11 @@ An instrument makes one sensor for each thing that it may see: a landmark, a dir
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Protocol
+from typing import ClassVar
 
 import numpy as np
 
-from ekfsim.geometry import Array, Booleans
-from ekfsim.geometry.angles import wrap
-from ekfsim.models.layout import Layout
-from ekfsim.models.protocols import Sensor
+from ekfsim.geometry import Array
 from ekfsim.models.sensors.infrared import COLOURS, InfraredBeam
 from ekfsim.models.sensors.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.sensors.lidar import LidarOffset
@@ -21,111 +18,20 @@ from ekfsim.models.sensors.offset import LandmarkOffset
 from ekfsim.models.sensors.position import Position
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
 from ekfsim.models.sensors.yaw import Yaw
-from ekfsim.raycast.walls import Walls
 from ekfsim.systems.document import DocumentReading
-
-ALL_ROUND = ((-math.pi, math.pi),)
-
-
-class Landmark(NamedTuple):
-    """A landmark: a point that a sensor can tell apart from all others. x, y in m"""
-
-    id: int
-    x: float
-    y: float
-
-
-class Surroundings(NamedTuple):
-    """What an instrument's sensors are made from."""
-
-    landmarks: tuple[Landmark, ...]
-    walls: Walls  # of the map that the sensor is to know
-    layout: Layout  # of the filter's state
-    reading: DocumentReading
-    yaw_sigma: float = 0.0  # rad, of the heading by which readings are turned into the global frame
-    mark: float = 0.0  # rad, the heading of the mark on which the robot is set down
-
-
-class Target(NamedTuple):
-    """One thing that an instrument may read."""
-
-    name: str  # as the narrative and the trace call the sensor: "marker 3"
-    sensor: Sensor
-    place: tuple[float, float] | None = None  # m, where it stands; None for what has no place
-
-
-class Seen(NamedTuple):
-    """A reading of a target before its noise is drawn. Arrays carry leading axes (…)."""
-
-    h: Array  # (…, k) what would be read without noise
-    bias: Array  # (…, k)
-    R: Array  # (…, k, k) covariance of the noise
-
-
-class Instrument(Protocol):
-    """What a simulation and a recorded log need to know of an instrument."""
-
-    name: ClassVar[str]  # the kind, as world files call it
-    # in which other equations than the corrected ones are followed
-    readings: ClassVar[tuple[DocumentReading, ...]]
-
-    @property
-    def rate(self) -> float:
-        """How often it is read, in Hz."""
-
-    def targets(self, around: Surroundings) -> Iterator[Target]:
-        """Everything that it may read."""
-
-    def sees(self, target: Target, pose: Array) -> Booleans:
-        """Whether a target is in view from a true pose (…, 3) : (…)"""
-
-    def read(self, seen: Seen, pose: Array, u: Array) -> Seen:
-        """What it makes of a target that it sees from true poses (…, 3).
-
-        u : (…, m), the motion input as the robot measures it
-        """
-
-    def as_given(self, z: Array, believed: "Instrument") -> Array:
-        """Readings (…, k) as a filter is given them that believes this of the instrument."""
-
-
-def turned(z: Array, angle: Array) -> Array:
-    """Vectors (…, 2) turned counter-clockwise : (…, 2)"""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.stack([c * z[..., 0] - s * z[..., 1], s * z[..., 0] + c * z[..., 1]], axis=-1)
-
-
-class _Looking:
-    """An instrument that sees what is near enough and in one of its fields of view."""
-
-    readings: ClassVar[tuple[DocumentReading, ...]] = ()
-    farthest: float  # m
-    views: tuple[tuple[float, float], ...]  # rad from straight ahead, counter-clockwise: from, to
-
-    def sees(self, target: Target, pose: Array) -> Booleans:
-        """Whether a target is in view from a true pose (…, 3) : (…)"""
-        if target.place is None:
-            return np.ones(pose.shape[:-1], bool)
-        dx, dy = target.place[0] - pose[..., 0], target.place[1] - pose[..., 1]
-        bearing = np.arctan2(dy, dx) - pose[..., 2]
-        near: Booleans = np.hypot(dx, dy) <= self.farthest
-        inside = np.zeros_like(near)
-        for start, end in self.views:
-            middle, half = (start + end) / 2, (end - start) / 2
-            inside |= np.abs(wrap(bearing - middle)) <= half
-        return near & inside
-
-    def read(self, seen: Seen, pose: Array, u: Array) -> Seen:
-        """What it makes of a target that it sees: nothing else."""
-        return seen
-
-    def as_given(self, z: Array, believed: Instrument) -> Array:
-        """Readings as a filter is given them: as they are."""
-        return z
+from ekfsim.systems.instrument import (
+    ALL_ROUND,
+    Instrument,
+    Looking,
+    Seen,
+    Surroundings,
+    Target,
+    turned,
+)
 
 
 @dataclass(frozen=True)
-class Markers(_Looking):
+class Markers(Looking):
     """Document 000: cameras in front and behind, for azimuth and elevation of surveyed markers."""
 
     name: ClassVar[str] = "markers"
@@ -157,7 +63,7 @@ class Markers(_Looking):
 
 
 @dataclass(frozen=True)
-class RangeBearings(_Looking):
+class RangeBearings(Looking):
     """A camera that tells range and bearing of landmarks."""
 
     name: ClassVar[str] = "rangeBearing"
@@ -177,7 +83,7 @@ class RangeBearings(_Looking):
 
 
 @dataclass(frozen=True)
-class Bearings(_Looking):
+class Bearings(Looking):
     """A camera that tells the bearing of landmarks alone."""
 
     name: ClassVar[str] = "bearing"
@@ -197,7 +103,7 @@ class Bearings(_Looking):
 
 
 @dataclass(frozen=True)
-class Ranges(_Looking):
+class Ranges(Looking):
     """A radio that tells the range to nodes alone.
 
     What it says is scale · r + bias, and is corrected before use.
@@ -234,7 +140,7 @@ class Ranges(_Looking):
 
 
 @dataclass(frozen=True)
-class Gnss(_Looking):
+class Gnss(Looking):
     """Document 003: satellite fixes of the position."""
 
     name: ClassVar[str] = "gnss"
@@ -249,7 +155,7 @@ class Gnss(_Looking):
 
 
 @dataclass(frozen=True)
-class Pylon(_Looking):
+class Pylon(Looking):
     """Document 004: a lidar; a pylon's offset, turned into the global frame by the yaw."""
 
     name: ClassVar[str] = "pylon"
@@ -278,7 +184,7 @@ class Pylon(_Looking):
 
 
 @dataclass(frozen=True)
-class Lidar(_Looking):
+class Lidar(Looking):
     """The same lidar, its reading left as it sees the pylon, as document 004's conclusion wants."""
 
     name: ClassVar[str] = "lidar"
@@ -301,7 +207,7 @@ FOUR = tuple(math.radians(angle) for angle in range(-180, 180, 90))
 
 
 @dataclass(frozen=True)
-class Ultrasonic(_Looking):
+class Ultrasonic(Looking):
     """Document 001: a ring of ultrasonic beams; the error grows with the distance (fig. 6)."""
 
     name: ClassVar[str] = "ultrasonic"
@@ -322,7 +228,7 @@ class Ultrasonic(_Looking):
 
 
 @dataclass(frozen=True)
-class Infrared(_Looking):
+class Infrared(Looking):
     """Document 001: pairs of an infrared emitter and receiver (fig. 4).
 
     The intensity falls with the distance.
@@ -350,7 +256,7 @@ class Infrared(_Looking):
 
 
 @dataclass(frozen=True)
-class Compass(_Looking):
+class Compass(Looking):
     """Document 001: tells the absolute yaw.
 
     "In indoor conditions" it is of "rather poor quality", and so left out there.
@@ -367,7 +273,7 @@ class Compass(_Looking):
 
 
 @dataclass(frozen=True)
-class Gyro(_Looking):
+class Gyro(Looking):
     """Document 001: a gyroscope that tells the yaw from the mark, along which it was set to 0.
 
     It has summed up its rates itself. What it drifts is no white noise: no filter here is told, see
@@ -381,3 +287,21 @@ class Gyro(_Looking):
     def targets(self, around: Surroundings) -> Iterator[Target]:
         """The yaw, 0 along the mark."""
         yield Target("gyro", Yaw(-around.mark, self.sigma, around.layout))
+
+
+INSTRUMENTS: dict[str, type[Instrument]] = {
+    kind.name: kind
+    for kind in (
+        Markers,
+        RangeBearings,
+        Ranges,
+        Bearings,
+        Gnss,
+        Pylon,
+        Lidar,
+        Ultrasonic,
+        Infrared,
+        Compass,
+        Gyro,
+    )
+}

@@ -8,7 +8,7 @@ from ekfsim.filters.protocol import Beginning, Filter
 from ekfsim.filters.variants.listing import ListingEKF
 from ekfsim.records import Entry
 from ekfsim.systems.document import DocumentReading
-from ekfsim.systems.instruments import Instrument
+from ekfsim.systems.instrument import Instrument
 from ekfsim.systems.interpolation import stretched
 from ekfsim.systems.robots import Robot
 

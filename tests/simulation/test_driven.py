@@ -13,15 +13,8 @@ from ekfsim.scene import Scene
 from ekfsim.simulation import driven, simulate
 from ekfsim.systems import INSTRUMENTS, SYSTEMS
 from ekfsim.systems.drives import Circle, Square, Stretch, Stretches
-from ekfsim.systems.instruments import (
-    Bearings,
-    Gnss,
-    Landmark,
-    Markers,
-    RangeBearings,
-    Ranges,
-    Ultrasonic,
-)
+from ekfsim.systems.instrument import Landmark
+from ekfsim.systems.instruments import Bearings, Gnss, Markers, RangeBearings, Ranges, Ultrasonic
 from ekfsim.systems.robots import Mower, Tick
 from ekfsim.world import Map, Noise, Told, World
 

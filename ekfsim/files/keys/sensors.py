@@ -21,13 +21,13 @@ from ekfsim.files.keys.fields import (
 )
 from ekfsim.files.keys.system import degrees
 from ekfsim.models.sensors.infrared import COLOURS
+from ekfsim.systems.instrument import Instrument
 from ekfsim.systems.instruments import (
     Bearings,
     Compass,
     Gnss,
     Gyro,
     Infrared,
-    Instrument,
     Lidar,
     Markers,
     Pylon,

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from ekfsim.records import Log
-from ekfsim.systems.instruments import Landmark
+from ekfsim.systems.instrument import Landmark
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.systems.document import DocumentReading
-from ekfsim.systems.instruments import Landmark
+from ekfsim.systems.instrument import Landmark
 from ekfsim.world import World
 
 SAME = 1e-6  # s; times that differ by no more are one: 0.3 and 0.1 + 0.2, or a Unix time as a float

@@ -22,7 +22,7 @@ from ekfsim.scene import Expect, Scene
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.drives import DRIVES, Drive, Stretch, Stretches
 from ekfsim.systems.faults import DriveFaults, SensorFaults
-from ekfsim.systems.instruments import Instrument
+from ekfsim.systems.instrument import Instrument
 from ekfsim.systems.robots import Robot
 from ekfsim.world import Faults, Landmark, Map, Noise, Obstacle, Told, World
 

@@ -27,10 +27,10 @@ from ekfsim.files.yaml.schema import schema_at
 from ekfsim.files.yaml.telling import at, example, meant, one_of
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.drives import DRIVES, Circle, Drive, Spiral, Square, Stretches
+from ekfsim.systems.instrument import Instrument
 from ekfsim.systems.instruments import (
     Bearings,
     Infrared,
-    Instrument,
     Lidar,
     Markers,
     Pylon,

@@ -13,7 +13,7 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.localization import play
 from ekfsim.scene import Scene
 from ekfsim.systems import SYSTEMS
-from ekfsim.systems.instruments import Landmark
+from ekfsim.systems.instrument import Landmark
 from ekfsim.world import Map, Told, World
 
 SHARED = Path(__file__).resolve().parents[3] / ".." / "shared" / "data"

@@ -15,7 +15,8 @@ from ekfsim.records import Control
 from ekfsim.scene import Scene
 from ekfsim.simulation import simulate
 from ekfsim.systems.drives import Circle, Square
-from ekfsim.systems.instruments import Compass, Gyro, Infrared, Landmark, Markers, Ultrasonic
+from ekfsim.systems.instrument import Landmark
+from ekfsim.systems.instruments import Compass, Gyro, Infrared, Markers, Ultrasonic
 from ekfsim.systems.instruments import Pylon as PylonLidar
 from ekfsim.systems.robots import Pioneer, PylonCart
 

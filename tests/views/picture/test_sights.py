@@ -25,7 +25,7 @@ from ekfsim.models.sensors.lidar import LidarOffset
 from ekfsim.models.sensors.offset import LandmarkOffset
 from ekfsim.models.sensors.position import Position
 from ekfsim.records import Entry, Log, Reading, Step
-from ekfsim.systems.instruments import Landmark
+from ekfsim.systems.instrument import Landmark
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.artists import BLUE, CROWD, MEANT, VERMILLION
 from ekfsim.views.picture.frames import Frame, Picture

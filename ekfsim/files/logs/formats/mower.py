@@ -18,7 +18,8 @@ from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.systems.document import DocumentReading
-from ekfsim.systems.instruments import Landmark, Markers
+from ekfsim.systems.instrument import Landmark
+from ekfsim.systems.instruments import Markers
 from ekfsim.world import World
 
 HOLDS = "marker-001-poselog.txt, marker-001-003-angles.txt and marker-001-map.txt"

@@ -17,7 +17,8 @@ from ekfsim.files.logs.truth import Truth, truth_of
 from ekfsim.geometry import Array
 from ekfsim.records import Reading
 from ekfsim.systems.document import DocumentReading
-from ekfsim.systems.instruments import Bearings, Instrument, Landmark, RangeBearings, Ranges
+from ekfsim.systems.instrument import Instrument, Landmark
+from ekfsim.systems.instruments import Bearings, RangeBearings, Ranges
 from ekfsim.world import World
 
 HOLDS = "Robot*_Odometry.dat, Robot*_Measurement.dat, Barcodes.dat and Landmark_Groundtruth.dat"

@@ -18,7 +18,8 @@ from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion
 from ekfsim.records import Reading
 from ekfsim.systems.document import DocumentReading
-from ekfsim.systems.instruments import Compass, Gyro, Infrared, Target, Ultrasonic
+from ekfsim.systems.instrument import Target
+from ekfsim.systems.instruments import Compass, Gyro, Infrared, Ultrasonic
 from ekfsim.world import World
 
 HOLDS = (

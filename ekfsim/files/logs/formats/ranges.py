@@ -19,7 +19,8 @@ from ekfsim.files.logs.truth import Truth
 from ekfsim.geometry.angles import wrap
 from ekfsim.records import Reading
 from ekfsim.systems.document import DocumentReading
-from ekfsim.systems.instruments import Landmark, Ranges
+from ekfsim.systems.instrument import Landmark
+from ekfsim.systems.instruments import Ranges
 from ekfsim.world import World
 
 HOLDS = "odometry.csv, ranges.csv, nodes.csv and, where it is known, groundtruth.csv"

@@ -5,7 +5,7 @@ from dataclasses import replace
 from ekfsim.errors import InputError, Mistake, Place, UsageError
 from ekfsim.files.logs.table import Rows
 from ekfsim.systems.document import DocumentReading
-from ekfsim.systems.instruments import Instrument, Landmark, Target
+from ekfsim.systems.instrument import Instrument, Landmark, Target
 from ekfsim.world import World
 
 
