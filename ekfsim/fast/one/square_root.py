@@ -75,12 +75,13 @@ def _cholesky_one(P: Rows, order: list[int]) -> Rows:
         for m in range(j):
             pivot -= L_p[m] * L_p[m]
         if pivot > ROUNDING * P_p[p]:
-            L_p[j] = root = math.sqrt(pivot)
+            per_root = 1.0 / math.sqrt(pivot)
+            L_p[j] = pivot * per_root
             for q in order[j + 1 :]:
                 L_q, rest = L[q], P_p[q]
                 for m in range(j):
                     rest -= L_q[m] * L_p[m]
-                L_q[j] = rest / root
+                L_q[j] = rest * per_root
     return L
 
 

@@ -85,8 +85,8 @@ def square_root(P: Array, seen: Array | None = None) -> Array:
             rest = rest - L[..., j:, m] * L[..., j, None, m]
         pivot = rest[..., 0]
         left = pivot > ROUNDING * P[..., j, j]
-        root = np.sqrt(np.where(left, pivot, 1.0))
-        L[..., j:, j] = np.where(left[..., None], rest / root[..., None], 0.0)
+        per_root = np.where(left, 1.0 / np.sqrt(np.where(left, pivot, 1.0)), 0.0)
+        L[..., j:, j] = rest * per_root[..., None]
     return L
 
 
