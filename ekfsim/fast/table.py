@@ -29,6 +29,7 @@ RAYS, SEARCHES = "ekfsim.raycast", "ekfsim.raycast.searches"
 MOTION, SENSOR = (f"ekfsim.models.protocols:{kind}.linearize" for kind in ("Motion", "Sensor"))
 MOTIONS, MARKER = "ekfsim.models.motions", "ekfsim.models.sensors.landmarks:MarkerAngles"
 KALMAN, ROOT = "ekfsim.filters.kalman", "ekfsim.filters.arithmetic.square_root"
+DESCEND = "ekfsim.filters.arithmetic.descent:Search.descend"
 NEES, AMBIGUITY = "ekfsim.diagnostics.nees", "ekfsim.diagnostics.ambiguity"
 
 ALONE = "one robot: no leading axes"
@@ -76,6 +77,7 @@ TWINS: tuple[Twin, ...] = (
     Twin(f"{ROOT}:square_root", f"{ONE}.square_root:square_root", ALONE),
     Twin(f"{ROOT}:slope", f"{ONE}.square_root:slope", ALONE),
     Twin(f"{ROOT}:conditioned", f"{ONE}.square_root:conditioned", ALONE),
+    Twin(DESCEND, f"{ONE}.descent:descend", ALONE),
     Twin("ekfsim.filters.stretch:stretch", "ekfsim.fast.many_steps:stretch", ANY),
     Twin(
         of="ekfsim.filters.chi_square:quantile",

@@ -1,7 +1,7 @@
 """The iterated extended Kalman filter."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from typing import Self
 
 from ekfsim.filters import kalman
 from ekfsim.filters.arithmetic.descent import Search
@@ -22,7 +22,6 @@ class IEKF(EKF):
     2015. All else, and a linear sensor's update, is as in the EKF.
     """
 
-    remark: ClassVar[str] = ""
     # how many steps the search takes at most, half a step counting as half
     iterations: int = Tuning.iterations
 
@@ -47,16 +46,13 @@ class IEKF(EKF):
         x, P = prior
         h, H, R = sensor.linearize(x)
         L, ν = square_root(P, seen(H)), sensor.residual(z, h)
-        reading, rule = (
-            kalman.Linearized(z, h, ν, H, R),
-            kalman.Rule(self.gate, skip, self.headings),
-        )
+        reading = kalman.Linearized(z, h, ν, H, R)
+        rule = kalman.Rule(self.gate, skip, self.headings)
         _, told = kalman.revise(Gaussian(x, P), reading, rule, L, slope(H, L))
         search = Search(sensor, z, x, L, R, told.S, self.headings)
         best, settled = search.descend(ν, h, H, told.refused == Refused.NOT, self.iterations)
         h, H, _ = sensor.linearize(best)
         last = kalman.gain(L, slope(H, L), R, h)
-        posterior = kalman.where_used(
-            told.refused, Gaussian(best, last.covariance(P)), Gaussian(x, P)
-        )
+        found = Gaussian(best, last.covariance(P))
+        posterior = kalman.where_used(told.refused, found, Gaussian(x, P))
         return posterior, replace(told, H=H, K=last.K, settled=settled)

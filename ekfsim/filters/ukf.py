@@ -14,9 +14,7 @@ from ekfsim.models.protocols import Motion, Sensor, angles
 
 @dataclass(frozen=True)
 class UKF:
-    """Unscented Kalman filter: Tamás et al., section II.C (document 001); Wan & van der Merwe,
-    2001, table 7.3.2. Noise is added, eqs 21 and 24, G and R being those of x.
-    """
+    """Unscented Kalman filter: Tamás et al., II.C (document 001); Wan & van der Merwe, 2001."""
 
     remark: ClassVar[str] = ""
     gate: float | None = None  # as in the EKF
@@ -28,12 +26,12 @@ class UKF:
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:
         """The filter for a run that begins so."""
-        told = beginning.tuning
-        return cls(beginning.gate, beginning.headings, told.alpha, told.beta, told.kappa)
+        own = beginning.tuning
+        return cls(beginning.gate, beginning.headings, own.alpha, own.beta, own.kappa)
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
         """Xᵢ = sigma points of x, P      x⁻ = Σ Wᵢᵐ f(Xᵢ, u)          eqs 14, 20; u : (…, m)
-        P⁻ = Σ Wᵢᶜ (f(Xᵢ, u) − x⁻)(f(Xᵢ, u) − x⁻)ᵀ + G M Gᵀ + Q          eq. 21
+        P⁻ = Σ Wᵢᶜ (f(Xᵢ, u) − x⁻)(f(Xᵢ, u) − x⁻)ᵀ + G M Gᵀ + Q, G at x          eq. 21
         """
         x, P = belief
         _, F, G, M, Q = motion.linearize(x, u)

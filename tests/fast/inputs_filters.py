@@ -6,11 +6,17 @@ import numpy as np
 from numerics import covariance
 from twin_inputs import axes_of, inputs
 
+from ekfsim.filters.arithmetic.descent import Search
+from ekfsim.filters.arithmetic.square_root import seen, square_root
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.kalman import Linearized, Rule
 from ekfsim.models.motions.unicycle import Unicycle
 from ekfsim.models.motions.wheels import GyroWheels, TwoWheels
+from ekfsim.models.sensors.landmarks import RangeBearing
+from ekfsim.models.sensors.laser import Laser
+from ekfsim.raycast.walls import BOUNDARY, Walls
 
+ROOM = Walls.of({BOUNDARY: np.array([[-9, -9], [9, -9], [9, 9], [-9, 9.0]])})
 SQUARE_ROOT = "ekfsim.filters.arithmetic.square_root"
 ANGLES = np.array([math.pi, -math.pi, math.nextafter(math.pi, 0), 0.0, 3.1, -3.1])
 
@@ -144,6 +150,24 @@ def known(random, runs):
         yield 0.0 * L, 0.0 * D, 0.0 * R, h
         yield L, np.where(random.random((*axes, k, 1)) < 0.5, 0.0, D), R, h
         yield L, D, R, np.where(random.random((*axes, k)) < 0.3, 1e17, h)
+
+
+@inputs("ekfsim.filters.arithmetic.descent:Search.descend", within=1e-9)  # ends at 1e-10 σ
+def searches(random, runs):
+    axes = axes_of(runs)
+    if runs is not None and runs > 1:
+        return
+    for P in beliefs(random, axes):
+        x = states(random, axes)
+        for sensor in (Laser(ROOM, 0.3, 0.01), RangeBearing(6.0, 6.0, 0.1, 0.02)):
+            h, H, R = sensor.linearize(x)
+            L = square_root(P, seen(H))
+            for z in (h, 1.05 * h, 0.97 * h, np.full_like(h, np.nan)):
+                search = Search(sensor, z, x, L, R, H @ P @ H.mT + R, (2,))
+                ν, used = sensor.residual(z, h), ~np.isnan(h).any(axis=-1)
+                yield search, ν, h, H, used, 50
+                yield search, ν, h, H, used, 2
+                yield search, ν, h, H, np.zeros(axes, bool), 50
 
 
 @inputs("ekfsim.filters.stretch:stretch", within=1e-11)

@@ -100,6 +100,8 @@ def differences(told, right, within, name, runs=None):
         pairs = list(zip(names, told, right, strict=True))
     elif isinstance(right, np.ndarray | float | int | bool):
         return _numbers(np.asarray(told), np.asarray(right), within, name, runs)
+    elif type(right).__eq__ is object.__eq__ and getattr(right, "__dict__", None):
+        pairs = [(one, getattr(told, one), part) for one, part in vars(right).items()]
     else:
         return [] if told is right or told == right else [f"{name}: {told!r}, not {right!r}"]
     return [
