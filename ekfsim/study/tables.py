@@ -12,6 +12,7 @@ from ekfsim.study.results import AtStep, Result, Share
 from ekfsim.study.verdict import Verdict, Word
 from ekfsim.version import VERSION
 
+FORMAT = 1  # of both tables; grows when a column changes its meaning, or goes
 SHARES = ("above_50", "above_95", "above_999", "ellipse", "cone", "lost")
 AT_STEP = (
     *("step", "t", "runs", "impossible", "position_rmse", "heading_rmse"),
@@ -24,7 +25,7 @@ OF_RUNS = (
     *("lost_from_median", "lost_from_median_t", "worst_run", "typical_run"),
     *("verdict", "decided", "on_the_way", "from_step", "to_step", "from_t", "to_t"),
 )
-ORIGIN = ("seed", "gate", "guard", "reading", "set", "ekfsim")
+ORIGIN = ("seed", "gate", "guard", "reading", "set", "ekfsim", "format")
 
 
 def write_summary(file: TextIO, plan: Plan, results: Iterable[Result]) -> None:
@@ -92,9 +93,8 @@ def _origin_columns(plan: Plan) -> list[str]:
 
 def _origin(result: Result, plan: Plan) -> list[str]:
     scene, settings = result.case.scene, " ".join(map(str, plan.request.settings))
-    told = zip(
-        ORIGIN, (scene.seed, scene.gate, scene.guard, scene.reading, settings, VERSION), strict=True
-    )
+    made_by = scene.seed, scene.gate, scene.guard, scene.reading, settings, VERSION, FORMAT
+    told = zip(ORIGIN, made_by, strict=True)
     return [_cell(value) for name, value in told if name not in plan.keys]
 
 

@@ -18,6 +18,8 @@ from ekfsim.provenance import provenance
 from ekfsim.records import Step
 from ekfsim.scene import Scene
 
+SUMMARY_FORMAT = 1  # grows when a key of the summary changes its meaning, or goes
+
 
 class Sink(Protocol):
     """Takes the steps of a run, one at a time."""
@@ -94,7 +96,7 @@ class Outputs:
                 tum.finish()
             if self.summary:
                 json.dump(
-                    {**summary.table(), **provenance(scene)},
+                    {"format": SUMMARY_FORMAT, **summary.table(), **provenance(scene)},
                     file_of[self.summary],
                     indent=2,
                     allow_nan=False,

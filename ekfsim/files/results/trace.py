@@ -18,7 +18,7 @@ from ekfsim.provenance import provenance
 from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
 
-FORMAT = 1
+FORMAT = 1  # of the trace; grows when a key changes its meaning, or goes
 ODOMETRY = "odometry"  # what a line calls the sensor of its motion input
 
 

@@ -67,6 +67,9 @@ def _tum_line(t: float, pose: Array) -> str:
     return f"{t!r} {x!r} {y!r} 0 0 0 {math.sin(theta / 2)!r} {math.cos(theta / 2)!r}\n"
 
 
+# of the CSV table; grows when a column changes its meaning, or goes. It is a column, the last: a
+# line before the header would break whoever reads the table
+FORMAT = 1
 ESTIMATE = ("x", "y", "theta", "P_xx", "P_xy", "P_xtheta", "P_yy", "P_ytheta", "P_thetatheta")
 TRUTH = ("true_x", "true_y", "true_theta")
 JUDGED = ("ellipse_major", "ellipse_minor", "ellipse_orientation", "nees", "nees_dof", "impossible")
@@ -95,7 +98,7 @@ class Table:
         )
         self._csv = csv.writer(file, lineterminator="\n")
         columns = COLUMNS if self._commanded else DRIVEN_COLUMNS
-        self._csv.writerow([*columns, *provenance(scene), "confidence"])
+        self._csv.writerow([*columns, *provenance(scene), "confidence", "format"])
 
     def write(self, step: Step) -> None:
         """Append the row of this step."""
@@ -119,6 +122,7 @@ class Table:
                 ),
                 *self._origin,
                 self._confidence,
+                FORMAT,
             ]
         )
 

@@ -17,8 +17,9 @@ from ekfsim.views.study.compare_words import measures, settings
 from ekfsim.views.study.folder import first_lines, last_lines, write_to_repeat, written
 
 FILES = ("compare.csv", "compare.png", "compare.yaml", "commands.yaml", "world.yaml")
+FORMAT = 1  # of compare.csv; grows when a column changes its meaning, or goes
 HEAD = ("measure", "unit", "runs", "a", "b", "difference", "low", "high", "only_a", "only_b")
-ORIGIN = ("a_sets", "b_sets", "seed", "ekfsim")
+ORIGIN = ("a_sets", "b_sets", "seed", "ekfsim", "format")
 
 
 def write_comparison(comparison: Comparison, found: Pairs, out: Path, force: bool) -> None:
@@ -38,7 +39,7 @@ def write_table(file: TextIO, comparison: Comparison, found: Pairs) -> None:
     for measure in measures(found):
         numbers = ("" if math.isnan(number) else f"{number:.6g}" for number in measure.found)
         alone = ("" if runs is None else runs for runs in (measure.a_alone, measure.b_alone))
-        origin = (*sides, comparison.a.seed, VERSION)
+        origin = (*sides, comparison.a.seed, VERSION, FORMAT)
         table.writerow([measure.name, measure.unit, measure.runs, *numbers, *alone, *origin])
 
 

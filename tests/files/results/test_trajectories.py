@@ -68,7 +68,8 @@ def test_every_row_has_every_column():
     rows = rows_of(rich())
     assert len(rows) == len(list(play(rich())))
     for row in rows:
-        assert list(row) == [*COLUMNS, *provenance(rich()), "confidence"]
+        assert list(row) == [*COLUMNS, *provenance(rich()), "confidence", "format"]
+        assert row["format"] == "1"
         assert "nan" not in row.values()
         assert row["seed"] == "3"
 
@@ -200,7 +201,7 @@ def test_a_run_without_truth_has_an_empty_one_that_says_so():
 def test_a_row_of_a_recorded_run_holds_the_pose_and_the_numbers_of_its_reading(made):
     layout = made.world.layout
     for row, step in zip(rows_of(made), play(made), strict=True):
-        assert list(row) == [*DRIVEN_COLUMNS, *provenance(made), "confidence"]
+        assert list(row) == [*DRIVEN_COLUMNS, *provenance(made), "confidence", "format"]
         pose, P = (
             layout.pose(step.posterior.mean),
             layout.pose_covariance(step.posterior.covariance),
