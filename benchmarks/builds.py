@@ -15,6 +15,15 @@ HERE = Path(__file__).parent.parent
 
 
 @dataclass(frozen=True)
+class Spent:
+    """What a process took, its workers included."""
+
+    wall: float  # s
+    processor: float  # s
+    memory: float  # MB, of the largest of them
+
+
+@dataclass(frozen=True)
 class Build:
     """A checkout of ekfsim."""
 
@@ -54,11 +63,8 @@ class Build:
 
         return call
 
-    def process(self, *words: str) -> tuple[float, float]:
-        """A command in a process of its own: seconds on the wall, and MB of memory.
-
-        The memory is that of the largest process, a study's workers among them.
-        """
+    def process(self, *words: str) -> Spent:
+        """A command in a process of its own."""
         program = [sys.executable, "-c", "from ekfsim.cli import main; main()", *words]
         path = os.pathsep.join([str(self.folder), *filter(None, [os.environ.get("PYTHONPATH")])])
         start = perf_counter()
@@ -72,7 +78,8 @@ class Build:
         started.returncode = os.waitstatus_to_exitcode(status)
         if started.returncode:
             raise subprocess.CalledProcessError(started.returncode, program)
-        return perf_counter() - start, used.ru_maxrss / 1024  # which Linux counts in kB
+        wall = perf_counter() - start
+        return Spent(wall, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
 
 
 def taken() -> dict[str, ModuleType]:
