@@ -88,6 +88,12 @@ TWINS: tuple[Twin, ...] = (
     Twin(f"{AMBIGUITY}:sighting", f"{ONE}.ambiguity:sighting", ALONE),
     Twin(f"{NEES}:nees", f"{ONE}.nees:nees", f"{ALONE}; P clearly of full rank"),
     Twin(f"{NEES}:nees", f"{MANY}.nees:nees", OF_MANY),
+    Twin(
+        of=f"{NEES}:squared_mahalanobis",
+        form=f"{COMPILED}.nees:squared_mahalanobis",
+        when=f"{OF_MANY}, three dimensions",
+        compiled=True,
+    ),
     Twin(f"{NEES}:squared_mahalanobis", f"{MANY}.nees:squared_mahalanobis", OF_MANY),
     # whole loops
     Twin(

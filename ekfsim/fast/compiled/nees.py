@@ -1,17 +1,22 @@
-"""The NEES of many runs, compiled by Numba: the extra `fast`."""
+"""many/nees.py, compiled."""
 
 import numpy as np
 
-from ekfsim.geometry import Array, Booleans
+from ekfsim.diagnostics.nees import ROUNDING
+from ekfsim.fast.many.nees import CLEAR, judged
+from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.twins import compiled
 
 
-def squares(e: Array, P: Array, tiny: float, sure: float) -> tuple[Array, Booleans]:
-    """eᵀ P⁻¹ e of three entries : (N,), and where P is clearly of full rank, as in
-    fast/nees.py
-    """
+def squared_mahalanobis(e: Array, P: Array) -> tuple[Array, Integers, Booleans] | None:
+    """eᵀ P⁺ e of many runs in three dimensions."""
+    return judged(e, P, full_rank) if e.shape[-1] == 3 else None
+
+
+def full_rank(e: Array, P: Array) -> tuple[Array, Booleans]:
+    """eᵀ P⁻¹ e : (N,), and where P is clearly of full rank; e : (3, N), P : (3, 3, N)"""
     value, clear = np.empty(e.shape[1:]), np.empty(e.shape[1:], bool)
-    _square(np.ascontiguousarray(e), np.ascontiguousarray(P), tiny, sure, value, clear)
+    _square(np.ascontiguousarray(e), np.ascontiguousarray(P), ROUNDING**2, CLEAR, value, clear)
     return value, clear
 
 

@@ -3,6 +3,7 @@ eigenvalues.
 """
 
 import functools
+from collections.abc import Callable
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.soa import front
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Nees
-from ekfsim.twins import as_written, taken
+from ekfsim.twins import as_written
 
 # a determinant of the correlation matrix above this needs no eigenvalues to tell the rank
 CLEAR = 1e-8
@@ -21,6 +22,9 @@ CLEAR = 1e-8
 NONE, PLANE = 1e-14, 1e-2
 UNCLEAR = -1  # in place of a rank
 MANY = 64  # runs from which on they are told apart by rank
+
+# eᵀ P⁻¹ e : (N,), and where P is clearly of full rank; of e : (n, N) and P : (n, n, N)
+Squares = Callable[[Array, Array], tuple[Array, Booleans]]
 
 
 def nees(belief: Belief, truth: Array, layout: Layout = POSE) -> Nees | None:
@@ -38,22 +42,22 @@ def squared_mahalanobis(e: Array, P: Array) -> tuple[Array, Integers, Booleans] 
     """eᵀ P⁺ e of many runs in two or three dimensions, those by the text whose rank is not
     clear.
     """
+    return judged(e, P, full_rank)
+
+
+def judged(e: Array, P: Array, full: Squares) -> tuple[Array, Integers, Booleans] | None:
+    """`squared_mahalanobis` by one that judges what is clearly of full rank."""
     n = e.shape[-1]
     if e.ndim != 2 or len(e) < MANY or n not in (2, 3) or e.shape != P.shape[:-1]:
         return None
-    if n == 3 and taken() == "compiled":
-        from ekfsim.fast.compiled import nees as compiled
-
-        value, clear = compiled.squares(front(e, 1), front(P), ROUNDING**2, CLEAR)
-    else:
-        with np.errstate(all="ignore"):
-            value, clear = _full_rank(front(e, 1), front(P))
+    with np.errstate(all="ignore"):
+        value, clear = full(front(e, 1), front(P))
     rank, impossible = np.full(len(e), n), np.zeros(len(e), bool)
-    for judged in (singular, as_written(squares)):
+    for judge in (singular, as_written(squares)):
         if clear.all():
             break
         rest = those(~clear)
-        value[rest], rank[rest], impossible[rest] = judged(e[rest], P[rest])
+        value[rest], rank[rest], impossible[rest] = judge(e[rest], P[rest])
         clear[rest] = rank[rest] != UNCLEAR
     return value, rank, impossible
 
@@ -63,7 +67,7 @@ def those(runs: Booleans) -> slice | Integers:
     return slice(None) if runs.all() else np.flatnonzero(runs)
 
 
-def _full_rank(e: Array, P: Array) -> tuple[Array, Booleans]:
+def full_rank(e: Array, P: Array) -> tuple[Array, Booleans]:
     """eᵀ P⁻¹ e : (N,), and where P is clearly of full rank; e : (n, N), P : (n, n, N)
 
     det C = Π Dᵢ/Pᵢᵢ, and no eigenvalue of C (they sum to n ≤ 3) is smaller than det C / 2.25.
