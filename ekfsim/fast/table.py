@@ -30,6 +30,7 @@ MOTION, SENSOR = (f"ekfsim.models.protocols:{kind}.linearize" for kind in ("Moti
 MOTIONS, MARKER = "ekfsim.models.motions", "ekfsim.models.sensors.landmarks:MarkerAngles"
 KALMAN, ROOT = "ekfsim.filters.kalman", "ekfsim.filters.arithmetic.square_root"
 DESCEND = "ekfsim.filters.arithmetic.descent:Search.descend"
+CLASSROOM = "ekfsim.simulation.classroom"
 NEES, AMBIGUITY = "ekfsim.diagnostics.nees", "ekfsim.diagnostics.ambiguity"
 
 ALONE = "one robot: no leading axes"
@@ -84,6 +85,9 @@ TWINS: tuple[Twin, ...] = (
         form="ekfsim.fast.chi_square:quantile",
         when="up to 5 000 degrees of freedom, and a probability that is neither 0 nor 1",
     ),
+    # simulation/
+    Twin(f"{CLASSROOM}:until_wall", f"{ONE}.classroom:until_wall", ALONE),
+    Twin(f"{CLASSROOM}:until_wall", f"{MANY}.classroom:until_wall", "pose : (N, 3)"),
     # diagnostics/
     Twin(f"{AMBIGUITY}:sighting", f"{ONE}.ambiguity:sighting", ALONE),
     Twin(f"{NEES}:nees", f"{ONE}.nees:nees", f"{ALONE}; P clearly of full rank"),

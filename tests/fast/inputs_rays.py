@@ -59,3 +59,17 @@ def ways(random, runs):
         yield walls.ground, place, 0 * way
         yield walls.ground, random.choice(PLACES, place.shape), way
         yield walls.ground, np.where(random.random(place.shape) < 0.3, np.nan, place), way
+
+
+@inputs("ekfsim.simulation.classroom:until_wall", within=SHORT)
+def drives(random, runs):
+    axes = axes_of(runs)
+    for walls in worlds(random):
+        pose = random.uniform((-1, -1, -np.pi), (11, 9, np.pi), (*axes, 3))
+        way = random.uniform(-5, 5, axes)
+        yield walls, pose, way
+        yield walls, pose, 0 * way
+        yield walls, (5, 4.5, 0.1) + 0.02 * pose, 0.01 * way - 3
+        square = random.choice(PLACES, (*axes, 2)), random.choice(TURNS, (*axes, 1))
+        yield walls, np.concatenate(square, axis=-1), np.rint(way)
+        yield walls, np.where(random.random(pose.shape) < 0.1, np.nan, pose), way

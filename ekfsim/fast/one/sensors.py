@@ -9,6 +9,7 @@ from ekfsim.geometry.angles import wrap_one
 from ekfsim.models.noise import independent
 from ekfsim.models.sensors.landmarks import AT_IT, MarkerAngles
 from ekfsim.models.sensors.laser import ALONG, Laser
+from ekfsim.raycast.searches.single_beam import first
 
 Linearized = tuple[Array, Array, Array]  # h, H, R
 
@@ -19,7 +20,7 @@ def laser(sensor: Laser, x: Array) -> Linearized | None:
         return None
     px, py, θ = x.tolist()
     direction = θ + sensor.bearing
-    r, wall = sensor.walls.first(px, py, direction)
+    r, wall = first(sensor.walls, px, py, direction)
     dx, dy = math.cos(direction), math.sin(direction)
     nx, ny = sensor.walls.normals[wall].tolist() if wall >= 0 else (0.0, 0.0)
     n_d = nx * dx + ny * dy

@@ -1,0 +1,21 @@
+"""The classroom's robot by itself, in plain floats."""
+
+import math
+
+import numpy as np
+
+from ekfsim.geometry import Array, Integers
+from ekfsim.raycast.ground import CLEARANCE
+from ekfsim.raycast.searches.single_beam import first
+from ekfsim.raycast.walls import Walls
+
+
+def until_wall(walls: Walls, pose: Array, way: Array | float) -> tuple[Array, Integers] | None:
+    """Twin of `until_wall`, of one robot."""
+    if pose.ndim != 1 or np.ndim(way):
+        return None
+    (x, y, θ), way = pose.tolist(), float(way)
+    r, wall = first(walls, x, y, θ + math.pi if way < 0 else θ)
+    free = max(r - CLEARANCE, 0.0)
+    bumped = wall >= 0 and abs(way) > free
+    return np.array(math.copysign(free, way) if bumped else way), np.array(wall if bumped else -1)
