@@ -65,7 +65,7 @@ class Build:
 
     def process(self, *words: str) -> Spent:
         """A command in a process of its own."""
-        program = [sys.executable, "-c", "from ekfsim.cli import main; main()", *words]
+        program = [sys.executable, "-P", "-c", "from ekfsim.cli import main; main()", *words]
         path = os.pathsep.join([str(self.folder), *filter(None, [os.environ.get("PYTHONPATH")])])
         start = perf_counter()
         started = subprocess.Popen(
