@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from filterpy.kalman import JulierSigmaPoints, MerweScaledSigmaPoints, UnscentedKalmanFilter
 from numerics import covariance, definite
-from problems import close, landmark, problem
+from problems import Bent, close, landmark, problem
 from systems_scenes import gnss
 
 from ekfsim.files.scenes.load import load_scene
@@ -17,33 +17,8 @@ from ekfsim.filters.ekf import EKF
 from ekfsim.filters.ukf import UKF
 from ekfsim.localization import play
 from ekfsim.models.motions.move_turn import MoveTurn
-from ekfsim.models.protocols import Quantity
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.raycast.walls import Walls
-
-
-class Bent:
-    """A motion and a sensor without a straight line in them, of any size."""
-
-    outputs = (Quantity("z0", "m"), Quantity("z1", "m"))
-
-    def __init__(self, random, n):
-        self.line = problem(random, n, 2, 2)
-
-    def f(self, x, u):
-        return np.sin(self.line.f(x, u)) + 0.1 * self.line.f(x, u) ** 2
-
-    def linearize(self, x, *u):
-        if u:
-            return self.f(x, *u), None, self.line.B, self.line.input_noise, self.line.process_noise
-        return self.h(x), None, self.line.noise
-
-    def h(self, x):
-        z = self.line.h(x)
-        return np.cos(z) + z
-
-    def residual(self, z, h):
-        return z - h
 
 
 def settings(n):

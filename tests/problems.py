@@ -78,6 +78,30 @@ class Linear:
         return ν
 
 
+class Bent:
+    """A motion and a sensor without a straight line in them, of any size."""
+
+    outputs = (Quantity("z0", "m"), Quantity("z1", "m"))
+
+    def __init__(self, random, n):
+        self.line = problem(random, n, 2, 2)
+
+    def f(self, x, u):
+        return np.sin(self.line.f(x, u)) + 0.1 * self.line.f(x, u) ** 2
+
+    def linearize(self, x, *u):
+        if u:
+            return self.f(x, *u), None, self.line.B, self.line.input_noise, self.line.process_noise
+        return self.h(x), None, self.line.noise
+
+    def h(self, x):
+        z = self.line.h(x)
+        return np.cos(z) + z
+
+    def residual(self, z, h):
+        return z - h
+
+
 def problem(random, n=3, m=2, k=1):
     return Linear(
         random.normal(size=(n, n)), random.normal(size=(n, m)), covariance(random, m),

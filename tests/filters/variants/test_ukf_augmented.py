@@ -3,8 +3,7 @@ import math
 import numpy as np
 import pytest
 from numerics import covariance, definite
-from problems import landmark, problem
-from test_ukf import Bent
+from problems import Bent, landmark, problem
 
 from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.ukf import UKF
