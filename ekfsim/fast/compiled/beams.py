@@ -22,13 +22,13 @@ DOUBT = -2  # in place of a wall
 SPREAD = 0.35  # rad; a beam that parts more from the others is followed by itself
 APART = 0.05  # of the walls' extent: and so is one that begins farther from them
 SAFE = 1e-6  # of the coordinates' size: by so much the wedge is wider than it need be
-SAMPLE = 33  # runs whose medians are the middle of all
+SAMPLE = 16  # runs, of which the one that is nearest to the others is the middle of all
 MANY = 100  # walls from which on beams that go their own ways are sooner searched for in a grid
 
 
 @compiled
 def cast(
-    ends: Array, place: Array, bearing: float, size: float, tie: float, doubt: float,
+    ends: Array, place: Array, heading: Array, size: float, tie: float, doubt: float,
     ranges: Array, walls: Integers, way: Array,
 ) -> int:  # fmt: skip
     """Fill in ranges, walls and unit directions; how many beams are left in doubt.
@@ -37,7 +37,7 @@ def cast(
     way : (2, N); size : m, the largest coordinate of any wall; tie, doubt : shares of it
     """
     N = place.shape[1]
-    directions(place[2] + bearing, way[0], way[1])
+    directions(heading, way[0], way[1])
     near, numbers, every = np.empty(ends.shape), np.empty(len(ends), np.int64), np.arange(len(ends))
     least, none = np.empty(len(ends)), np.zeros(len(ends))
     alone = np.empty(N, np.bool_)
@@ -62,8 +62,8 @@ def cast(
 
 @compiled
 def stop(
-    ends: Array, place: Array, way: Array, clearance: float, size: float, tie: float, doubt: float,
-    unsure: Integers,
+    ends: Array, place: Array, heading: Array, way: Array, clearance: float,
+    size: float, tie: float, doubt: float, unsure: Integers,
 ) -> int:  # fmt: skip
     """Cut ways short of the first wall; how many are left in doubt, and which, in `unsure`.
 
@@ -71,20 +71,21 @@ def stop(
     place : (3, N), x, y, θ; way : (N,) m, backwards where it is negative
     """
     N = place.shape[1]
-    far = 2 * clearance
+    left = bottom = math.inf
+    right = top = -math.inf
     for n in range(N):
-        far = max(far, abs(way[n]) + 2 * clearance)
-    left, right = place[0].min() - far, place[0].max() + far
-    bottom, top = place[1].min() - far, place[1].max() + far
+        far = abs(way[n]) + 2 * clearance
+        left, right = min(left, place[0, n] - far), max(right, place[0, n] + far)
+        bottom, top = min(bottom, place[1, n] - far), max(top, place[1, n] + far)
     around, some = np.empty(ends.shape), 0
     for w in range(len(ends)):
         if _touches(ends, w, left, bottom, right, top):
-            around[some] = ends[w]
+            _put(around, some, ends, w)
             some += 1
     if not some:
         return 0
     aim, alone = np.empty((2, N)), np.empty(N, np.bool_)
-    directions(np.where(way < 0, place[2] + math.pi, place[2]), aim[0], aim[1])
+    directions(heading, aim[0], aim[1])
     near, numbers, least = np.empty(ends.shape), np.empty(len(ends), np.int64), np.empty(len(ends))
     every, none = np.arange(some), np.zeros(some)
     _part(place, aim, APART * _extent(ends), alone)
@@ -154,6 +155,13 @@ def _first(
 
 
 @compiled
+def _put(into: Array, at: int, ends: Array, w: int) -> None:
+    """Copy a wall."""
+    for k in range(4):
+        into[at, k] = ends[w, k]
+
+
+@compiled
 def _extent(ends: Array) -> float:
     """From the least coordinate of all walls to the greatest, in m."""
     low, high = math.inf, -math.inf
@@ -165,16 +173,22 @@ def _extent(ends: Array) -> float:
 
 @compiled
 def _part(place: Array, way: Array, apart: float, alone: Booleans) -> int:
-    """Which beams go their own way, off the median of some, and how many these are."""
+    """Which beams go their own way, and how many these are: far from one in the middle of some."""
     N = place.shape[1]
     step = max(1, N // SAMPLE)
-    x, y = np.median(place[0, ::step]), np.median(place[1, ::step])
-    dx, dy = np.median(way[0, ::step]), np.median(way[1, ::step])
-    length, lone = math.hypot(dx, dy), 0
-    least = math.cos(SPREAD) * length
+    middle, least = 0, math.inf
+    for n in range(0, N, step):
+        off = 0.0
+        for m in range(0, N, step):
+            off += (abs(place[0, m] - place[0, n]) + abs(place[1, m] - place[1, n])) / apart
+            off += (abs(way[0, m] - way[0, n]) + abs(way[1, m] - way[1, n])) / SPREAD
+        if off < least:
+            middle, least = n, off
+    x, y, dx, dy = place[0, middle], place[1, middle], way[0, middle], way[1, middle]
+    cosine, lone = math.cos(SPREAD), 0
     for n in range(N):
-        close = (abs(place[0, n] - x) <= apart) & (abs(place[1, n] - y) <= apart) & (length > 0)
-        alone[n] = not (close & (way[0, n] * dx + way[1, n] * dy >= least))
+        close = (abs(place[0, n] - x) <= apart) & (abs(place[1, n] - y) <= apart)
+        alone[n] = not (close & (way[0, n] * dx + way[1, n] * dy >= cosine))
         lone += alone[n]
     return lone
 
@@ -222,9 +236,11 @@ def _before(
                 distance = _distance(ax, ay, bx, by) - ρ
                 at = count
                 while at and least[at - 1] > distance:
-                    near[at], numbers[at], least[at] = near[at - 1], numbers[at - 1], least[at - 1]
+                    _put(near, at, near, at - 1)
+                    numbers[at], least[at] = numbers[at - 1], least[at - 1]
                     at -= 1
-                near[at], numbers[at], least[at] = ends[w], w, distance
+                _put(near, at, ends, w)
+                numbers[at], least[at] = w, distance
                 count += 1
             if nearest > ρ and ((right_a and left_b) or (left_a and right_b)):
                 limit = min(limit, farthest)

@@ -103,14 +103,14 @@ class Block:
         walls, some = self.world.map.walls, self.some
         if walls.grid is None:
             return way
+        heading = np.where(way < 0, self.truth[2] + np.pi, self.truth[2])
         tolerances = CLEARANCE, walls.grid.size, TIE, 4 * REACH
-        left = beams.stop(walls.segments.reshape(-1, 4), self.truth, way, *tolerances, some)
-        if left:
-            x, y, heading = self.truth[:, some[:left]]
-            rest = way[some[:left]]
-            r = walls.cast(np.stack([x, y], -1), np.where(rest < 0, heading + np.pi, heading)).range
-            free = np.fmin(np.maximum(r - CLEARANCE, 0.0), np.abs(rest))
-            way[some[:left]] = np.copysign(free, rest)
+        ends = walls.segments.reshape(-1, 4)
+        if left := beams.stop(ends, self.truth, heading, way, *tolerances, some):
+            some = some[:left]
+            free = walls.cast(self.truth[:2, some].T, heading[some]).range - CLEARANCE
+            cut = np.fmin(np.maximum(free, 0.0), np.abs(way[some]))
+            way[some] = np.copysign(cut, way[some])
         return way
 
     def sense(self, bearing: float) -> None:
@@ -180,7 +180,7 @@ def cast(walls: Walls, place: Array, bearing: float) -> tuple[Array, Integers, A
     if walls.grid is not None:
         tolerances = walls.grid.size, TIE, 4 * REACH
         ends = walls.segments.reshape(-1, 4)
-        if beams.cast(ends, place, bearing, *tolerances, ranges, wall, way):
+        if beams.cast(ends, place, place[2] + bearing, *tolerances, ranges, wall, way):
             some = np.flatnonzero(wall == beams.DOUBT)
             hit = walls.cast(place[:2, some].T, place[2, some] + bearing)
             ranges[some], wall[some] = hit.range, hit.wall

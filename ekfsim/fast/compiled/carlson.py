@@ -5,8 +5,6 @@ P : (6, N) is the upper half of each run's covariance, row after row.
 
 import math
 
-import numpy as np
-
 from ekfsim.fast.compiled.angles import wrapped
 from ekfsim.geometry import Array
 from ekfsim.twins import compiled
@@ -22,13 +20,14 @@ def carlson(
     H : (3,); L : (3, 3), room for the square root
     """
     _square_root(P, n, H, L, rounding)
+    H0, H1, H2 = H[0], H[1], H[2]
     b0 = b1 = b2 = 0.0  # L Dᵀ so far
     s = R  # and R + D Dᵀ
-    D = H[0] * L[0] + H[1] * L[1] + H[2] * L[2]
     for j in range(2, -1, -1):
         a0, a1, a2 = L[0, j], L[1, j], L[2, j]
-        size = abs(H[0] * a0) + abs(H[1] * a1) + abs(H[2] * a2)
-        f = D[j] if abs(D[j]) > rounding * size else 0.0
+        size = abs(H0 * a0) + abs(H1 * a1) + abs(H2 * a2)
+        f = H0 * a0 + H1 * a1 + H2 * a2
+        f = f if abs(f) > rounding * size else 0.0
         more = s + f * f
         kept = math.sqrt(s / more) if more > 0 else 1.0
         turned = f / (more * kept) if s > 0 else 0.0
@@ -54,23 +53,45 @@ def carlson(
 @compiled
 def _square_root(P: Array, n: int, H: Array, L: Array, rounding: float) -> None:
     """L, its rows explained in the order of how much of them the reading sees: `square_root`."""
-    whole = np.array(
-        [[P[0, n], P[1, n], P[2, n]], [P[1, n], P[3, n], P[4, n]], [P[2, n], P[4, n], P[5, n]]]
-    )
-    sees = np.array([H[0] * H[0] * P[0, n], H[1] * H[1] * P[3, n], H[2] * H[2] * P[5, n]])
-    order = np.argsort(-sees, kind="mergesort")
-    L[:] = 0.0
-    for j in range(3):
-        pivot = whole[order[j], order[j]]
-        for m in range(j):
-            pivot -= L[order[j], m] * L[order[j], m]
-        if not pivot > rounding * whole[order[j], order[j]]:
-            continue
-        for i in range(j, 3):
-            rest = whole[order[i], order[j]]
-            for m in range(j):
-                rest -= L[order[i], m] * L[order[j], m]
-            L[order[i], j] = rest / math.sqrt(pivot)
+    sees = H[0] * H[0] * P[0, n], H[1] * H[1] * P[3, n], H[2] * H[2] * P[5, n]
+    i, j, k = 0, 1, 2
+    if sees[j] > sees[i]:
+        i, j = j, i
+    if sees[k] > sees[j]:
+        j, k = k, j
+    if sees[j] > sees[i]:
+        i, j = j, i
+    L[0, 0] = L[0, 1] = L[0, 2] = L[1, 0] = L[1, 1] = L[1, 2] = L[2, 0] = L[2, 1] = L[2, 2] = 0.0
+    _explain(P, n, L, i, j, k, 0, rounding)
+    _explain(P, n, L, j, k, k, 1, rounding)
+    _explain(P, n, L, k, k, k, 2, rounding)
+
+
+@compiled
+def _explain(
+    P: Array, n: int, L: Array, first: int, second: int, third: int, column: int, rounding: float
+) -> None:
+    """A column of L: what the ones before it leave of the first entry and of what comes after."""
+    pivot = _left(P, n, L, first, first)
+    if pivot > rounding * P[_place(first, first), n]:
+        per_root = 1 / math.sqrt(pivot)
+        L[third, column] = _left(P, n, L, third, first) * per_root
+        L[second, column] = _left(P, n, L, second, first) * per_root
+        L[first, column] = pivot * per_root
+
+
+@compiled
+def _left(P: Array, n: int, L: Array, i: int, j: int) -> float:
+    """What the columns so far leave unexplained of an entry of P."""
+    left: float = P[_place(i, j), n] - _dot(L, i, j)
+    return left
+
+
+@compiled
+def _place(i: int, j: int) -> int:
+    """Where P's entry (i, j) stands in its upper half: 0 1 2, 3 4, 5."""
+    row, column = min(i, j), max(i, j)
+    return row * (5 - row) // 2 + column
 
 
 @compiled
