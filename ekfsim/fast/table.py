@@ -42,6 +42,8 @@ SOUND = "a covariance that needs no force but to be symmetric, as mostly"
 
 # The quickest of one function first. How to add a row is told in tests/fast/test_table.py.
 TWINS: tuple[Twin, ...] = (
+    # geometry/
+    Twin("ekfsim.geometry.ellipse:ellipse", f"{ONE}.ellipse:ellipse", ALONE),
     # raycast/
     Twin(f"{RAYS}.walls:Walls.cast", f"{SEARCHES}.compiled:cast", "many beams", compiled=True),
     Twin(f"{RAYS}.walls:Walls.cast", f"{SEARCHES}.choice:cast", "any beams"),

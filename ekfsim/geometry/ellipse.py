@@ -8,6 +8,7 @@ from statistics import NormalDist
 import numpy as np
 
 from ekfsim.geometry import Array
+from ekfsim.twins import twinned
 
 # a determinant below this share of λ₁² is rounding: a line
 ROUNDING = 4 * float(np.finfo(float).eps)
@@ -44,6 +45,7 @@ def cone_factor(probability: float) -> float:
     return 2.0 if probability == 0.954 else NormalDist().inv_cdf((1 + probability) / 2)
 
 
+@twinned
 def ellipse(P: Array, probability: float) -> Ellipse:
     """The confidence ellipse of a position. P : (…, 2, 2) m² or larger, of which the first block is
     taken.
@@ -55,10 +57,6 @@ def ellipse(P: Array, probability: float) -> Ellipse:
     >>> round(float(e.major), 4), round(float(e.minor), 4), float(e.orientation)
     (0.4963, 0.2482, 0.0)
     """
-    if P.ndim == 2:
-        return _ellipse_one(
-            float(P[0, 0]), float(P[0, 1]), float(P[1, 1]), radius_factor(probability)
-        )
     a, b, c = P[..., 0, 0], P[..., 0, 1], P[..., 1, 1]
     m, δ = (a + c) / 2, (a - c) / 2
     λ1 = np.maximum(m + np.hypot(δ, b), 0.0)  # below 0 it is rounding, as det is
@@ -69,21 +67,6 @@ def ellipse(P: Array, probability: float) -> Ellipse:
     k = radius_factor(probability)
     # an angle just below 0 rounds up to π itself
     return Ellipse(k * np.sqrt(λ1), k * np.sqrt(λ2), np.where(φ < np.pi, φ, 0.0))
-
-
-def _ellipse_one(a: float, b: float, c: float, k: float) -> Ellipse:
-    """The same for one covariance in plain floats: ten times as fast, held equal to the above by a
-    test.
-    """
-    m, δ = (a + c) / 2, (a - c) / 2
-    λ1, det = max(m + math.hypot(δ, b), 0.0), a * c - b * b
-    λ2 = det / λ1 if λ1 and det > ROUNDING * λ1 * λ1 else 0.0
-    φ = math.atan2(b, δ) / 2 % math.pi
-    return Ellipse(
-        np.array(k * math.sqrt(λ1)),
-        np.array(k * math.sqrt(λ2)),
-        np.array(φ if φ < math.pi else 0.0),
-    )
 
 
 def outline(center: Array, P: Array, probability: float, n: int = 73) -> Array:
