@@ -2,8 +2,11 @@
 nothing is kept.
 """
 
-from collections.abc import Callable, Iterable
-from typing import Any, Generic, Protocol, Self, TypeVar
+import functools
+import itertools
+import operator
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, Protocol, Self, TypeVar
 
 from ekfsim.study.engines import Engine, Work
 from ekfsim.study.journal import Journal
@@ -37,44 +40,40 @@ def results_of(plan: Plan, journal: Journal) -> list[Result]:
 
 def unkept(plan: Plan, engine: Engine, done: Callable[[Task, Tally], None]) -> list[Result]:
     """The same at once and without a journal, for a first look."""
-    found = [_InOrder[Tally]() for _ in plan.cases]
-    for task, made in engine(plan, plan.tasks()):
-        done(task, made)
-        found[task.case].add(task.block, made)
-    return [Result(case, blocks.total()) for case, blocks in zip(plan.cases, found, strict=True)]
+    blocks = in_order(plan.tasks(), heard(engine(plan, plan.tasks()), done))
+    totals = (
+        functools.reduce(operator.add, (tally for _, tally in of_case))
+        for _, of_case in itertools.groupby(blocks, key=lambda block: block[0].case)
+    )
+    return [Result(case, tally) for case, tally in zip(plan.cases, totals, strict=True)]
 
 
 def total(
     work: Work[S], tasks: Iterable[Task], engine: Engine, done: Callable[[Task, S], None]
 ) -> S:
     """All blocks of one case together, without a journal."""
-    found = _InOrder[S]()
-    for task, made in engine(work, tasks):
+    asked, awaited = itertools.tee(tasks)
+    blocks = in_order(awaited, heard(engine(work, asked), done))
+    return functools.reduce(operator.add, (made for _, made in blocks))
+
+
+def heard(
+    blocks: Iterable[tuple[Task, S]], done: Callable[[Task, S], None]
+) -> Iterator[tuple[Task, S]]:
+    """Blocks as they are done; `done` hears of each."""
+    for task, made in blocks:
         done(task, made)
-        found.add(task.block, made)
-    return found.total()
+        yield task, made
 
 
-class _InOrder(Generic[S]):
-    """Blocks put together in their order, in whichever they come: sums of floating numbers depend
+def in_order(tasks: Iterable[Task], blocks: Iterable[tuple[Task, S]]) -> Iterator[tuple[Task, S]]:
+    """Blocks in the order of their tasks, in whichever they come: sums of floating numbers depend
     on it.
     """
-
-    def __init__(self) -> None:
-        self._found: S | None = None
-        self._early: dict[int, S] = {}
-        self._next = 0
-
-    def add(self, block: int, made: S) -> None:
-        """Put a block to those before it, once all of them are there."""
-        self._early[block] = made
-        while self._next in self._early:
-            following = self._early.pop(self._next)
-            self._found = following if self._found is None else self._found + following
-            self._next += 1
-
-    def total(self) -> S:
-        """All of them."""
-        assert self._found is not None
-        assert not self._early
-        return self._found
+    tasks, early = iter(tasks), dict[Task, S]()
+    awaited = next(tasks, None)
+    for task, made in blocks:
+        early[task] = made
+        while awaited in early:
+            yield awaited, early.pop(awaited)
+            awaited = next(tasks, None)

@@ -198,11 +198,10 @@ def _heeding_signals_later() -> Iterator[None]:
 def _begin_worker() -> None:
     """A worker leaves interrupts to its parent, and does not outlive it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = parent_process()
-    assert parent is not None
 
     def leave_with(sentinel: Any) -> None:
         connection.wait([sentinel])
         os._exit(1)
 
-    threading.Thread(target=leave_with, args=(parent.sentinel,), daemon=True).start()
+    if (parent := parent_process()) is not None:
+        threading.Thread(target=leave_with, args=(parent.sentinel,), daemon=True).start()

@@ -169,7 +169,8 @@ def world_of(request: Request) -> Path:
         return request.world
     root, _ = parse(as_written(request.commands, str(request.commands)), str(request.commands))
     named = root.at(("world",))
-    assert named is not None  # else there had been no scene
+    if named is None:
+        raise UsageError(f"{request.commands_name}: names no world; give one with --world")
     return world_beside(request.commands, named.written)
 
 
