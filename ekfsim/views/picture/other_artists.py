@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
 
 from ekfsim.geometry.ellipse import outline
-from ekfsim.views.picture.artists import NOSE, closed, direction, place
+from ekfsim.views.picture.artists import NOSE, closed, direction, line, marks, place
 from ekfsim.views.terminal.playback import View
 
 
@@ -39,29 +38,11 @@ class OtherArtists:
         self._probability, self._name = probability, name
         color, marker, dashes = STYLES[number % len(STYLES)]
         z = 3.05 + 0.01 * number
-        self.path = axes.add_line(
-            Line2D([], [], color=color, lw=1.0, ls=dashes, zorder=z, gid=f"path-{name}")
-        )
-        self.ellipse = axes.add_line(
-            Line2D([], [], color=color, lw=1.6, ls=dashes, zorder=z, gid=f"ellipse-{name}")
-        )
-        self.heading = axes.add_line(
-            Line2D([], [], color=color, lw=1.6, zorder=4.3, gid=f"heading-{name}")
-        )
-        self.reference = axes.add_line(
-            Line2D(
-                [],
-                [],
-                color=color,
-                ls="none",
-                marker=marker,
-                ms=6.5,
-                mfc="white",
-                mew=1.4,
-                zorder=4.4,
-            )
-        )
-        self.reference.set_gid(f"reference-{name}")
+        self.path = line(axes, f"path-{name}", "", z, color, 1.0, dashes)
+        self.ellipse = line(axes, f"ellipse-{name}", "", z, color, 1.6, dashes)
+        self.heading = line(axes, f"heading-{name}", "", 4.3, color, 1.6)
+        self.reference = marks(axes, f"reference-{name}", "", 4.4, color, marker, 6.5)
+        self.reference.set(markerfacecolor="white", markeredgewidth=1.4)
 
     def show(self, view: View, unit: float) -> None:
         """Move everything to what this filter believes. unit : m, what the robot's body measures in

@@ -1,13 +1,14 @@
-"""What is drawn in one Axes of a reading that is no beam, and of fixes that were only recorded."""
+"""What is drawn in one Axes of a reading, be it a beam or not, and of fixes only recorded."""
 
 from collections.abc import Iterable, Iterator
-from typing import Literal
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 
+from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
 from ekfsim.models.protocols import Sensor
 from ekfsim.models.sensors.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
@@ -18,10 +19,20 @@ from ekfsim.models.sensors.yaw import Yaw
 from ekfsim.records import Entry
 from ekfsim.scene import Scene
 from ekfsim.systems.robots import PylonCart
-from ekfsim.views.picture.artists import BLUE, IN_AIR, IN_WALL, VERMILLION, place
+from ekfsim.views.picture.artists import (
+    BLUE,
+    VERMILLION,
+    empty,
+    line,
+    marks,
+    place,
+    ray,
+)
 from ekfsim.views.picture.sights import NOWHERE, Sight
+from ekfsim.views.words.beams import Beam
 
 FIX = "#7A7A7A"
+IN_AIR, IN_WALL = "o", "X"  # markers at the end of a reading
 SEVERAL = "reading, as measured"
 LABELS: dict[type, str] = {
     MarkerAngles: "direction, as measured",
@@ -38,6 +49,60 @@ DIRECTIONS = {MarkerAngles, BearingOnly, Yaw}  # the way that was expected ends 
 POINTS = {RangeBearing, LandmarkOffset, LidarOffset, Position}
 
 
+class BeamArtists:
+    """The beam from the estimate with the measured length, and where the filter expected it to
+    end.
+    """
+
+    def __init__(self, axes: Axes) -> None:
+        self.probes = LineCollection(
+            [], colors=VERMILLION, linewidths=0.9, linestyles=":", zorder=3.2, gid="probes"
+        )
+        self.probes.set_label("ambiguous: from within 3 σ")
+        axes.add_collection(self.probes, autolim=False)
+        self.arms = line(axes, "arms", "", 3.2, VERMILLION, 0.9)
+        self.arms.set(marker="o", markersize=3, markevery=(1, 2))
+        self.measured = line(axes, "beam", "beam, as measured", 3.4, VERMILLION, 2)
+        self.way = line(axes, "expected-way", "", 3.3, BLUE, 1, ":")
+        self.expected = hollow(axes, "expected", "where it was expected to end", 3.9, BLUE, "D", 6)
+        self.end = marks(axes, "beam-end", "", 3.8, VERMILLION, "", 8)
+        self.end.set_markeredgewidth(1.5)
+
+    def show(self, beam: Beam | None, far: float) -> None:
+        """Move it to a beam, or away. far : m, how long a beam is drawn that meets nothing"""
+        for one in (self.measured, self.end, self.way, self.expected, self.arms):
+            place(one, NOWHERE)
+        if beam is not None or not empty(self.probes):
+            self.probes.set_segments(
+                [] if beam is None else [ray(*probe, far) for probe in beam.probes]
+            )
+        if beam is None:
+            return
+        arms = [point for probe in beam.probes for point in (beam.pose[:2], probe.pose[:2])]
+        place(self.arms, np.reshape(arms, (-1, 2)))
+        echo = not np.isnan(beam.measured)
+        self.measured.set_linestyle(":" if not echo else "--" if beam.refused else "-")
+        place(self.measured, ray(beam.pose, beam.measured, far))
+        if echo:
+            place(self.end, ray(beam.pose, beam.measured)[1:])
+            mark_end(self.end, beam.solid, beam.refused)
+        if not np.isnan(beam.predicted):
+            way = ray(beam.pose, beam.predicted)
+            place(self.way, way)
+            place(self.expected, way[1:])
+
+    def handles(self) -> Iterator[Artist]:
+        """What the legend shows of it."""
+        yield self.measured
+        for solid, label in ((False, "… ends in the air"), (True, "… ends in or behind a wall")):
+            yield mark_end(
+                Line2D([], [], color=VERMILLION, ls="none", ms=7, mew=1.5, label=label), solid
+            )
+        yield Line2D([], [], color=VERMILLION, lw=2, ls="--", label="… is refused")
+        yield self.expected
+        yield Line2D([], [], color=VERMILLION, lw=1, ls=":", label=str(self.probes.get_label()))
+
+
 class SightArtists:
     """A reading as measured, as it was expected, and the landmark that it is of."""
 
@@ -45,23 +110,18 @@ class SightArtists:
         """sensors : the kinds whose readings may come, for the legend"""
         self._sensors: set[type] = set(sensors) & set(LABELS)
         words = {LABELS[sensor] for sensor in self._sensors}
-        self.way = axes.add_line(
-            Line2D([], [], color=BLUE, lw=1, ls=":", zorder=3.3, gid="sight-way")
-        )
-        self.way.set_label("as it was expected")
-        self.line = axes.add_line(Line2D([], [], color=VERMILLION, lw=2, zorder=3.4, gid="sight"))
-        self.line.set_label(words.pop() if len(words) == 1 else SEVERAL)
-        self.place = axes.add_line(_hollow(VERMILLION, "o", 11, 3.5, "sight-place"))
-        self.place.set_label("landmark that it is of")
-        self.expected = axes.add_line(_hollow(BLUE, "D", 6, 4.6, "sight-expected"))
-        self.expected.set_label("where it was expected")
-        self.end = axes.add_line(_hollow(VERMILLION, "o", 7, 4.7, "sight-end"))
+        label = words.pop() if len(words) == 1 else SEVERAL
+        self.way = line(axes, "sight-way", "as it was expected", 3.3, BLUE, 1, ":")
+        self.line = line(axes, "sight", label, 3.4, VERMILLION, 2)
+        self.place = hollow(axes, "sight-place", "landmark that it is of", 3.5, VERMILLION, "o", 11)
+        self.expected = hollow(axes, "sight-expected", "where it was expected", 4.6, BLUE, "D", 6)
+        self.end = hollow(axes, "sight-end", "", 4.7, VERMILLION, "o", 7)
 
     def show(self, sight: Sight | None) -> None:
         """Move it to a reading, or away."""
         lines = (self.line, self.end, self.way, self.expected, self.place)
-        for line, points in zip(lines, _points(sight), strict=True):
-            place(line, points)
+        for one, points in zip(lines, _points(sight), strict=True):
+            place(one, points)
         if sight is not None:
             self.line.set_linestyle("--" if sight.refused else "-")
             self.line.set_linewidth(1.4 if sight.fix else 2)
@@ -88,10 +148,8 @@ class FixArtists:
         self._shown = bool(len(self._fixes)) or (
             scene.drive is not None and isinstance(scene.world.robot, PylonCart)
         )
-        self.fixes = axes.add_line(
-            Line2D([], [], color=FIX, ls="none", marker="+", ms=6, mew=1.0, zorder=2.9, gid="fixes")
-        )
-        self.fixes.set_label("fix, recorded and not used")
+        self.fixes = marks(axes, "fixes", "fix, recorded and not used", 2.9, FIX, "+", 6)
+        self.fixes.set_markeredgewidth(1.0)
 
     def show(self, entry: Entry) -> None:
         """The fixes of a log up to this entry; of a drive, the newest."""
@@ -126,6 +184,15 @@ def recorded_fixes(entries: Iterable[Entry]) -> tuple[Array, Array]:
     return np.array(index), np.array(fixes).reshape(-1, 2)
 
 
+def mark_end(line: Line2D, solid: bool, refused: Refused = Refused.NOT) -> Line2D:
+    """A ring for an end in the air, a cross for one in a wall; the cross of a refused reading is
+    hollow.
+    """
+    line.set_marker(IN_WALL if solid else IN_AIR)
+    line.set_markerfacecolor(VERMILLION if solid and not refused else "white")
+    return line
+
+
 def mark(line: Line2D, fix: bool, refused: bool) -> Line2D:
     """A disc for a landmark's place, a cross for the robot's; hollow where the reading is
     refused.
@@ -135,13 +202,13 @@ def mark(line: Line2D, fix: bool, refused: bool) -> Line2D:
     return line
 
 
-def _hollow(color: str, marker: Literal["o", "D"], size: float, zorder: float, gid: str) -> Line2D:
-    """Marks without a line and without a face."""
-    line = Line2D(
-        [], [], color=color, ls="none", marker=marker, ms=size, mfc="none", mew=1.2, zorder=zorder
-    )
-    line.set_gid(gid)
-    return line
+def hollow(
+    axes: Axes, gid: str, label: str, zorder: float, color: str, marker: str, size: float
+) -> Line2D:
+    """Marks without a face, still to be placed."""
+    made = marks(axes, gid, label, zorder, color, marker, size)
+    made.set(markerfacecolor="none", markeredgewidth=1.2)
+    return made
 
 
 def _points(sight: Sight | None) -> tuple[Array, ...]:
