@@ -6,6 +6,7 @@ from ekfsim.filters.arithmetic.square_root import covariance
 from ekfsim.filters.belief import Belief, Gaussian
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
+from ekfsim.models.noise import once
 from ekfsim.models.protocols import Motion
 
 
@@ -21,14 +22,34 @@ def stretch(belief: Belief, motion: Motion, U: Array) -> Gaussian:
 
     so that the covariances are cumulative sums, too.
     """
+    mean = moved(belief.mean, motion, U)
+    before = np.concatenate([belief.mean[None], mean[:-1]])[: len(mean)]
+    return propagated(belief, mean, motion.G(before, U), motion.M(U), motion.Q(U))
+
+
+def propagated(belief: Belief, mean: Array, G: Array, M: Array, Q: Array | float) -> Gaussian:
+    """The same where the means, G, M and Q are known of each input."""
     x, P = belief
-    mean = moved(x, motion, U)
-    before = np.concatenate([x[None], mean[:-1]])[: len(mean)]
-    G = motion.G(before, U)
-    W = G @ motion.M(U) @ G.mT + motion.Q(U)
     way = (mean - x)[..., :2].T
-    from_start = P.T[..., None] + np.cumsum(_sheared(np.ascontiguousarray(W.T), -way), axis=-1)
+    from_start = P.T[..., None] + np.cumsum(_sheared(_noise(G, once(M), Q), -way), axis=-1)
     return Gaussian(mean, covariance(_sheared(from_start, way).T))
+
+
+def _noise(G: Array, M: Array, Q: Array | float) -> Array:
+    """G M Gᵀ + Q : (3, 3, …, N), entry by entry where M is diagonal."""
+    n = M.shape[-1]
+    if M[..., ~np.eye(n, dtype=bool)].any():
+        return np.ascontiguousarray((G @ M @ G.mT + Q).T)
+    columns = np.ascontiguousarray(G.T)  # (m, 3, …, N)
+    W = np.zeros((3, 3, *columns.shape[2:]))
+    for column, variance in zip(columns, M.diagonal(0, -2, -1).T, strict=True):
+        if variance.any():
+            for i, scaled in enumerate(column * variance):
+                for j in range(i + 1):
+                    W[i, j] += scaled * column[j]
+    W[0, 1], W[0, 2], W[1, 2] = W[1, 0], W[2, 0], W[2, 1]
+    Q = np.asarray(Q).T
+    return W + (Q.reshape(3, 3, *(1,) * (W.ndim - 2)) if Q.ndim == 2 else Q)
 
 
 def moved(x: Array, motion: Motion, U: Array) -> Array:

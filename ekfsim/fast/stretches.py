@@ -6,7 +6,7 @@ from itertools import repeat
 import numpy as np
 
 from ekfsim.diagnostics.nees import nees
-from ekfsim.fast.many_steps import stretch
+from ekfsim.fast.many_steps import moved, propagated
 from ekfsim.fast.records import records
 from ekfsim.filters.belief import Belief, Gaussian, Prediction
 from ekfsim.filters.ekf import EKF
@@ -91,11 +91,12 @@ def _stretched(belief: Belief, entries: list[Entry], layout: Layout) -> list[Ste
     assert isinstance(given, Control)
     motion = given.motion
     U = np.array([entry.given.u for entry in entries if isinstance(entry.given, Control)])
-    after = stretch(belief, motion, U)
-    before = np.concatenate([belief.mean[None], after.mean[:-1]])
+    mean = moved(belief.mean, motion, U)
+    before = np.concatenate([belief.mean[None], mean[:-1]])
     F, G = motion.F(before, U), motion.G(before, U)
-    if not is_planar(F, after.mean - before):
+    if not is_planar(F, mean - before):
         return None
+    after = propagated(belief, mean, G, motion.M(U), motion.Q(U))
     n, nothing = len(entries), repeat(None)
     posteriors = list(map(Gaussian, after.mean, after.covariance))
     predictions = records(Prediction, n, F, G)
@@ -107,9 +108,12 @@ def _stretched(belief: Belief, entries: list[Entry], layout: Layout) -> list[Ste
 
 
 def is_planar(F: Array, way: Array) -> bool:
-    """Whether F = [1 0 −Δy; 0 1 Δx; 0 0 1], as `stretch` takes it to be : (T, …, 3, 3); way : (T,
-    …, 3)
+    """Whether F = [1 0 −Δy; 0 1 Δx; 0 0 1], as it is of a robot that moves alike wherever it
+    stands : (T, …, 3, 3); way : (T, …, 3)
+
+    Of many runs the first tells it of their common motion.
     """
+    F, way = F.reshape(len(F), -1, 3, 3)[:, 0], way.reshape(len(way), -1, 3)[:, 0]
     turned = np.stack([-way[..., 1], way[..., 0]], axis=-1)
     return bool(
         (F[..., :2] == UNMOVED).all()

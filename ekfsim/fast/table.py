@@ -126,6 +126,7 @@ TWINS: tuple[Twin, ...] = (
     Twin("ekfsim.diagnostics.coverage:inside_cone", "ekfsim.fast.one.told:inside_cone", "one pose"),
     Twin("ekfsim.views.words.numbers:cleared", "ekfsim.fast.one.told:cleared", "small matrices"),
     Twin("ekfsim.simulation.driver:driven", "ekfsim.fast.one.driver:driven", "one robot"),
+    Twin("ekfsim.simulation.driver:driven", "ekfsim.fast.many.driver:driven", "many robots"),
     Twin("ekfsim.simulation.driven:written", "ekfsim.fast.written:written", "any ticks"),
     Twin(
         of="ekfsim.localization:localize",

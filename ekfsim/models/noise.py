@@ -30,3 +30,13 @@ def per_second(dt: Array) -> Array:
 def alike(covariance: Array, axes: tuple[int, ...]) -> Array:
     """The same covariance for every run : (*axes, k, k)"""
     return np.broadcast_to(covariance, (*axes, *covariance.shape[-2:])) if axes else covariance
+
+
+def once(covariances: Array) -> Array:
+    """The same as `alike` was given it: an axis along which all are one is one long.
+
+    >>> once(alike(independent(1.0, 2.0), (5, 7))).shape
+    (1, 1, 2, 2)
+    """
+    axes = zip(covariances.shape[:-2], covariances.strides[:-2], strict=True)
+    return covariances[tuple(slice(1 if n and not stride else n) for n, stride in axes)]

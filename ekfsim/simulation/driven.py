@@ -9,6 +9,7 @@ from ekfsim.filters.arithmetic.square_root import square_root
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.layout import Layout
+from ekfsim.models.noise import once
 from ekfsim.models.protocols import Motion, angles
 from ekfsim.records import Control, Entry, Reading
 from ekfsim.scene import Scene
@@ -181,7 +182,7 @@ def _due(often: float, ticks: Integers, rate: float) -> Booleans:
 def _noise(covariance: Array, stream: Stream) -> Array:
     """Noise of covariances (T, …, m, m) : (T, …, m)"""
     noise: Array = np.matvec(
-        square_root(covariance), stream.normals(len(covariance), covariance.shape[-1])
+        square_root(once(covariance)), stream.normals(len(covariance), covariance.shape[-1])
     )
     return noise
 
