@@ -68,6 +68,9 @@ TWINS: tuple[Twin, ...] = (
     Twin(SENSOR, f"{MANY}.sensors:infrared", ANY, "InfraredBeam"),
     Twin(SENSOR, f"{MANY}.sensors:frozen", "as many x as it holds", "Frozen"),
     Twin(SENSOR, f"{ONE}.sensors:marker_angles", ALONE, "MarkerAngles"),
+    Twin(SENSOR, f"{ONE}.sensors:range_bearing", ALONE, "RangeBearing"),
+    Twin(SENSOR, f"{ONE}.sensors:range_only", ALONE, "RangeOnly"),
+    Twin(SENSOR, f"{ONE}.sensors:bearing_only", ALONE, "BearingOnly"),
     Twin(f"{MARKER}.residual", f"{ONE}.sensors:marker_residual", ALONE),
     # filters/
     Twin(f"{KALMAN}:predict", f"{COMPILED}.kalman:predict", ALIKE, compiled=True),

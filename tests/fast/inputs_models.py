@@ -13,7 +13,7 @@ from ekfsim.models.motions.wheel_speeds import WheelSpeeds
 from ekfsim.models.motions.wheels import GyroWheels
 from ekfsim.models.sensors.frozen import Frozen
 from ekfsim.models.sensors.infrared import InfraredBeam
-from ekfsim.models.sensors.landmarks import MarkerAngles
+from ekfsim.models.sensors.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.laser_by_reading import LaserByReading
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
@@ -113,14 +113,37 @@ def markers():
     yield MarkerAngles(2.0, 3.0, 0.226, 0.048, 0.006, layout=INERTIAL), 7
 
 
-@inputs(SENSOR, "MarkerAngles")
-def marker_angles(random, runs):
-    for sensor, n in markers():
-        for x in states(random, runs, n):
-            yield sensor, x
-            at_it = x.copy()
-            at_it[..., sensor.layout.position] = sensor.x, sensor.y
-            yield sensor, at_it
+LANDMARKS = {
+    "MarkerAngles": lambda: list(markers()),
+    "RangeBearing": lambda: around(RangeBearing, 0.1, 0.02),
+    "RangeOnly": lambda: around(RangeOnly, 0.1),
+    "BearingOnly": lambda: around(BearingOnly, 0.02),
+}
+
+
+def around(kind, *sigmas):
+    """A sensor of one landmark; without noise; seen from a state of seven."""
+    yield kind(2.0, 3.0, *sigmas), 3
+    yield kind(2.0, 3.0, *(0.0 for _ in sigmas)), 3
+    yield kind(2.0, 3.0, *sigmas, INERTIAL), 7
+
+
+def seen(kind):
+    """Landmarks from anywhere, and from where they stand."""
+
+    def make(random, runs):
+        for sensor, n in LANDMARKS[kind]():
+            for x in states(random, runs, n):
+                yield sensor, x
+                at_it = x.copy()
+                at_it[..., sensor.layout.position] = sensor.x, sensor.y
+                yield sensor, at_it
+
+    return make
+
+
+for each in LANDMARKS:
+    inputs(SENSOR, each)(seen(each))
 
 
 @inputs(SENSOR, "Frozen", within=SHORT)
