@@ -5,14 +5,14 @@
     many, where Numba may     compiled.py       the same beam after beam, compiled
     many from one place       scan.py           each wall is asked which beams its ends enclose
     many close together       nearby_beams.py   runs of a study: only what is before them all is
-                                                tried, by few_walls.py
+                                                tried, often a single wall
     many, and few walls       few_walls.py      all beams × all walls, as products of matrices
     many, and many walls      many_beams.py     all beams at once from cell to cell of a grid
 
 choice.py is where it is decided. How many is many, and how few is few, stands in capitals at the
 top of these files. Beams from very far, where rounding is not small against a cell, are brute
 force's. Where rounding could decide, `compiled`, `scan`, `nearby_beams` and `few_walls` leave a
-beam in doubt, and `many_beams` follows it once more.
+beam in doubt, and it is followed once more, by itself or by `many_beams`.
 
 What they share:
 

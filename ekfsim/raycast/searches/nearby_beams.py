@@ -65,29 +65,25 @@ def nearby_beams(
     and the unit direction; low, high : (4,), the least and the greatest of each; span : (n,) m, the
     coordinates' size
     """
-    n = beams.shape[1]
-    if n < FEWEST:
+    if beams.shape[1] < FEWEST:
         return None
     apart, wedge = APART * float(ends.max() - ends.min()), Wedge.of(low, high)
-    if wedge.wide <= apart and wedge.sin_δ <= SPREAD:
-        before = _before(ends, wedge, SAFE * float(span.max()))
-        return _first_of(ends, before, beams, span) if len(before) <= MANY else None
-    close = _close(beams, apart)
-    if close is None:
-        return None
-    some, lone = np.flatnonzero(close), np.flatnonzero(~close)
-    if len(lone) > LONE * n:
-        return None
-    beams, span = beams[:, some], span[some]
-    wedge = Wedge.of(beams.min(axis=1), beams.max(axis=1))
-    if wedge.sin_δ >= 1:
-        return None
+    lone = None
+    if wedge.wide > apart or wedge.sin_δ > SPREAD:
+        close = _close(beams, apart)
+        if close is None or np.count_nonzero(close) < (1 - LONE) * len(close):
+            return None
+        lone = np.flatnonzero(~close)
+        low = beams.min(axis=1, where=close, initial=inf)
+        high = beams.max(axis=1, where=close, initial=-inf)
+        wedge = Wedge.of(low, high)
+        if wedge.sin_δ >= 1:
+            return None
     before = _before(ends, wedge, SAFE * float(span.max()))
     if len(before) > MANY:
         return None
-    ranges, walls = np.full(n, np.nan), np.full(n, -1)
-    ranges[some], walls[some], doubtful = _first_of(ends, before, beams, span)
-    return ranges, walls, np.concatenate([some[doubtful], lone])
+    ranges, walls, doubtful = _first_of(ends, before, beams, span)
+    return ranges, walls, doubtful if lone is None else np.union1d(doubtful, lone)
 
 
 def _close(beams: Array, apart: float) -> Booleans | None:
@@ -111,8 +107,9 @@ def _before(ends: Array, wedge: Wedge, safe: float) -> Integers:
     """The walls that beams may meet, in their order. ends : (W, 4) m"""
     x, y, dx, dy, _, ρ, sin_δ = wedge
     ρ, tan_δ = ρ + safe, sin_δ / sqrt(1 - sin_δ**2) + SAFE
-    east, north = ends[:, ::2].T - x, ends[:, 1::2].T - y  # (2, W)
-    along, across = east * dx + north * dy, east * dy - north * dx
+    # in the plane of complex numbers: both ends of each wall, turned so that the wedge lies ahead
+    turned = (ends.view(complex).T - complex(x, y)) * complex(dx, -dy)  # (2, W)
+    along, across = turned.real, -turned.imag
     half = ρ + (along + ρ) * tan_δ
     right, left = across > half, across < -half
     nearest, farthest = np.minimum(*along), np.maximum(*along)
