@@ -6,9 +6,9 @@
     ukf.py     unscented                        protocol.py  what every filter offers
     pf.py      particles                        belief.py    Gaussian, Particles, Correction
     stretch.py many predictions in a row        tuning.py    numbers that a person may set
-                                                chi_square.py  quantiles of χ²
+    choice.py  the filter that a scene names    chi_square.py  quantiles of χ²
 
-    variants/    about a plan; noise in the sigma points; a document's listing; a counter-example
+    variants/    about a plan; noise in the sigma points; a document's listing; counter-examples
     arithmetic/  square roots of P, sigma points, the iterated filter's search
 
 The filters know no robot and no sensor: f, F, G, M, Q and h, H, R come from the models (see

@@ -1,8 +1,8 @@
 """The filter that a scene names, as its run begins."""
 
 from ekfsim.filters import FILTERS
-from ekfsim.filters.by_reading import NoiseByReading
 from ekfsim.filters.protocol import Beginning, Filter
+from ekfsim.filters.variants.by_reading import NoiseByReading
 from ekfsim.filters.variants.shadows import ShadowsAlone
 
 
