@@ -115,7 +115,7 @@ def described(path: Path) -> str:
     import yaml
 
     from ekfsim.files.source import as_written
-    from ekfsim.files.yaml.marked import LOADER, Tree
+    from ekfsim.files.yaml.parsing import LOADER, Tree
 
     tree, text = Tree(str(path)), None
     try:

@@ -17,7 +17,7 @@ from ekfsim.files.scenes.load import read, read_scene
 from ekfsim.files.scenes.load_study import Request
 from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.source import as_written, bytes_of
-from ekfsim.files.yaml.marked import parse
+from ekfsim.files.yaml.parsing import parse
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import BLOCK
 from ekfsim.study.block import run_block

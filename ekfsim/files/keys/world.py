@@ -6,6 +6,7 @@ from dataclasses import fields
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 
+from ekfsim.files.keys.faults import FaultKeys
 from ekfsim.files.keys.fields import (
     Coordinate,
     Degrees,
@@ -28,7 +29,7 @@ from ekfsim.files.keys.system import (
     not_carried,
     robot_fields,
 )
-from ekfsim.files.keys.told import FaultKeys, ToldSensorsKeys
+from ekfsim.files.keys.told import ToldSensorsKeys
 from ekfsim.systems import SYSTEMS
 from ekfsim.world import Faults
 

@@ -11,9 +11,9 @@ import numpy as np
 from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.files.keys.commands import CommandKeys, CommandsKeys, ExpectKeys
 from ekfsim.files.keys.drive import PathKeys, StretchKeys
+from ekfsim.files.keys.faults import FaultKeys
 from ekfsim.files.keys.fields import PartKeys, Pose, aliases
 from ekfsim.files.keys.sensors import SENSORS, SensorKeys
-from ekfsim.files.keys.told import FaultKeys
 from ekfsim.files.keys.world import BeliefKeys, ObstacleKeys, SigmaKeys, WorldKeys
 from ekfsim.filters.tuning import Tuning
 from ekfsim.geometry import Array

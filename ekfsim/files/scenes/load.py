@@ -22,9 +22,9 @@ from ekfsim.files.scenes.checks import (
     kidnap_warnings,
     perfect_beam_warnings,
 )
+from ekfsim.files.scenes.drive_checks import check_fit, check_ways
 from ekfsim.files.scenes.filter_checks import check_filter_settings, filter_warnings
-from ekfsim.files.scenes.settings import (
-    Setting,
+from ekfsim.files.scenes.overruling import (
     idle_on_log,
     of_log,
     overruled,
@@ -32,10 +32,12 @@ from ekfsim.files.scenes.settings import (
     refusal,
     remark,
 )
-from ekfsim.files.scenes.system_checks import check_fit, check_system, check_ways, system_warnings
+from ekfsim.files.scenes.settings import Setting
+from ekfsim.files.scenes.system_checks import check_system, system_warnings
 from ekfsim.files.source import as_written, bytes_of
-from ekfsim.files.yaml.marked import Mark, Node, parse, without_collection
+from ekfsim.files.yaml.marked import Mark, Node
 from ekfsim.files.yaml.marked import Path as Route
+from ekfsim.files.yaml.parsing import parse, without_collection
 from ekfsim.files.yaml.schema import MODELS, Kind
 from ekfsim.files.yaml.telling import at, details_of, tell
 from ekfsim.scene import Scene

@@ -23,8 +23,9 @@ from ekfsim.files.scenes.settings import (
     swept,
 )
 from ekfsim.files.source import as_written
-from ekfsim.files.yaml.marked import Node, field_of, parse
+from ekfsim.files.yaml.marked import Node, field_of
 from ekfsim.files.yaml.marked import Path as Route
+from ekfsim.files.yaml.parsing import parse
 from ekfsim.files.yaml.telling import at, tell
 from ekfsim.filters import FILTERS
 from ekfsim.printable import quoted, short

@@ -141,10 +141,10 @@ def test_no_name_makes_a_message_long(place, text):
 def test_more_values_than_a_file_may_have_are_refused_before_a_tree_of_them_is_made(
     place, monkeypatch
 ):
-    monkeypatch.setattr("ekfsim.files.yaml.marked.LONG", 10)
-    monkeypatch.setattr("ekfsim.files.yaml.marked.MAX_VALUES", 1000)
+    monkeypatch.setattr("ekfsim.files.yaml.parsing.LONG", 10)
+    monkeypatch.setattr("ekfsim.files.yaml.parsing.MAX_VALUES", 1000)
     monkeypatch.setattr(
-        "ekfsim.files.yaml.marked.Tree.take", lambda *_: pytest.fail("a tree is made")
+        "ekfsim.files.yaml.parsing.Tree.take", lambda *_: pytest.fail("a tree is made")
     )
     told = told_of("world: world.yaml\ncommands:\n" + "  - sense: {angle: 0}\n" * 400)
     assert told == [

@@ -19,10 +19,11 @@ from ekfsim.files.keys import sensors as sensor_file
 from ekfsim.files.keys import system as system_file
 from ekfsim.files.keys import world as world_file
 from ekfsim.files.keys.commands import SYSTEM_OF, LogFormat
+from ekfsim.files.keys.faults import FaultySensorsKeys
 from ekfsim.files.keys.fields import aliases
 from ekfsim.files.keys.sensors import SENSORS, SensorKeys
 from ekfsim.files.keys.system import RobotKeys, SystemName, fields_of, robot_fields
-from ekfsim.files.keys.told import FaultySensorsKeys, ToldSensorsKeys
+from ekfsim.files.keys.told import ToldSensorsKeys
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.building import instrument_of
 from ekfsim.files.scenes.load import check, load_scene, load_world, read_scene

@@ -8,7 +8,7 @@ from jsonschema import Draft202012Validator
 
 from ekfsim.errors import InputError
 from ekfsim.files.scenes.check_study import check
-from ekfsim.files.yaml.marked import parse
+from ekfsim.files.yaml.parsing import parse
 from ekfsim.files.yaml.schema import json_schema
 
 NOISE = {

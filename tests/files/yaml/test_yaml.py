@@ -4,7 +4,8 @@ import pytest
 
 from ekfsim.errors import InputError
 from ekfsim.files.source import as_written
-from ekfsim.files.yaml.marked import NOTHING, parse, scalar
+from ekfsim.files.yaml.marked import NOTHING, scalar
+from ekfsim.files.yaml.parsing import parse
 
 
 def plain(text):
