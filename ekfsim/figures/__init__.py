@@ -41,8 +41,8 @@ FIGURES: dict[str, Callable[["Scene", Album], None]] = {
 def draw_figures(
     name: str, scene: "Scene", out: Path, formats: tuple[str, ...], force: bool
 ) -> list[str]:
-    """Draw all figures of a document into a folder, with captions.md; the names of what was
-    written.
+    """Draw all figures of a document into a folder, with captions.md;
+    the names of what was written.
 
     scene : the document's scene, simulated or recorded
     """

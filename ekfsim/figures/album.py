@@ -1,5 +1,5 @@
-"""A folder of figures and tables with one page of captions: what to see, and how it compares with
-the print.
+"""A folder of figures and tables with one page of captions:
+what to see, and how it compares with the print.
 """
 
 import csv
@@ -54,8 +54,8 @@ class Album:
     def add(
         self, figure: Figure, name: str, title: str, caption: str, source: str | None = None
     ) -> None:
-        """Write a figure in every format, and its caption. name : as in "fig4-paths", without an
-        ending
+        """Write a figure in every format, and its caption.
+        name : as in "fig4-paths", without an ending
 
         source : what made it, where that is not what made the others
         """
@@ -103,8 +103,8 @@ class Album:
 
 
 def metadata(ending: str, title: str, source: str) -> dict[str, str | None]:
-    """The notes in a picture's file, under the names that its format has; and no date, which would
-    differ each time.
+    """The notes in a picture's file, under the names that its format has;
+    and no date, which would differ each time.
     """
     match ending:
         case "svg":

@@ -53,8 +53,8 @@ class Crowd:
 
 
 def crowd_of(scene: Scene, n: int, filter: Filter | None = None) -> Crowd:
-    """Runs 0 … n − 1 of a scene, simulated; watched by another filter than the scene's where one is
-    given.
+    """Runs 0 … n − 1 of a scene, simulated;
+    watched by another filter than the scene's where one is given.
     """
     layout, reckoned, blind = scene.world.layout, np.zeros(0), 0
     at: dict[float, tuple[Array, Array]] = {}  # the last of each instant
@@ -97,8 +97,8 @@ def _difference(pose: Array, truth: Array) -> Array:
 
 
 def set_down(scene: Scene, metres: float, degrees: float) -> Scene:
-    """The same scene, its robot set down on its mark no better than that, and the filter told
-    so.
+    """The same scene, its robot set down on its mark no better than that,
+    and the filter told so.
     """
     sigma = np.array([metres, metres, math.radians(degrees)])
     told = replace(scene.world.told, sigma=sigma)

@@ -1,5 +1,5 @@
-"""What many simulated runs of a scene say, each by itself: a comparison of two filters needs more
-than one run.
+"""What many simulated runs of a scene say, each by itself:
+a comparison of two filters needs more than one run.
 """
 
 from collections.abc import Iterable, Iterator
@@ -48,8 +48,8 @@ class EachRun:
 
 
 def _instants(steps: Iterable[Step], nis: list[Array]) -> Iterator[tuple[Step, Array]]:
-    """The last step of each instant, and where the motion inputs alone would be; the NIS per number
-    of each reading.
+    """The last step of each instant, and where the motion inputs alone would be;
+    the NIS per number of each reading.
     """
     before: Step | None = None
     reckoned = np.empty(0)

@@ -9,8 +9,8 @@ from ekfsim.systems.document import DocumentReading
 
 
 def retold(scene: Scene, reading: DocumentReading) -> Scene:
-    """What happened stays; the motion, the sensors and the first covariance that the filter is told
-    are the reading's.
+    """What happened stays;
+    the motion, the sensors and the first covariance that the filter is told are the reading's.
 
     A simulation needs no more than the word: its truth and its noise are alike in every reading.
     """

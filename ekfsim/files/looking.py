@@ -41,8 +41,8 @@ _taken: dict[tuple[int, int, int], bytes] = {}
 
 
 def contents(path: Path, most: int) -> bytes:
-    """At most so many bytes and one of a file; of a pipe, which can be read once only, also when
-    asked again.
+    """At most so many bytes and one of a file;
+    of a pipe, which can be read once only, also when asked again.
 
     Raises OSError where it cannot be read.
     """

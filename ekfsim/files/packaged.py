@@ -15,8 +15,8 @@ PACKAGE = Path(__file__).resolve().parent.parent
 
 
 def folder(kind: Folder) -> Path:
-    """Where the packaged files of a kind lie: inside the installed package, or beside it in a
-    checkout.
+    """Where the packaged files of a kind lie:
+    inside the installed package, or beside it in a checkout.
     """
     installed = PACKAGE / "_packaged" / kind
     return installed if installed.is_dir() else PACKAGE.parent / kind
@@ -75,8 +75,8 @@ def grouped() -> list[tuple[str, dict[str, Path]]]:
 
 
 def world_beside(path: Path, named: str) -> Path:
-    """The world that a commands file names: a file relative to it, else one that comes along, by
-    its bare name.
+    """The world that a commands file names:
+    a file relative to it, else one that comes along, by its bare name.
     """
     near = path.parent / named
     known = packaged("worlds")
@@ -88,8 +88,8 @@ def world_beside(path: Path, named: str) -> Path:
 
 
 def source_name(path: str | Path) -> str:
-    """How outputs name a file, in a line: a packaged one alike on every machine, any other as it
-    was given.
+    """How outputs name a file, in a line:
+    a packaged one alike on every machine, any other as it was given.
     """
     given = in_a_line(os.path.normpath(path))
     here = Path(os.path.realpath(path))

@@ -66,8 +66,8 @@ def bytes_of(path: Path, shown: str) -> bytes:
 
 
 def nearest_file(path: Path, shown: str) -> str:
-    """`; did you mean '…'?` where a file beside the missing one has nearly its name, else
-    nothing.
+    """`; did you mean '…'?` where a file beside the missing one has nearly its name,
+    else nothing.
     """
     try:
         neighbours = {

@@ -1,5 +1,5 @@
-"""Document 002, the teaching assignment: the display, inputs that prove the program, a divergence,
-and σ_xθ.
+"""Document 002, the teaching assignment:
+the display, inputs that prove the program, a divergence, and σ_xθ.
 """
 
 import math
@@ -209,8 +209,8 @@ def _lost(scene: Scene) -> float:
 
 
 def theta_question(album: Album) -> None:
-    """What σ_xθ and σ_yθ are good for: ellipses on the condition of a heading, before and after a
-    beam.
+    """What σ_xθ and σ_yθ are good for:
+    ellipses on the condition of a heading, before and after a beam.
     """
     scene = shipped(THETA)
     shown = list(views(play(scene)))
@@ -250,8 +250,8 @@ def theta_question(album: Album) -> None:
 
 
 def _room(axes: Axes, view: View, scene: Scene, look: Look) -> tuple[list[Any], list[str]]:
-    """Draw a view no wider than its room, and the legend's handles and words of what can be in
-    it.
+    """Draw a view no wider than its room,
+    and the legend's handles and words of what can be in it.
     """
     picture = draw(view, scene, axes, look)
     _without_legend(axes)

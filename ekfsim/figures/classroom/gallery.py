@@ -1,5 +1,5 @@
-"""The inputs that make the filter fail, side by side: what a thousand runs of each find, as they
-stand and cured.
+"""The inputs that make the filter fail, side by side:
+what a thousand runs of each find, as they stand and cured.
 """
 
 from collections.abc import Iterator
@@ -101,8 +101,8 @@ def sides(above: int, below: int, runs: int) -> str:
 
 
 def left_out(scene: Scene, why: Refused) -> tuple[float, float]:
-    """How many readings of a run are refused for this reason, and how many there are, on
-    average.
+    """How many readings of a run are refused for this reason,
+    and how many there are, on average.
     """
     refused = list(_refused(scene))
     return sum(int(np.count_nonzero(one == why)) for one in refused) / RUNS, len(refused)

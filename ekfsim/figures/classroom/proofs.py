@@ -1,5 +1,5 @@
-"""The inputs that prove the classroom's program: what each must give, by hand, and what it
-gives.
+"""The inputs that prove the classroom's program:
+what each must give, by hand, and what it gives.
 """
 
 import math
@@ -99,8 +99,8 @@ def _worst(steps: list[Step]) -> float:
 
 
 def _lap(laps: int, sign: int) -> float:
-    """Radius of the ellipse after so many laps of proof-square-twice: the eigenvalues of its P, by
-    hand.
+    """Radius of the ellipse after so many laps of proof-square-twice:
+    the eigenvalues of its P, by hand.
     """
     P_xx, P_xy = 18 * TURN_SIGMA**2 + 2 * SIDE_SIGMA**2, 9 * TURN_SIGMA**2
     return K * math.sqrt(laps * (P_xx + sign * P_xy))

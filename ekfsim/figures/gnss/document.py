@@ -1,5 +1,5 @@
-"""Document 003, the lawn mower: figures 1 to 5, a table, and the recipe of its authors as a
-counter-example.
+"""Document 003, the lawn mower:
+figures 1 to 5, a table, and the recipe of its authors as a counter-example.
 """
 
 import numpy as np
@@ -254,8 +254,8 @@ def table(runs: Runs, album: Album) -> None:
 
 
 def table_over_runs(many: ManyRuns, album: Album) -> None:
-    """The same over many simulated runs: what is said of the filters, none of them alone
-    decides.
+    """The same over many simulated runs:
+    what is said of the filters, none of them alone decides.
     """
     right, recipe, fixes = many.right, many.recipe, many.fixes
     rows = [
@@ -282,8 +282,8 @@ def table_over_runs(many: ManyRuns, album: Album) -> None:
 
 
 def _errors(runs: Runs, number: int) -> list[tuple[str, Array, Array]]:
-    """What figures 3 to 5 draw: the label, the instants with a known truth, and the errors
-    there.
+    """What figures 3 to 5 draw:
+    the label, the instants with a known truth, and the errors there.
     """
     rows = [
         (WHEELS, runs.right.t, pose_error(runs.wheels, runs.right.truth)[:, number]),
@@ -296,8 +296,8 @@ def _errors(runs: Runs, number: int) -> list[tuple[str, Array, Array]]:
 
 
 def _beside(heading: Array, t: Array, times: Array, truth: Array) -> Array:
-    """Headings in degrees, on the turn that is nearest to the true one where that is known. heading
-    : rad
+    """Headings in degrees, on the turn that is nearest to the true one where that is known.
+    heading : rad
     """
     near = np.interp(t, times, truth)
     if np.isnan(near).any():

@@ -43,8 +43,8 @@ class Fixes:
         return self.place - self.truth[:, :2]
 
     def courses(self) -> tuple[Array, Array]:
-        """Halfway between two fixes a second apart, and the course from one to the other : (J,) s,
-        (J,) rad
+        """Halfway between two fixes a second apart,
+        and the course from one to the other : (J,) s, (J,) rad
         """
         later = np.searchsorted(self.t, self.t + COURSE - FINE)
         first = np.flatnonzero(later < len(self.t))

@@ -1,5 +1,5 @@
-"""Document 000, the golf-course mower: figures 4 to 7, and the tables of many runs (or of one
-recorded log).
+"""Document 000, the golf-course mower:
+figures 4 to 7, and the tables of many runs (or of one recorded log).
 """
 
 from collections.abc import Iterable, Iterator
@@ -50,8 +50,8 @@ def draw_mower(scene: Scene, album: Album) -> None:
 
 
 def _tables_of_runs(scene: Scene, album: Album) -> None:
-    """Table 1 and the readings over many runs: of the mower as it is, and of one that is as the
-    filter is told.
+    """Table 1 and the readings over many runs:
+    of the mower as it is, and of one that is as the filter is told.
     """
     here = outcomes(
         scene, dict.fromkeys((*WAYS, Way(scene.reading), Way(scene.reading, ideal=True))), RUNS
@@ -123,8 +123,8 @@ def as_read(entries: Iterable[Entry], reading: DocumentReading) -> Iterator[Entr
 
 
 def with_ideal_angles(entries: Iterable[Entry]) -> Iterator[Entry]:
-    """The same log as if cameras did not err: the angles of the true pose, and R = 1e-12 I.
-    eq. 31
+    """The same log as if cameras did not err:
+    the angles of the true pose, and R = 1e-12 I. eq. 31
     """
     for entry in entries:
         given = entry.given

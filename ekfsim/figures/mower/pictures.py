@@ -1,5 +1,5 @@
-"""The pictures of document 000: paths, markers and trace, errors, and a close-up with the time
-along the path.
+"""The pictures of document 000:
+paths, markers and trace, errors, and a close-up with the time along the path.
 """
 
 import numpy as np
@@ -216,8 +216,8 @@ def _pictures(track: Track) -> tuple[Array, Array]:
 
 
 def _alone_since(track: Track, when: float) -> list[float]:
-    """Since when, in s, no picture had two markers, where at an instant that is long ago; else
-    nothing.
+    """Since when, in s, no picture had two markers,
+    where at an instant that is long ago; else nothing.
     """
     t, seen = _pictures(track)
     before = t[(seen > 1) & (t <= when)]

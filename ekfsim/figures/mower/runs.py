@@ -1,5 +1,5 @@
-"""Document 000 over many runs: each drive once, its log filtered side by side in every way that a
-table compares.
+"""Document 000 over many runs:
+each drive once, its log filtered side by side in every way that a table compares.
 """
 
 from collections.abc import Iterable

@@ -1,5 +1,5 @@
-"""The tables of document 000: table 1 beside the print, and what each reading of the document
-costs.
+"""The tables of document 000:
+table 1 beside the print, and what each reading of the document costs.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -40,8 +40,8 @@ LISTING = (
 
 
 def table_1(real: Outcome, ideal: Outcome, alone: Outcome, album: Album) -> None:
-    """Table 1: position and heading error with real and with ideal angles, beside the document's
-    own numbers.
+    """Table 1: position and heading error with real and with ideal angles,
+    beside the document's own numbers.
     """
     header = [
         "",
@@ -100,8 +100,8 @@ def table_1(real: Outcome, ideal: Outcome, alone: Outcome, album: Album) -> None
 
 
 def differences(entries: Iterable[Entry], album: Album) -> None:
-    """R as the document finds it: by the differences of the measured angles and those of the true
-    pose (eq. 30).
+    """R as the document finds it:
+    by the differences of the measured angles and those of the true pose (eq. 30).
     """
     apart, told = list[Array](), list[Array]()
     for entry in entries:
@@ -143,8 +143,8 @@ def readings_of_runs(
     shaken: Mapping[DocumentReading, Outcome],
     album: Album,
 ) -> None:
-    """What the print and the listing cost, over many runs of the mower as it is and of one as its
-    filter is told.
+    """What the print and the listing cost,
+    over many runs of the mower as it is and of one as its filter is told.
     """
     mowers = {"as it is": quiet, "as told": shaken}
     rows = [[mower, *row] for mower, outcomes in mowers.items() for row in _rows(outcomes)]
@@ -171,8 +171,8 @@ def readings_of_runs(
 def readings_of_log(
     outcomes: Mapping[DocumentReading, Outcome], associated: DocumentReading, album: Album
 ) -> None:
-    """What they cost on one log, whose pictures belong to its rows as the reading `associated` has
-    it.
+    """What they cost on one log,
+    whose pictures belong to its rows as the reading `associated` has it.
     """
     best, listing, wrong = (
         float(outcomes[reading].rmse[0]) for reading in ("corrected", "coded", "printed")
@@ -234,8 +234,8 @@ def _judged(outcome: Outcome) -> str:
 
 
 def spread(values: Array, digits: int) -> str:
-    """The mean of runs ± their standard deviation, or the one value; with the minus of the
-    print.
+    """The mean of runs ± their standard deviation, or the one value;
+    with the minus of the print.
     """
     known = values[~np.isnan(values)]
     if len(known) < 2:

@@ -21,8 +21,8 @@ def as_told_by(reading: DocumentReading, given: Reading) -> Reading:
 
 
 def with_angles_of(truth: Array, given: Reading) -> Reading:
-    """The angles of the true pose (…, 3) as if cameras did not err, and R = 1e-12 I.
-    eq. 31
+    """The angles of the true pose (…, 3) as if cameras did not err,
+    and R = 1e-12 I. eq. 31
     """
     if not isinstance(given.sensor, MarkerAngles):
         return given

@@ -1,5 +1,5 @@
-"""Document 001, figures 4 and 6: what an infrared pair and an ultrasonic beam say of a wall, over
-its distance.
+"""Document 001, figures 4 and 6:
+what an infrared pair and an ultrasonic beam say of a wall, over its distance.
 """
 
 import math

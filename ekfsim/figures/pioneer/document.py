@@ -1,5 +1,5 @@
-"""The figures of the document pioneer: its sensors, the square, and LKF, EKF and UKF side by
-side.
+"""The figures of the document pioneer:
+its sensors, the square, and LKF, EKF and UKF side by side.
 """
 
 import math

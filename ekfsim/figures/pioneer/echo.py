@@ -1,5 +1,5 @@
-"""Document 001, figure 5: the echo, its Hilbert envelope and the UKF's fit of it; what it is
-worth.
+"""Document 001, figure 5: the echo, its Hilbert envelope and the UKF's fit of it;
+what it is worth.
 """
 
 from typing import NamedTuple

@@ -95,8 +95,8 @@ prints no numbers.
 
 @dataclass(frozen=True)
 class CautiousEKF(EKF):
-    """An EKF with the UKF's rule: it refuses a reading that any sigma point of its belief does not
-    predict.
+    """An EKF with the UKF's rule:
+    it refuses a reading that any sigma point of its belief does not predict.
     """
 
     def update(
@@ -216,8 +216,8 @@ def _errors(position: Array, heading: Array) -> tuple[str, str, str, str]:
 
 
 def _again(values: Array) -> Array:
-    """The mean of N runs as other N of them might have it : (…, N) → (…, RESAMPLED). Efron's
-    bootstrap.
+    """The mean of N runs as other N of them might have it : (…, N) → (…, RESAMPLED).
+    Efron's bootstrap.
     """
     n = values.shape[-1]
     picked = np.random.default_rng(0).integers(0, n, (RESAMPLED, n))

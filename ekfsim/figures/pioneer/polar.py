@@ -1,5 +1,5 @@
-"""Document 001, figure 2: a polar reading in Cartesian coordinates, linearised and by the unscented
-transform.
+"""Document 001, figure 2: a polar reading in Cartesian coordinates,
+linearised and by the unscented transform.
 """
 
 import math

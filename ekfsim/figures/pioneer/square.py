@@ -102,8 +102,8 @@ def _draw_floor(floor: Axes, scene: Scene, track: Track, reckoned: Array) -> Non
 
 
 def _caption(scene: Scene, track: Track, odometry: Array, turned: Array, arctan: str) -> str:
-    """What is to be seen in figure 7. odometry and turned : (N,) m and rad, errors of the wheels
-    alone
+    """What is to be seen in figure 7.
+    odometry and turned : (N,) m and rad, errors of the wheels alone
     """
     boundary = scene.world.map.boundary
     width, height = (0.0, 0.0) if boundary is None else np.ptp(boundary, axis=0)

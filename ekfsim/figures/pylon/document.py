@@ -1,5 +1,5 @@
-"""Document 004, lidar and inertial unit around one pylon: figures 2 to 7, and what each reading
-costs.
+"""Document 004, lidar and inertial unit around one pylon:
+figures 2 to 7, and what each reading costs.
 """
 
 import numpy as np

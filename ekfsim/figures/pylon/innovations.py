@@ -1,5 +1,5 @@
-"""Document 004: whether its filter may be believed, and what is left of its NIS where R knows of
-the yaw error.
+"""Document 004: whether its filter may be believed,
+and what is left of its NIS where R knows of the yaw error.
 """
 
 import math
@@ -50,8 +50,8 @@ class Tries:
 
     @property
     def across_in_turns(self) -> str:
-        """The part across in turns, with the yaw of the row before, the same row, and the row
-        after.
+        """The part across in turns,
+        with the yaw of the row before, the same row, and the row after.
         """
         turns = self.found.turning(len(TURNING) - 2) | self.found.turning(len(TURNING) - 1)
         return ", ".join(

@@ -29,8 +29,8 @@ class Told:
 
     @classmethod
     def of(cls, scene: Scene, reading: DocumentReading) -> "Told":
-        """The scene's log, or its simulation. Only `corrected` takes dt from the stamps, as the
-        log's reader does.
+        """The scene's log, or its simulation.
+        Only `corrected` takes dt from the stamps, as the log's reader does.
         """
         told = retold(scene, reading)
         if told.log is None:
@@ -91,15 +91,15 @@ class Runs:
         return self.tracks[self.reading]
 
     def off_path(self, track: Track) -> Array:
-        """The path-tracking error of a track at every instant after the start, eq. 11 : (N − 1,)
-        m
+        """The path-tracking error of a track at every instant after the start,
+        eq. 11 : (N − 1,) m
         """
         return path_error(track.pose[1:, :2], self.ring)
 
 
 def timed(entries: Iterable[Entry], constant: float | None) -> Iterator[Entry]:
-    """The same log with one dt for all motion inputs, in s, or where that is None with dt from its
-    stamps.
+    """The same log with one dt for all motion inputs,
+    in s, or where that is None with dt from its stamps.
     """
     before = 0.0
     for entry in entries:
@@ -137,8 +137,8 @@ def by_the_letter(entries: Iterable[Entry]) -> Iterator[Entry]:
 
 
 def in_its_own_frame(entries: Iterable[Entry]) -> Iterator[Entry]:
-    """The same log, its readings as the lidar saw them: turned back by the yaw that had turned
-    them.
+    """The same log, its readings as the lidar saw them:
+    turned back by the yaw that had turned them.
     """
     θ: Array = np.zeros(())
     for entry in entries:
@@ -152,8 +152,8 @@ def in_its_own_frame(entries: Iterable[Entry]) -> Iterator[Entry]:
 
 
 def turned_by_the_yaw_of(entries: Iterable[Entry], later: int) -> Iterator[Entry]:
-    """The same log, each reading turned by the yaw of so many rows later, or earlier where that is
-    negative.
+    """The same log, each reading turned by the yaw of so many rows later,
+    or earlier where that is negative.
     """
     log = list(entries)
     yaws = [float(entry.given.u[2]) for entry in log if isinstance(entry.given, Control)]

@@ -94,11 +94,11 @@ class Innovations:
 
     @property
     def scatter(self) -> Array:
-        """How far each range is from the mean of its two neighbours, as the noise of one range : (K
-        − 2,) m
+        """How far each range is from the mean of its two neighbours,
+        as the noise of one range : (K − 2,) m
 
-        The robot's own motion hardly shows in it: three times of a tenth of a second are nearly a
-        straight line.
+        The robot's own motion hardly shows in it:
+        three times of a tenth of a second are nearly a straight line.
         """
         middle: Array = (self.range[2:] + self.range[:-2]) / 2
         return (self.range[1:-1] - middle) / math.sqrt(1.5)

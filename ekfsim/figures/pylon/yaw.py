@@ -1,5 +1,5 @@
-"""Document 004's conclusion made true: a filter that corrects the yaw, beside the authors', over
-many runs.
+"""Document 004's conclusion made true:
+a filter that corrects the yaw, beside the authors', over many runs.
 """
 
 import numpy as np

@@ -213,8 +213,8 @@ class RecordingKeys(Strict):
 
 
 class CommandsKeys(Strict):
-    """A world, what is done in it or was recorded of it, and the settings of the filter. Metres and
-    degrees.
+    """A world, what is done in it or was recorded of it,
+    and the settings of the filter. Metres and degrees.
     """
 
     model_config = ConfigDict(title="ekfsim commands", json_schema_extra=ONE_WAY)

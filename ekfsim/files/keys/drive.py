@@ -16,8 +16,8 @@ STRETCH: JsonDict = {"v": 0.5, "omega": 45, "for": 2}
 
 
 class PathKeys(PartKeys):
-    """A path that the driver holds the robot to. Each path has some of these keys; each default is
-    a document's.
+    """A path that the driver holds the robot to.
+    Each path has some of these keys; each default is a document's.
     """
 
     angles: ClassVar[frozenset[str]] = frozenset({"turn_rate"})

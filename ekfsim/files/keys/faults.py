@@ -151,8 +151,8 @@ class FaultySensorsKeys(Strict):
 
 
 class FaultKeys(PartKeys):
-    """What is wrong with the robot, and no one knows. The classroom's robot has the first five,
-    others the rest.
+    """What is wrong with the robot, and no one knows.
+    The classroom's robot has the first five, others the rest.
     """
 
     angles: ClassVar[frozenset[str]] = frozenset({"gyro_bias", "yaw_bias"})

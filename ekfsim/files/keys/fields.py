@@ -1,5 +1,5 @@
-"""The kinds of value that world and commands files are made of; messages and editors read the same
-bounds.
+"""The kinds of value that world and commands files are made of;
+messages and editors read the same bounds.
 """
 
 import math
@@ -43,8 +43,8 @@ class PartKeys(Strict):
 
 
 def _inside(value: Any, is_angle: bool) -> Any:
-    """A value as the program holds it: whole numbers and words as they are, lists as tuples,
-    degrees as radians.
+    """A value as the program holds it:
+    whole numbers and words as they are, lists as tuples, degrees as radians.
     """
     if isinstance(value, list):
         return tuple(_inside(one, is_angle) for one in value)

@@ -1,5 +1,5 @@
-"""The keys of each kind of sensor; each default is that of the instrument, which is the document's
-number.
+"""The keys of each kind of sensor;
+each default is that of the instrument, which is the document's number.
 """
 
 from typing import Annotated, Any, ClassVar
@@ -140,8 +140,8 @@ class BearingKeys(PartKeys):
 
 
 class RangeKeys(PartKeys):
-    """A radio that tells the range to nodes alone. It says scale · range + bias, and is corrected
-    before use.
+    """A radio that tells the range to nodes alone.
+    It says scale · range + bias, and is corrected before use.
     """
 
     angles: ClassVar[frozenset[str]] = frozenset({"views"})
@@ -179,8 +179,8 @@ class PylonKeys(PartKeys):
 
 
 class LidarKeys(PartKeys):
-    """A lidar that tells how far to the right and ahead of the robot a pylon stands, and so
-    corrects the heading.
+    """A lidar that tells how far to the right and ahead of the robot a pylon stands,
+    and so corrects the heading.
     """
 
     angles: ClassVar[frozenset[str]] = frozenset({"views"})
@@ -272,8 +272,8 @@ class CompassKeys(PartKeys):
 
 
 class GyroKeys(PartKeys):
-    """A gyroscope, which tells the yaw since it was set to 0 along the mark, the heading of
-    `start`.
+    """A gyroscope, which tells the yaw since it was set to 0 along the mark,
+    the heading of `start`.
     """
 
     angles: ClassVar[frozenset[str]] = frozenset({"sigma"})

@@ -66,8 +66,8 @@ ODOMETRY = {  # what may tell the turn of each robot
 
 
 class ToldRobotKeys(PartKeys):
-    """What the robot measures of its motion, and how well. Each system's robot has some of these
-    keys.
+    """What the robot measures of its motion, and how well.
+    Each system's robot has some of these keys.
     """
 
     angles: ClassVar[frozenset[str]] = frozenset(
@@ -193,8 +193,8 @@ class ToldRobotKeys(PartKeys):
 
 
 class RobotKeys(ToldRobotKeys):
-    """What the robot measures of its motion, and how well. Each system's robot has some of these
-    keys.
+    """What the robot measures of its motion, and how well.
+    Each system's robot has some of these keys.
     """
 
     rate: Rate | None = Field(

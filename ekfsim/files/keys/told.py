@@ -47,8 +47,8 @@ class ToldBearingKeys(PartKeys):
 
 
 class ToldRangeKeys(PartKeys):
-    """What the filter is told of a radio, and with what its ranges are corrected before the filter
-    gets them.
+    """What the filter is told of a radio,
+    and with what its ranges are corrected before the filter gets them.
     """
 
     sigma: Spread | None = Field(None, description=SEE)

@@ -107,8 +107,8 @@ class StartKeys(Pose):
 
 
 class NoiseKeys(Strict):
-    """The five noise ratios: the standard deviation is the ratio times the magnitude of what is
-    done or measured.
+    """The five noise ratios:
+    the standard deviation is the ratio times the magnitude of what is done or measured.
     """
 
     execution_distance: Ratio = Field(
@@ -137,8 +137,8 @@ class NoiseKeys(Strict):
 
 
 class ToldNoiseKeys(Strict):
-    """The noise ratios that the filter is told, where they differ from the true ones; any of the
-    five.
+    """The noise ratios that the filter is told,
+    where they differ from the true ones; any of the five.
     """
 
     execution_distance: Ratio | None = Field(
@@ -226,8 +226,8 @@ class BeliefKeys(Strict):
 
 
 class WorldKeys(Strict):
-    """What stands where, how noisy the robot is, and what the filter is told of both. Metres and
-    degrees.
+    """What stands where, how noisy the robot is,
+    and what the filter is told of both. Metres and degrees.
     """
 
     model_config = ConfigDict(title="ekfsim world", json_schema_extra=BY_SYSTEM)

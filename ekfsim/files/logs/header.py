@@ -19,8 +19,8 @@ def separator_of(line: str) -> str | None:
 
 
 def places_of(lines: Lines, columns: Sequence[tuple[str, ...]]) -> tuple[int, list[int]]:
-    """How many columns a header names, and where each wanted one stands; it may go by any of
-    several names.
+    """How many columns a header names, and where each wanted one stands;
+    it may go by any of several names.
 
     Raises InputError where the header is missing, or lacks one of them.
     """

@@ -15,8 +15,8 @@ def in_order(rows: Rows, warnings: list[str]) -> Rows:
 
 
 def tell_back(rows: Rows, warnings: list[str]) -> bool:
-    """Whether a time lies before that of the row above; a warning says that the rows are put in
-    order.
+    """Whether a time lies before that of the row above;
+    a warning says that the rows are put in order.
     """
     back = np.flatnonzero(np.diff(rows.t) < 0) + 1
     if not len(back):
@@ -44,8 +44,8 @@ def _once(rows: Rows, warnings: list[str]) -> Rows:
 
 
 def tell_repeated(rows: Rows, warnings: list[str], made: str = "") -> None:
-    """Warn of rows that share a time where each should have its own, and of what is made of
-    them.
+    """Warn of rows that share a time where each should have its own,
+    and of what is made of them.
     """
     repeated = np.flatnonzero(np.diff(rows.t) == 0) + 1
     if len(repeated):

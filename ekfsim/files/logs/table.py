@@ -34,8 +34,8 @@ ENORMOUS = {"t": 1e12, "time": 1e12, "x": 1e8, "y": 1e8}
 
 @dataclass(frozen=True)
 class Wanted:
-    """The columns of a table that are read: how messages call them, and where they stand, from
-    0.
+    """The columns of a table that are read:
+    how messages call them, and where they stand, from 0.
     """
 
     names: tuple[str, ...]
@@ -106,8 +106,8 @@ def bare_table(path: Path, wanted: Wanted, warnings: list[str], mixed: bool = Fa
 
 
 def numbers_of(lines: Lines, wanted: Wanted, separator: str | None, warnings: list[str]) -> Rows:
-    """The wanted columns of all rows that can be used. Raises InputError with the mistakes in the
-    others.
+    """The wanted columns of all rows that can be used.
+    Raises InputError with the mistakes in the others.
     """
     if separator:
         lines = replace(
@@ -163,8 +163,8 @@ def is_number(text: str) -> bool:
 
 
 def _quickly(lines: Lines, wanted: Wanted, separator: str | None) -> Array | None:
-    """The wanted columns as numpy reads them; None where it stumbles, or some rows have other
-    widths.
+    """The wanted columns as numpy reads them;
+    None where it stumbles, or some rows have other widths.
     """
     if not len(lines):
         return np.empty((0, len(wanted.places)))

@@ -68,8 +68,8 @@ class Timeline:
     between: bool = True  # whether errors are counted at readings between two motions
 
     def recorded(self, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
-        """The log. It starts at the truth's first instant where that comes later, and at the true
-        pose.
+        """The log.
+        It starts at the truth's first instant where that comes later, and at the true pose.
         """
         start, motions = self.start, self.motions
         if self.truth is not None and not self.truth.t[0] <= start <= self.truth.t[-1]:
@@ -130,8 +130,8 @@ def _span(t: Array | list[float]) -> str:
 
 
 def _snapped(t: Array, edges: Array) -> Array:
-    """The times, those that are an edge's but for rounding as the edge has it. edges : (n,) in
-    order
+    """The times, those that are an edge's but for rounding as the edge has it.
+    edges : (n,) in order
     """
     after = np.minimum(np.searchsorted(edges, t), len(edges) - 1)
     before = np.maximum(after - 1, 0)
@@ -142,8 +142,8 @@ def _snapped(t: Array, edges: Array) -> Array:
 
 
 def beginning(world: World, reading: DocumentReading, pose: Array | None) -> Gaussian:
-    """The first belief: at the true pose, or where the world file says, as uncertain as the robot's
-    document has it.
+    """The first belief: at the true pose,
+    or where the world file says, as uncertain as the robot's document has it.
     """
     assert world.told_robot is not None
     pose = world.told.start if pose is None else pose

@@ -1,5 +1,5 @@
-"""A simulated run → the files of a recorded log, from which the filter makes the same numbers
-again.
+"""A simulated run → the files of a recorded log,
+from which the filter makes the same numbers again.
 """
 
 import math
@@ -30,8 +30,8 @@ Writer = Callable[[Scene, Run, Path], Files]
 def write_log(scene: Scene, entries: Iterable[Entry], out: Path, force: bool) -> list[str]:
     """Write a simulated run into a folder, and return the sentences that its reader should know.
 
-    Raises UsageError where the scene is no simulation of a driven robot, or the folder may not be
-    written.
+    Raises UsageError where the scene is no simulation of a driven robot,
+    or the folder may not be written.
     """
     writer = _writer_of(scene)
     with whole_folder(out, *ALL_FILES, force=force) as folder:
@@ -46,8 +46,8 @@ def write_log(scene: Scene, entries: Iterable[Entry], out: Path, force: bool) ->
 
 
 def _as_told(scene: Scene) -> Scene:
-    """The scene without the settings that no one knows of: its faults, and what the filter is told
-    otherwise.
+    """The scene without the settings that no one knows of:
+    its faults, and what the filter is told otherwise.
     """
     told = scene.world.told
     hidden = [
@@ -120,8 +120,8 @@ def _mower(scene: Scene, run: Run, out: Path) -> Files:
 
 
 def _gnss(scene: Scene, run: Run, out: Path) -> Files:
-    """Wheel speeds, each row's since the row before it; fixes and true poses at the stamps of the
-    wheels.
+    """Wheel speeds, each row's since the row before it;
+    fixes and true poses at the stamps of the wheels.
     """
     wheels, fixes = list[list[float]](), list[list[float]]()
     for tick in run.ticks:
@@ -140,8 +140,8 @@ def _gnss(scene: Scene, run: Run, out: Path) -> Files:
 
 
 def _pylon(scene: Scene, run: Run, out: Path) -> Files:
-    """One row a tick: the pylon in the lidar's frame, or nan; stamps in whole microseconds, in
-    plain digits.
+    """One row a tick: the pylon in the lidar's frame, or nan;
+    stamps in whole microseconds, in plain digits.
     """
     rows = list[list[float | int]]()
     for tick in run.ticks:

@@ -29,8 +29,8 @@ class Sink(Protocol):
 
 
 def kept(steps: Iterable[Step], takers: Sequence[Callable[[Step], None]]) -> Iterator[Step]:
-    """The same steps, each handed to every taker before it goes on: what is shown may leave some
-    out.
+    """The same steps, each handed to every taker before it goes on:
+    what is shown may leave some out.
     """
     for step in steps:
         for take in takers:
@@ -50,8 +50,8 @@ class Outputs:
     filter: str | None = None  # whose files these are, where there are several
 
     def for_each(self, scene: Scene) -> "list[Outputs]":
-        """The files of each filter that watches. Of several the name stands before each ending:
-        trace.ekf.jsonl.
+        """The files of each filter that watches.
+        Of several the name stands before each ending: trace.ekf.jsonl.
         """
         return (
             [self._of(filter) for filter in (scene.filter, *scene.beside)]
@@ -68,11 +68,11 @@ class Outputs:
 
     @contextmanager
     def open(self, scene: Scene, confidence: float, summary: Summary) -> Iterator[list[Sink]]:
-        """The sinks for the steps of this scene. The files appear when the block ends well, all of
-        them or none.
+        """The sinks for the steps of this scene.
+        The files appear when the block ends well, all of them or none.
 
-        Raises UsageError before anything is written if one of them exists and `force` is False, or
-        is named twice.
+        Raises UsageError before anything is written if one of them exists
+        and `force` is False, or is named twice.
         """
         paths = self._paths()
         for path in paths:
@@ -122,8 +122,8 @@ class Outputs:
 
 
 def _of_filter(path: Path, filter: str) -> Path:
-    """A file's name with the filter before its ending: trace.ekf.jsonl. Raises UsageError where it
-    is no file's.
+    """A file's name with the filter before its ending: trace.ekf.jsonl.
+    Raises UsageError where it is no file's.
     """
     if special(path):
         raise UsageError(f"{path}: holds the result of one filter only; name a file, or one filter")
@@ -131,8 +131,8 @@ def _of_filter(path: Path, filter: str) -> Path:
 
 
 def _refuse_the_scene_itself(path: Path, scene: Scene) -> None:
-    """Raise UsageError where a result would replace the file that it is made from, or come to lie
-    within its log.
+    """Raise UsageError where a result would replace the file that it is made from,
+    or come to lie within its log.
     """
     sources = (scene.commands_source, scene.world_source, scene.log_source)
     with told(path):
@@ -149,8 +149,8 @@ def _same(path: Path, other: Path) -> bool:
 
 
 def _refuse_one_place_for_two(paths: list[Path]) -> None:
-    """Raise UsageError where two results, however spelled, would come to lie in one place or one
-    inside the other.
+    """Raise UsageError where two results,
+    however spelled, would come to lie in one place or one inside the other.
     """
     places = list[Path]()
     for path in paths:

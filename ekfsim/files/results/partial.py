@@ -1,8 +1,8 @@
 """Where a result is written until it is whole: a hidden place beside its own, locked for as long as
 somebody is at it.
 
-A lock ends with its process, however that ends, and no number of a process tells so much: it may be
-another's by now.
+A lock ends with its process, however that ends,
+and no number of a process tells so much: it may be another's by now.
 """
 
 import errno
@@ -40,8 +40,8 @@ def temporary_file(place: Path) -> Iterator[Path]:
 
 @contextmanager
 def temporary_folder(place: Path, is_first: bool = True) -> Iterator[Path]:
-    """The same for a folder; is_first : no, where this process has another one beside the place
-    already
+    """The same for a folder.
+    is_first : no, where this process has another one beside the place already
     """
     beside = Path(mkdtemp(prefix=_prefix(place), suffix=".partial", dir=place.parent))
     descriptor = _opened(beside)
@@ -62,8 +62,8 @@ def _prefix(place: Path) -> str:
 
 
 def _clear(place: Path, own: Path) -> None:
-    """Remove what killed processes left beside a place. Raises OSError where a living one is at
-    work there.
+    """Remove what killed processes left beside a place.
+    Raises OSError where a living one is at work there.
     """
     ours = re.compile(f"{re.escape(_prefix(place))}{RANDOM}\\.partial")
     for name in os.listdir(place.parent):
@@ -84,8 +84,8 @@ def _clear(place: Path, own: Path) -> None:
 
 
 def _remove(left: Path, place: Path) -> None:
-    """Remove a leftover; an older result that was just making way in it for a newer one goes back
-    to its place.
+    """Remove a leftover;
+    an older result that was just making way in it for a newer one goes back to its place.
     """
     with suppress(OSError):
         older = left / place.name
@@ -106,8 +106,8 @@ def _opened(path: Path) -> int | None:
 
 
 def _lock(descriptor: int) -> bool:
-    """Whether what is open could be locked; some systems lock nothing. Raises BlockingIOError where
-    another has it.
+    """Whether what is open could be locked;
+    some systems lock nothing. Raises BlockingIOError where another has it.
     """
     try:
         import fcntl

@@ -1,5 +1,5 @@
-"""The trace: a JSON object a line for each step, SI units, angles in radians, null where a number
-is undefined.
+"""The trace: a JSON object a line for each step,
+SI units, angles in radians, null where a number is undefined.
 """
 
 import json
@@ -69,8 +69,8 @@ def _start(step: Step, scene: Scene, confidence: float) -> dict[str, Any]:
 
 
 def _predict(step: Step, control: Control, scene: Scene) -> dict[str, Any]:
-    """A motion input of a driven or recorded robot: a line like that of a reading, of which none
-    was predicted.
+    """A motion input of a driven or recorded robot:
+    a line like that of a reading, of which none was predicted.
     """
     assert step.prediction is not None
     return {

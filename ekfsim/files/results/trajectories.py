@@ -18,12 +18,12 @@ from ekfsim.scene import Scene
 
 
 class Tum:
-    """Writes `t x y 0 0 0 qz qw` lines of the truth and of the estimate: one for each instant that
-    the summary counts.
+    """Writes `t x y 0 0 0 qz qw` lines of the truth and of the estimate:
+    one for each instant that the summary counts.
 
-    The poses are those after its last reading. t is the instant in s; where there is no clock, in
-    the classroom, the index of the step. So the RMSE that evo finds between the two files is the
-    summary's.
+    The poses are those after its last reading. t is the instant in s;
+    where there is no clock, in the classroom, the index of the step.
+    So the RMSE that evo finds between the two files is the summary's.
     """
 
     def __init__(self, truth: TextIO, estimate: TextIO, scene: Scene) -> None:

@@ -38,11 +38,11 @@ def refuse_existing(path: Path, force: bool) -> None:
 
 @contextmanager
 def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
-    """The path of a temporary file that becomes `path` when the block ends well, and vanishes when
-    it does not.
+    """The path of a temporary file that becomes `path` when the block ends well,
+    and vanishes when it does not.
 
-    Parents are made. A path that is no regular file (/dev/stdout) is handed out itself, to be
-    written straight.
+    Parents are made.
+    A path that is no regular file (/dev/stdout) is handed out itself, to be written straight.
 
     Raises UsageError if a result exists and `force` is False, RunError if the disk refuses.
     """
@@ -52,8 +52,8 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
 
 @contextmanager
 def whole_text(path: Path, force: bool = False) -> Iterator[TextIO]:
-    """The same, opened for text. Only what is written to this file is told as a refusal of this
-    file.
+    """The same, opened for text.
+    Only what is written to this file is told as a refusal of this file.
     """
     with _beside(path, force) as beside, _opened(path, beside) as file:
         yield file
@@ -61,8 +61,8 @@ def whole_text(path: Path, force: bool = False) -> Iterator[TextIO]:
 
 
 def refuse_existing_folder(path: Path, *patterns: str, force: bool = False) -> Path:
-    """Raise UsageError where `whole_folder` would; else where the folder is to lie, at the end of
-    every link.
+    """Raise UsageError where `whole_folder` would;
+    else where the folder is to lie, at the end of every link.
     """
     with told(path):
         place = Path(os.path.realpath(path))  # where a link leads: it stays a link
@@ -93,8 +93,8 @@ def whole_folder(path: Path, *patterns: str, force: bool = False) -> Iterator[Pa
     With `force` an older result is replaced, but only if every file in it matches one of the
     `patterns`: what else lies in a folder is not ours to delete.
 
-    Raises UsageError if the folder holds something and may not be replaced, RunError if the disk
-    refuses.
+    Raises UsageError if the folder holds something and may not be replaced,
+    RunError if the disk refuses.
     """
     place = refuse_existing_folder(path, *patterns, force=force)
     with _parents(path, place), told(path), temporary_folder(place) as beside:
@@ -140,8 +140,8 @@ def _beside(path: Path, force: bool) -> Iterator[Path]:
 
 @contextmanager
 def _parents(path: Path, place: Path) -> Iterator[None]:
-    """The folders above a place; those that had to be made are removed again where nothing comes to
-    lie in them.
+    """The folders above a place;
+    those that had to be made are removed again where nothing comes to lie in them.
     """
     with told(path):
         missing = [folder for folder in place.parents if not os.path.lexists(folder)]
@@ -181,8 +181,8 @@ def told(path: Path) -> Iterator[None]:
 
 
 def special(path: Path) -> bool:
-    """Whether a path is no place for a result to be put in, but a way to where it is written
-    straight.
+    """Whether a path is no place for a result to be put in,
+    but a way to where it is written straight.
     """
     # even where standard output is a regular file: nothing may take its place
     if _descriptor(path) is not None:
@@ -196,8 +196,8 @@ def special(path: Path) -> bool:
 
 @contextmanager
 def _opened(path: Path, beside: Path) -> Iterator[TextIO]:
-    """A file to write the text of `path` to; one that is open already, as /dev/stdout, goes on
-    where it is.
+    """A file to write the text of `path` to;
+    one that is open already, as /dev/stdout, goes on where it is.
     """
     descriptor = _descriptor(beside)
     with told(path):
@@ -223,8 +223,8 @@ class _Told(io.FileIO):
 
 
 def _descriptor(path: Path) -> int | None:
-    """The number of the open file that /dev/stdout, /dev/fd/3 and their like stand for; None for
-    any other path.
+    """The number of the open file that /dev/stdout,
+    /dev/fd/3 and their like stand for; None for any other path.
     """
     name = os.path.normpath((current_folder() or Path("/")) / path)
     numbered = re.fullmatch(r"/(?:dev|proc/self)/fd/(\d+)", name)

@@ -1,5 +1,5 @@
-"""Models → the objects a run is made of: degrees become radians, lists arrays, and belief what the
-filter is told.
+"""Models → the objects a run is made of:
+degrees become radians, lists arrays, and belief what the filter is told.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -53,8 +53,8 @@ def world_of(keys: WorldKeys) -> World:
 
 
 def robot_of(keys: WorldKeys) -> Robot | None:
-    """The robot of a system, each number the document's where the file tells no other; None in the
-    classroom.
+    """The robot of a system, each number the document's where the file tells no other;
+    None in the classroom.
     """
     if keys.system == "classroom":
         return None
@@ -151,8 +151,8 @@ def told(keys: WorldKeys, floor_plan: Map, start: Array, noise: Noise) -> Told:
 
 
 def told_map(belief: BeliefKeys, floor_plan: Map) -> Map:
-    """The filter's map: the true one itself where nothing differs, so that its walls are built
-    once.
+    """The filter's map: the true one itself where nothing differs,
+    so that its walls are built once.
     """
     if belief.boundary is None and belief.obstacles is None and not belief.missing:
         return floor_plan
@@ -188,8 +188,8 @@ def pose(keys: Pose) -> Array:
 
 
 def sigma(*choices: SigmaKeys | None) -> Array:
-    """Standard deviations : (3,) m, m, rad; each from the first mapping that tells it, 0 where none
-    does.
+    """Standard deviations : (3,) m, m, rad;
+    each from the first mapping that tells it, 0 where none does.
     """
     x, y, theta = (
         next(

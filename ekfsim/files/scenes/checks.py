@@ -37,8 +37,8 @@ class Sound:
         self.around.update(path[:length] for length in range(len(path)))
 
     def value(self, *path: str | int) -> Any:
-        """The plain value at a path, None where there is none, or where a mistake lies in it or
-        around it.
+        """The plain value at a path,
+        None where there is none, or where a mistake lies in it or around it.
         """
         node = self.root.at(path)
         if (

@@ -60,8 +60,8 @@ def check_path(file: Sound) -> Iterator[Mistake]:
 
 
 def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake]:
-    """A commands file whose robot the world does not have, and drives too long or too short for
-    it.
+    """A commands file whose robot the world does not have,
+    and drives too long or too short for it.
     """
     system = world.system
     if keys.commands is not None and world.robot is not None:

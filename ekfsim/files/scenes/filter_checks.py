@@ -1,5 +1,5 @@
-"""What of a filter's settings no single key can tell: whether it reads them, and whether they fit
-the world.
+"""What of a filter's settings no single key can tell:
+whether it reads them, and whether they fit the world.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -33,8 +33,8 @@ def check_filter_settings(file: Sound, keys: CommandsKeys, world: World) -> Iter
 
 
 def filter_warnings(file: Sound, keys: CommandsKeys) -> Iterator[str]:
-    """Settings that the file's own filter does not read. It is no mistake: the command line may
-    name another.
+    """Settings that the file's own filter does not read.
+    It is no mistake: the command line may name another.
     """
     told = file.root.at((FILTER_SETTINGS,))
     for key in told.keys if told else ():
@@ -63,8 +63,8 @@ def unread(settings: Iterable[Setting], names: Sequence[str]) -> list[Setting]:
 
 
 def refuse_unread(settings: Iterable[Setting], names: Sequence[str]) -> None:
-    """Raises UsageError where a setting would change nothing, for no filter that watches reads
-    it.
+    """Raises UsageError where a setting would change nothing,
+    for no filter that watches reads it.
     """
     lines = []
     for one in unread(settings, names):

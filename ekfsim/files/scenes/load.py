@@ -58,8 +58,8 @@ class Loaded(Generic[T]):
     refusal: UsageError | None = None  # of the log that was named, which is no file's mistake
 
     def get(self) -> T:
-        """The value. Raises InputError with all mistakes where there are any, or what a log was
-        refused with.
+        """The value. Raises InputError with all mistakes where there are any,
+        or what a log was refused with.
         """
         if self.refusal is not None:
             raise self.refusal
@@ -82,12 +82,12 @@ def load_scene(
     log: str | Path | None = None,
     reading: DocumentReading = "corrected",
 ) -> Scene:
-    """The scene that a commands file describes, in its own world or in the one given; also packaged
-    ones by name.
+    """The scene that a commands file describes,
+    in its own world or in the one given; also packaged ones by name.
 
-    `log` stands in place of the one that the file's recording names; `reading` is that of the
-    system's document. Raises UsageError where a file is missing, InputError with all mistakes of
-    both files.
+    `log` stands in place of the one that the file's recording names;
+    `reading` is that of the system's document.
+    Raises UsageError where a file is missing, InputError with all mistakes of both files.
     """
     world = None if world is None else resolve(world, "worlds")
     return read_scene(resolve(path, "commands"), world, log, reading).get()
@@ -99,8 +99,8 @@ def read_world(
     logged: bool = False,
     settings: Sequence[Setting] = (),
 ) -> Loaded[World]:
-    """A world file, with its mistakes and warnings; `shown` is how messages name it. A log may
-    bring its landmarks.
+    """A world file, with its mistakes and warnings;
+    `shown` is how messages name it. A log may bring its landmarks.
 
     Raises UsageError where there is no such file.
     """
@@ -124,11 +124,11 @@ def read_scene(
     reading: DocumentReading = "corrected",
     settings: Sequence[Setting] = (),
 ) -> Loaded[Scene]:
-    """A commands file, its world and its log, with the mistakes and warnings of all; `settings`
-    overrule both files.
+    """A commands file, its world and its log,
+    with the mistakes and warnings of all; `settings` overrule both files.
 
-    Raises UsageError where there is no such file, or where the settings make a mistake of what was
-    none.
+    Raises UsageError where there is no such file,
+    or where the settings make a mistake of what was none.
     """
     given = settings
     if settings:
@@ -164,8 +164,8 @@ def recorded(
     path: Path,
     log: str | Path | None,
 ) -> None:
-    """Read the log of a scene: its entries, the landmarks where it tells any, its mistakes and its
-    warnings.
+    """Read the log of a scene: its entries,
+    the landmarks where it tells any, its mistakes and its warnings.
     """
     sound, scene = file.sound, loaded.value
     assert sound is not None
@@ -201,8 +201,8 @@ def recorded(
 def scene_in(
     file: "File", path: Path, world: str | Path | None = None, settings: Sequence[Setting] = ()
 ) -> Loaded[Scene]:
-    """The scene that was found in a file, in the world that it names or in the one given, its log
-    not yet read.
+    """The scene that was found in a file,
+    in the world that it names or in the one given, its log not yet read.
     """
     if file.sound is None:  # nothing can be read in it, not even its world
         return Loaded(mistakes=file.mistakes)
@@ -251,16 +251,16 @@ def own_world(
 
 
 def kind_of(path: str | Path) -> Kind:
-    """Whether a file is a world or a commands file. Raises UsageError or InputError where it cannot
-    be read.
+    """Whether a file is a world or a commands file.
+    Raises UsageError or InputError where it cannot be read.
     """
     root, _ = parse(as_written(Path(path), str(path)), str(path))
     return kind_of_tree(root)
 
 
 def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
-    """All mistakes and warnings of a file of either kind, a scene's world and log included where it
-    names them.
+    """All mistakes and warnings of a file of either kind,
+    a scene's world and log included where it names them.
 
     Raises UsageError where there is no such file.
     """
@@ -292,8 +292,8 @@ class File:
 
 @without_collection()
 def read(path: Path, shown: str, kind: Kind | None, settings: Sequence[Setting] = ()) -> File:
-    """Read a file as one of a kind, or as whatever it is. Raises UsageError where there is no such
-    file.
+    """Read a file as one of a kind, or as whatever it is.
+    Raises UsageError where there is no such file.
     """
     try:
         root, mistakes = parse(as_written(path, shown), shown)
@@ -321,8 +321,8 @@ def read(path: Path, shown: str, kind: Kind | None, settings: Sequence[Setting] 
 
 
 def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
-    """Why a file is not of the kind that is wanted: its place and field, what is wrong, what would
-    be right.
+    """Why a file is not of the kind that is wanted:
+    its place and field, what is wrong, what would be right.
     """
     if not isinstance(root.value, dict):
         held = "a list" if isinstance(root.value, list) else "no 'key: value'"
@@ -347,8 +347,8 @@ def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
 
 
 def kind_of_tree(root: Node) -> Kind:
-    """The kind of a file, by its keys; one that names its world is none, even if it says nothing to
-    do.
+    """The kind of a file, by its keys;
+    one that names its world is none, even if it says nothing to do.
     """
     if "study" in root.keys:
         return "study"

@@ -94,8 +94,8 @@ def asked(
     settings: Sequence[str], gate: float | str | None, guard: str | None,
     reading: DocumentReading | None, fast: bool, particles: int | None = None,
 ) -> Request:  # fmt: skip
-    """What the command line asks for: a file, overruled by its options. Raises UsageError or
-    InputError.
+    """What the command line asks for:
+    a file, overruled by its options. Raises UsageError or InputError.
     """
     request = read_request(commands)
     if world is not None:
@@ -178,8 +178,8 @@ def beside(path: Path, named: str, folder: str, root: Node) -> tuple[Path, str]:
 
 
 def _is_there(path: Path) -> bool:
-    """Whether there is a file that could be meant; one that may not be looked at hides no name of
-    ours.
+    """Whether there is a file that could be meant;
+    one that may not be looked at hides no name of ours.
     """
     try:
         return is_file(path)
@@ -188,8 +188,8 @@ def _is_there(path: Path) -> bool:
 
 
 def told_in(root: Node, file: str) -> Iterator[tuple[Route, list[Setting]]]:
-    """Where a study file tells a key, and the values it gives it; what is no number and no word is
-    left out.
+    """Where a study file tells a key, and the values it gives it;
+    what is no number and no word is left out.
     """
     routes: list[tuple[Route, str]] = [(("set", key), key) for key in keys_of(root, "set")]
     routes += [((key,), key) for key in OF_COMMANDS if key in root.keys]
@@ -226,8 +226,8 @@ def setting_at(root: Node, path: tuple[str | int, ...], key: str, file: str) -> 
 
 
 def setting_mistakes(root: Node, file: str) -> Iterator[Mistake]:
-    """Keys that no file has, keys that are told twice, and values that stand twice, each at its
-    place.
+    """Keys that no file has, keys that are told twice,
+    and values that stand twice, each at its place.
     """
     told, faults = dict[str, str](), 0
     for route, values in told_in(root, file):
@@ -256,8 +256,8 @@ def setting_mistakes(root: Node, file: str) -> Iterator[Mistake]:
 
 
 def side_mistakes(root: Node, file: str) -> Iterator[Mistake]:
-    """Keys that no file has in what the sides of a comparison set, and filters that there are
-    not.
+    """Keys that no file has in what the sides of a comparison set,
+    and filters that there are not.
     """
     for side in SIDES:
         for one in side_of(root, side, file):

@@ -30,8 +30,8 @@ def overruled(root: Node, kind: Kind, settings: Iterable[Setting]) -> Node:
 
 
 def pinned(root: Node, settings: Sequence[Setting]) -> Iterator[str]:
-    """Warnings of settings that change the truth alone, for the file tells the filter a number of
-    its own.
+    """Warnings of settings that change the truth alone,
+    for the file tells the filter a number of its own.
     """
     keys = {one.key for one in settings}
     for one in settings:
@@ -47,8 +47,8 @@ def pinned(root: Node, settings: Sequence[Setting]) -> Iterator[str]:
 
 
 def of_log(settings: Sequence[Setting]) -> tuple[Setting, ...]:
-    """The same settings where a run was recorded: there, what is said of the robot can mean the
-    filter alone.
+    """The same settings where a run was recorded:
+    there, what is said of the robot can mean the filter alone.
     """
     keys = {one.key for one in settings}
 
@@ -86,8 +86,8 @@ def _overruled(root: Node, one: Setting) -> Node:
 
 
 def _with_sensor(root: Node, kind: str, one: Setting) -> tuple[Node, int]:
-    """The tree with the sensors of its system written out where it has none, and which of them is
-    of a kind.
+    """The tree with the sensors of its system written out where it has none,
+    and which of them is of a kind.
     """
     from ekfsim.systems import SYSTEMS
 
@@ -140,8 +140,8 @@ def _mapping(beside: Node, held: dict[str, Node]) -> Node:
 
 
 def refusal(mistakes: Iterable[Mistake], settings: Sequence[Setting]) -> UsageError:
-    """How mistakes that only the settings brought about are told: each by the settings that it is
-    about.
+    """How mistakes that only the settings brought about are told:
+    each by the settings that it is about.
     """
     lines, placed = dict[str, None](), dict[Mistake, None]()
     for mistake in mistakes:

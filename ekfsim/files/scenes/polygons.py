@@ -42,8 +42,8 @@ def fault_of(points: Sequence[Sequence[float]]) -> Fault | None:
 
 
 def without_area(points: Sequence[Sequence[float]]) -> bool:
-    """Whether all points lie on one line, to rounding. In plain floats: a file may hold thousands
-    of small polygons.
+    """Whether all points lie on one line, to rounding.
+    In plain floats: a file may hold thousands of small polygons.
     """
     # far from the origin, products of coordinates have no digit left for an area
     x_0, y_0 = points[0]
@@ -98,8 +98,8 @@ class FloorPlan:
 
 
 def _shapes(outlines: list[Array]) -> list[Any]:
-    """The polygons of Shapely, made all at once: one by one they take the longest of all that a
-    file is asked.
+    """The polygons of Shapely, made all at once:
+    one by one they take the longest of all that a file is asked.
     """
     if not outlines:
         return []

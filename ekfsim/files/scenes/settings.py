@@ -1,5 +1,5 @@
-"""Single numbers that overrule a world or commands file: `noise.rangeSigmaRatio=0.02`, set once or
-swept.
+"""Single numbers that overrule a world or commands file:
+`noise.rangeSigmaRatio=0.02`, set once or swept.
 """
 
 import dataclasses
@@ -19,8 +19,8 @@ OF_WORLDS = ("noise", "belief", "faults", "start", "robot", "sensors")
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """A key of a file, by its path with dots, and the value that it is to have, as it is
-    written.
+    """A key of a file, by its path with dots,
+    and the value that it is to have, as it is written.
     """
 
     key: str
@@ -71,8 +71,8 @@ def distinct(settings: Iterable[Setting]) -> tuple[Setting, ...]:
 
 
 def repeated(settings: Sequence[Setting]) -> Setting | None:
-    """The first of some settings of one key that gives it a value which another gave before; None
-    where none does.
+    """The first of some settings of one key that gives it a value which another gave before;
+    None where none does.
     """
     seen = set[Scalar]()
     for one in settings:
@@ -84,8 +84,8 @@ def repeated(settings: Sequence[Setting]) -> Setting | None:
 
 
 def filters_in(text: str, option: str = "--filter") -> tuple[str, ...]:
-    """The filters that NAME,… names. Raises UsageError where one of them is none, or stands
-    twice.
+    """The filters that NAME,… names.
+    Raises UsageError where one of them is none, or stands twice.
     """
     from ekfsim.filters import FILTERS
 
@@ -106,8 +106,8 @@ def kind_of(one: Setting) -> Kind:
 
 
 def path_of(one: Setting) -> Path:
-    """The path of a setting's key, its sensor by its kind. Raises UsageError where no file has such
-    a key.
+    """The path of a setting's key, its sensor by its kind.
+    Raises UsageError where no file has such a key.
     """
     if fault := fault_of(one):
         raise UsageError(f"{one.told}: {'; '.join(fault)}")
@@ -116,8 +116,8 @@ def path_of(one: Setting) -> Path:
 
 
 def fault_of(one: Setting, is_told: bool = True) -> tuple[str, str] | None:
-    """Why the key of a setting is none, and, where it is told, what was meant; None where a file
-    has it.
+    """Why the key of a setting is none,
+    and, where it is told, what was meant; None where a file has it.
     """
     parts, kind = one.key.split("."), kind_of(one)
     path: Path = ()
@@ -155,8 +155,8 @@ def _known(kind: Kind, path: Path) -> list[str]:
 
 
 def indexed(path: Path, index: int) -> Path:
-    """The path in a file: of a sensor by its number in the list, of a filter's settings by their
-    own key.
+    """The path in a file: of a sensor by its number in the list,
+    of a filter's settings by their own key.
     """
     if path[0] == OF_FILTERS:
         return FILTER_SETTINGS, *path[1:]

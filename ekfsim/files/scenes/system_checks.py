@@ -106,8 +106,8 @@ def check_classroom(file: Sound) -> Iterator[Mistake]:
 
 
 def check_robot(file: Sound, system: str, path: Path) -> Iterator[Mistake]:
-    """Keys that the robot of a system does not have, true or told, and a skid-steer matrix that
-    tells nothing.
+    """Keys that the robot of a system does not have,
+    true or told, and a skid-steer matrix that tells nothing.
     """
     names = aliases(RobotKeys if path == ("robot",) else ToldRobotKeys)
     known = [names[name] for name in robot_fields(system) if name in names]
@@ -185,8 +185,8 @@ def check_carriable(file: Sound, system: str) -> Iterator[Mistake]:
 
 
 def check_sensors(file: Sound) -> Iterator[Mistake]:
-    """Items that hold no sensor or two, a second sensor of a kind, and beams that can measure
-    nothing.
+    """Items that hold no sensor or two,
+    a second sensor of a kind, and beams that can measure nothing.
     """
     kinds = list(aliases(SensorKeys).values())
     yield from check_items(file, ("sensors",), kinds, "sensor")
@@ -223,8 +223,8 @@ def check_kinds(file: Sound, kinds: list[str]) -> Iterator[Mistake]:
 
 
 def system_warnings(file: Sound, world: World, logged: bool) -> Iterator[str]:
-    """Sensors that have nothing to see, or are read less often than they say; a log may bring its
-    landmarks.
+    """Sensors that have nothing to see, or are read less often than they say;
+    a log may bring its landmarks.
     """
     for index, instrument in enumerate(world.instruments):
         item = file.root.at(("sensors", index))

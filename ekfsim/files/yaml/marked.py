@@ -16,8 +16,8 @@ Mark = tuple[int, int]  # line, column; both from 1
 
 
 class Nothing:
-    """The null of YAML. No key of any file may hold it, so that it equals nothing that is
-    allowed.
+    """The null of YAML. No key of any file may hold it,
+    so that it equals nothing that is allowed.
     """
 
 

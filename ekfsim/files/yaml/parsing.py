@@ -51,8 +51,8 @@ def parse(text: str, file: str) -> tuple[Node, list[Mistake]]:
 
 @lru_cache(maxsize=4)
 def _parsed(text: str, file: str) -> tuple[Node, tuple[Mistake, ...]]:
-    """The same, remembered: a study reads its files for each of its cells. Nobody changes a
-    tree.
+    """The same, remembered: a study reads its files for each of its cells.
+    Nobody changes a tree.
     """
     tree = Tree(file)
     try:
@@ -78,8 +78,8 @@ def _parsed(text: str, file: str) -> tuple[Node, tuple[Mistake, ...]]:
 
 @contextmanager
 def without_collection() -> Iterator[None]:
-    """No search for cycles while a tree grows, which has none: among a million new values it takes
-    longer than they.
+    """No search for cycles while a tree grows, which has none:
+    among a million new values it takes longer than they.
     """
     was_on = gc.isenabled()
     gc.disable()
@@ -127,16 +127,16 @@ class Tree:
         return text
 
     def count(self, text: str, loader: Any) -> None:
-        """Raises InputError where a text holds too many values, sooner than a tree of them would be
-        made.
+        """Raises InputError where a text holds too many values,
+        sooner than a tree of them would be made.
         """
         values = (event for event in yaml.parse(text, Loader=loader) if isinstance(event, VALUES))
         if (first_too_many := next(islice(values, MAX_VALUES, None), None)) is not None:
             self.give_up(mark_of(first_too_many), TOO_MANY, "write fewer")
 
     def take(self, event: yaml.Event) -> None:
-        """Grow by one event. A long file has a million: what is rare is seen in a word before it is
-        looked into.
+        """Grow by one event. A long file has a million:
+        what is rare is seen in a word before it is looked into.
         """
         if isinstance(event, yaml.ScalarEvent):
             text, quoted = event.value, not event.implicit[0]

@@ -1,5 +1,5 @@
-"""The JSON Schema of each kind of file: editors complete and check with it, and messages read
-it.
+"""The JSON Schema of each kind of file:
+editors complete and check with it, and messages read it.
 """
 
 from functools import cache, lru_cache

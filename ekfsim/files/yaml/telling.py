@@ -185,8 +185,8 @@ def wrong_kind(node: Node, schema: Schema) -> tuple[str, str]:
 
 
 def number_in(text: str) -> str:
-    """The number that a text holds beside a unit, a separator or a decimal comma; "" where it holds
-    none.
+    """The number that a text holds beside a unit,
+    a separator or a decimal comma; "" where it holds none.
 
     >>> number_in("1,5"), number_in("90°"), number_in("1_000"), number_in("two")
     ('1.5', '90', '1000', '')

@@ -66,8 +66,8 @@ def read_gnss(path: Path, world: World, reading: DocumentReading, warnings: list
 
 
 def _at_rows(fixes: Rows, wheels: Rows, warnings: list[str]) -> Array:
-    """The time of the first row of the wheels that is not before each fix, or of the last row :
-    (n,) s
+    """The time of the first row of the wheels that is not before each fix,
+    or of the last row : (n,) s
     """
     if outside := np.count_nonzero((fixes.t < wheels.t[0]) | (fixes.t > wheels.t[-1])):
         found = "1 fix is" if outside == 1 else f"{outside} fixes are"

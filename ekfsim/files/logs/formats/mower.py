@@ -1,5 +1,5 @@
-"""A log of document 000, as its MATLAB listing reads it: poselog, angles and map, text files of
-bare numbers.
+"""A log of document 000, as its MATLAB listing reads it:
+poselog, angles and map, text files of bare numbers.
 """
 
 import math
@@ -35,8 +35,8 @@ def read_mower(path: Path, world: World, reading: DocumentReading, warnings: lis
     """Every row of the poselog, the first too, is one time update of dT; then the markers that
     belong to it are taken.
 
-    To which row a picture belongs, the text and its listing say differently where stamps are uneven
-    or repeat.
+    To which row a picture belongs,
+    the text and its listing say differently where stamps are uneven or repeat.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
@@ -72,8 +72,8 @@ def read_mower(path: Path, world: World, reading: DocumentReading, warnings: lis
 
 
 def _first_pose(poses: Rows, reading: DocumentReading) -> Array:
-    """Row 1's pose; the listing begins with the mean heading of the rows 2 to 100, each brought
-    into (−2π, 2π).
+    """Row 1's pose;
+    the listing begins with the mean heading of the rows 2 to 100, each brought into (−2π, 2π).
     """
     pose = poses.values[0, 4:7].copy()
     if reading == "coded" and len(poses) > 1:
@@ -83,8 +83,8 @@ def _first_pose(poses: Rows, reading: DocumentReading) -> Array:
 
 
 def _refuse_going_back(poses: Rows) -> None:
-    """Raise InputError where a stamp lies before the one above: every row is a time update, so none
-    can be moved.
+    """Raise InputError where a stamp lies before the one above:
+    every row is a time update, so none can be moved.
     """
     back = np.flatnonzero(np.diff(poses.t) < 0) + 1
     mistakes = [
@@ -147,8 +147,8 @@ def _readings(
 
 
 def _by_row(rows: list[Integers], readings: list[Reading | None]) -> dict[int, list[Reading]]:
-    """The readings by the row of the poselog at which they are used, there in the order of their
-    file.
+    """The readings by the row of the poselog at which they are used,
+    there in the order of their file.
     """
     used = dict[int, list[Reading]]()
     for at, reading in zip(rows, readings, strict=True):
@@ -159,8 +159,8 @@ def _by_row(rows: list[Integers], readings: list[Reading | None]) -> dict[int, l
 
 
 def _rows_of_text(poses: Rows, angles: Rows, dT: float, warnings: list[str]) -> list[Integers]:
-    """At which rows each reading is used: the first whose stamp is not before its own, however late
-    (section 2).
+    """At which rows each reading is used:
+    the first whose stamp is not before its own, however late (section 2).
     """
     row = np.searchsorted(poses.t, angles.t, side="left")
     last = len(poses) - 1
@@ -180,8 +180,8 @@ def _rows_of_text(poses: Rows, angles: Rows, dT: float, warnings: list[str]) -> 
 
 
 def _rows_of_listing(poses: Rows, angles: Rows, dT: float, warnings: list[str]) -> list[Integers]:
-    """The same by the listing: every row with t − dT ≤ t_m ≤ t, of which there are many where
-    stamps repeat.
+    """The same by the listing: every row with t − dT ≤ t_m ≤ t,
+    of which there are many where stamps repeat.
     """
     first = np.searchsorted(poses.t, angles.t, side="left")
     end = np.searchsorted(poses.t - dT, angles.t, side="right")

@@ -1,5 +1,5 @@
-"""A log of the UTIAS multi-robot data (MRCLAM): commanded speeds, and landmarks seen by a
-camera.
+"""A log of the UTIAS multi-robot data (MRCLAM):
+commanded speeds, and landmarks seen by a camera.
 """
 
 from pathlib import Path
@@ -82,8 +82,8 @@ def _truth(folder: Path, robot: str, warnings: list[str]) -> Truth | None:
 
 
 def _subjects(barcodes: Rows) -> dict[int, int]:
-    """The subject that wears each barcode. Raises InputError where two wear the same, or one is no
-    whole number.
+    """The subject that wears each barcode.
+    Raises InputError where two wear the same, or one is no whole number.
     """
     subject_of, mistakes = dict[int, int](), list[Mistake]()
     for line, (subject, barcode) in zip(

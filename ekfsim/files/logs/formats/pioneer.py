@@ -1,5 +1,5 @@
-"""A log of document 001's robot, in ekfsim's own format: ways of the wheels, ultrasonic and
-infrared beams.
+"""A log of document 001's robot, in ekfsim's own format:
+ways of the wheels, ultrasonic and infrared beams.
 """
 
 from pathlib import Path

@@ -76,8 +76,8 @@ def heading_of(yaw: Array) -> Array:
 
 
 def metres(degrees: Array) -> Array:
-    """x east and y north in m of latitude and longitude in degrees, from the first that is known :
-    (n, 2)
+    """x east and y north in m of latitude and longitude in degrees,
+    from the first that is known : (n, 2)
 
     x = R π/180 (lon − lon₀) cos lat₀        y = R π/180 (lat − lat₀)
     """
@@ -90,8 +90,8 @@ def metres(degrees: Array) -> Array:
 
 
 def _timed(rows: Rows, lines: Lines, step: float, warnings: list[str]) -> Rows:
-    """The rows with their time before all else, in order; the first is one usual step after the
-    start at 0.
+    """The rows with their time before all else, in order;
+    the first is one usual step after the start at 0.
     """
     clock = np.array(_stamps(rows, lines), dtype=np.int64)
     # µs; what seems half a clock's round ahead went back
@@ -115,8 +115,8 @@ def _timed(rows: Rows, lines: Lines, step: float, warnings: list[str]) -> Rows:
 def _stamps(rows: Rows, lines: Lines) -> list[int]:
     """The free-running clock of each row in µs: the low 32 bits of its stamp.
 
-    A stamp printed as a float is what is left of the 64 bits; one in plain digits is the number
-    itself.
+    A stamp printed as a float is what is left of the 64 bits;
+    one in plain digits is the number itself.
     """
     stamps, mistakes = list[int](), list[Mistake]()
     as_written = dict(zip(lines.numbers, lines.texts, strict=True))

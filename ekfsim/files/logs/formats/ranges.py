@@ -1,5 +1,5 @@
-"""A log of ranges to radio nodes (Plaza): way and turn since the last row, ranges, nodes, and the
-true pose.
+"""A log of ranges to radio nodes (Plaza):
+way and turn since the last row, ranges, nodes, and the true pose.
 """
 
 import math
@@ -66,8 +66,8 @@ def read_ranges(
 
 
 def _start(odometry: Rows, truth: Truth | None) -> float:
-    """When the first stride began: a usual step before its end, at a pose of the truth where one is
-    near.
+    """When the first stride began:
+    a usual step before its end, at a pose of the truth where one is near.
     """
     step = step_of(odometry)
     start = float(odometry.t[0]) - step
@@ -78,11 +78,11 @@ def _start(odometry: Rows, truth: Truth | None) -> float:
 
 
 def _ahead(truth: Truth, odometry: Rows, folder: Path, warnings: list[str]) -> Truth:
-    """The truth with headings that point where the robot goes when its odometry counts up: logs of
-    this kind differ.
+    """The truth with headings that point where the robot goes when its odometry counts up:
+    logs of this kind differ.
 
-    The first metres decide: Σ d_odometry (d_truth · heading) < 0 is back. Driven in reverse, both
-    factors are negative.
+    The first metres decide: Σ d_odometry (d_truth · heading) < 0 is back.
+    Driven in reverse, both factors are negative.
     """
     poses = truth.at(odometry.t)
     d, steps = odometry.values[1:, 1], np.diff(poses[:, :2], axis=0)

@@ -15,8 +15,8 @@ def of_landmarks(
     landmarks: tuple[Landmark, ...],
     kinds: tuple[type[Instrument], ...],
 ) -> list[tuple[Instrument, dict[int, Target]]]:
-    """The world's instruments of these kinds, each with its sensor for every landmark, by the
-    landmark's id.
+    """The world's instruments of these kinds,
+    each with its sensor for every landmark, by the landmark's id.
     """
     around = replace(world, landmarks=landmarks).around(reading)
     found = [instrument for instrument in world.told_instruments if isinstance(instrument, kinds)]
@@ -34,8 +34,8 @@ def of_landmarks(
 
 
 def landmarks_of(rows: Rows) -> tuple[Landmark, ...]:
-    """The landmarks in a table of id, x, y. Raises InputError where an id is no whole number, or
-    stands twice.
+    """The landmarks in a table of id, x, y.
+    Raises InputError where an id is no whole number, or stands twice.
     """
     found, mistakes = dict[int, Landmark](), list[Mistake]()
     for line, (id, x, y) in zip(rows.lines.tolist(), rows.values.tolist(), strict=True):
@@ -61,8 +61,8 @@ def by_name(world: World, reading: DocumentReading, instrument: Instrument) -> d
 
 
 def only(world: World, reading: DocumentReading, *kinds: type[Instrument]) -> Target:
-    """The one sensor that the world has of some kinds. Raises UsageError where it has none, or
-    several.
+    """The one sensor that the world has of some kinds.
+    Raises UsageError where it has none, or several.
     """
     found = [
         target for instrument, target in world.targets(reading) if isinstance(instrument, kinds)
