@@ -15,7 +15,7 @@ class Words:
         return lambda first, runs: "abc"[first // 1024]
 
 
-@pytest.mark.parametrize("come", itertools.permutations(TASKS))
+@pytest.mark.parametrize("come", [*itertools.permutations(TASKS)])
 def test_blocks_are_put_together_in_the_order_of_their_tasks(come):
     assert [task for task, _ in in_order(TASKS, ((task, "") for task in come))] == TASKS
 

@@ -97,7 +97,7 @@ def singular(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
 
         λ₁λ₂ + λ₁λ₃ + λ₂λ₃ = Σ m_ij        λ₁λ₂λ₃ = det C
 
-    tell the rank. P of rank 1 is B Bᵀ, B one of its columns over its σ. P of rank 2 is known from
+    tell the rank. P of rank 1 is B Bᵀ, and its trace BᵀB. P of rank 2 is known from
     the two entries with the largest m_ij: what it makes of the third, k, are the weights w, and
     (w, −1) is its null vector.
     """
