@@ -266,7 +266,7 @@ def list_packaged(name: str | None, worlds: bool) -> None:
 def new(file: Path, kind: str | None, force: bool) -> None:
     """Write a commented world or commands FILE to start from."""
     from ekfsim.files.results.writing import whole_text
-    from ekfsim.files.scenes.template import template
+    from ekfsim.files.template import template
 
     name = file.stem.lower()
     if kind is None and ("world" in name) == ("command" in name):

@@ -13,8 +13,9 @@ from typing import Any, NamedTuple, Self
 from ekfsim.errors import UsageError
 from ekfsim.files.keys.commands import CommandsKeys
 from ekfsim.files.packaged import world_beside
-from ekfsim.files.scenes.load import read, read_scene
+from ekfsim.files.scenes.load import read_scene
 from ekfsim.files.scenes.load_study import Request
+from ekfsim.files.scenes.one_file import read
 from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.source import as_written, bytes_of
 from ekfsim.files.yaml.parsing import parse

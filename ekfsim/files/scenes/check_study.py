@@ -6,6 +6,7 @@ from ekfsim.errors import MOST_TOLD, InputError, Mistake
 from ekfsim.files.scenes import load
 from ekfsim.files.scenes.load import Loaded
 from ekfsim.files.scenes.load_study import FILTER, SWEEP, read_request
+from ekfsim.files.scenes.one_file import kind_of
 from ekfsim.scene import Scene
 from ekfsim.world import World
 
@@ -16,7 +17,7 @@ def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
     Raises UsageError where there is no such file.
     """
     try:
-        kind = load.kind_of(path)
+        kind = kind_of(path)
     except InputError as error:
         return Loaded[World](mistakes=error.mistakes)
     return check_study(path) if kind == "study" else load.check(path)

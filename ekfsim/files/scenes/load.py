@@ -6,46 +6,31 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Generic, TypeVar
 
-from pydantic import BaseModel, ValidationError
-
 from ekfsim.errors import InputError, Mistake, UsageError
 from ekfsim.files.keys.commands import WAYS, WITH_LANDMARKS, CommandsKeys, RecordingKeys
-from ekfsim.files.keys.fields import aliases
 from ekfsim.files.keys.world import WorldKeys
 from ekfsim.files.packaged import resolve, source_name, world_beside
 from ekfsim.files.scenes.building import scene_of, world_of
 from ekfsim.files.scenes.checks import (
-    Sound,
-    angle_warnings,
-    check_commands,
-    check_world,
     kidnap_warnings,
     perfect_beam_warnings,
 )
-from ekfsim.files.scenes.drive_checks import check_fit, check_ways
+from ekfsim.files.scenes.drive_checks import check_fit
 from ekfsim.files.scenes.filter_checks import check_filter_settings, filter_warnings
+from ekfsim.files.scenes.one_file import File, in_order_of_place, read
 from ekfsim.files.scenes.overruling import (
     idle_on_log,
     of_log,
-    overruled,
-    pinned,
     refusal,
-    remark,
 )
 from ekfsim.files.scenes.settings import Setting
-from ekfsim.files.scenes.system_checks import check_system, system_warnings
-from ekfsim.files.source import as_written, bytes_of
-from ekfsim.files.yaml.marked import Mark, Node
-from ekfsim.files.yaml.marked import Path as Route
-from ekfsim.files.yaml.parsing import parse, without_collection
-from ekfsim.files.yaml.schema import MODELS, Kind
-from ekfsim.files.yaml.telling import at, details_of, tell
+from ekfsim.files.scenes.system_checks import system_warnings
+from ekfsim.files.source import bytes_of
 from ekfsim.scene import Scene
 from ekfsim.systems.document import DocumentReading
 from ekfsim.world import World
 
 T = TypeVar("T")
-ONLY_IN_WORLDS = {*aliases(WorldKeys).values()} - {"description"}
 
 
 @dataclass
@@ -58,9 +43,7 @@ class Loaded(Generic[T]):
     refusal: UsageError | None = None  # of the log that was named, which is no file's mistake
 
     def get(self) -> T:
-        """The value. Raises InputError with all mistakes where there are any,
-        or what a log was refused with.
-        """
+        """The value. Raises InputError with all mistakes, or what the log was refused with."""
         if self.refusal is not None:
             raise self.refusal
         if self.value is None or self.mistakes:
@@ -82,11 +65,10 @@ def load_scene(
     log: str | Path | None = None,
     reading: DocumentReading = "corrected",
 ) -> Scene:
-    """The scene that a commands file describes,
-    in its own world or in the one given; also packaged ones by name.
+    """The scene that a commands file describes, in its own world or the one given.
 
-    `log` stands in place of the one that the file's recording names;
-    `reading` is that of the system's document.
+    A packaged file is found by its bare name. `log` stands in place of the one that the file's
+    recording names; `reading` is that of the system's document.
     Raises UsageError where a file is missing, InputError with all mistakes of both files.
     """
     world = None if world is None else resolve(world, "worlds")
@@ -99,15 +81,15 @@ def read_world(
     logged: bool = False,
     settings: Sequence[Setting] = (),
 ) -> Loaded[World]:
-    """A world file, with its mistakes and warnings;
-    `shown` is how messages name it. A log may bring its landmarks.
+    """A world file, with its mistakes and warnings; `shown` is how messages name it. A log may
+    bring its landmarks.
 
     Raises UsageError where there is no such file.
     """
     return world_in(read(Path(path), shown or str(path), "world", settings), logged)
 
 
-def world_in(file: "File", logged: bool = False) -> Loaded[World]:
+def world_in(file: File, logged: bool = False) -> Loaded[World]:
     """The world that was found in a file."""
     loaded = Loaded[World](mistakes=file.mistakes, warnings=file.warnings)
     if isinstance(file.keys, WorldKeys) and file.sound is not None and not file.mistakes:
@@ -124,19 +106,34 @@ def read_scene(
     reading: DocumentReading = "corrected",
     settings: Sequence[Setting] = (),
 ) -> Loaded[Scene]:
-    """A commands file, its world and its log,
-    with the mistakes and warnings of all; `settings` overrule both files.
+    """A commands file, its world and its log, with the mistakes and warnings of all.
 
-    Raises UsageError where there is no such file,
+    `settings` overrule both files. Raises UsageError where there is no such file,
     or where the settings make a mistake of what was none.
     """
-    given = settings
-    if settings:
-        loaded = read_scene(path, world, log, reading)
-        if loaded.mistakes or loaded.refusal:
-            return loaded
-        if loaded.value is not None and loaded.value.log is not None:
-            settings = of_log(settings)
+    loaded = _read_scene(path, world, log, reading)
+    if not settings or loaded.mistakes or loaded.refusal:
+        return loaded
+    on_log = loaded.value is not None and loaded.value.log is not None
+    meant = of_log(settings) if on_log else settings
+    loaded = _read_scene(path, world, log, reading, meant)
+    if loaded.mistakes:
+        raise refusal(loaded.mistakes, meant)
+    if loaded.value is not None:
+        if loaded.value.log is not None:
+            loaded.warnings += idle_on_log(settings)
+        loaded.value = replace(loaded.value, settings=tuple(map(str, settings)))
+    return loaded
+
+
+def _read_scene(
+    path: str | Path,
+    world: str | Path | None,
+    log: str | Path | None,
+    reading: DocumentReading,
+    settings: Sequence[Setting] = (),
+) -> Loaded[Scene]:
+    """The same, whatever mistakes the settings make."""
     file = read(Path(path), str(path), "commands", settings)
     loaded = scene_in(file, Path(path), world, settings)
     keys = file.keys if isinstance(file.keys, CommandsKeys) else None
@@ -148,25 +145,17 @@ def read_scene(
         way = next(way for way in WAYS if way in file.sound.root.keys)
         wrong = f"the file has '{way}', not a recording"
         loaded.mistakes.append(file.sound.mistake((way,), wrong, "--log has nothing to replace"))
-    if settings and loaded.mistakes:
-        raise refusal(loaded.mistakes, settings)
-    if settings and loaded.value is not None:
-        if loaded.value.log is not None:
-            loaded.warnings += idle_on_log(given)
-        loaded.value = replace(loaded.value, settings=tuple(map(str, given)))
     return loaded
 
 
 def recorded(
     loaded: Loaded[Scene],
-    file: "File",
+    file: File,
     recording: RecordingKeys,
     path: Path,
     log: str | Path | None,
 ) -> None:
-    """Read the log of a scene: its entries,
-    the landmarks where it tells any, its mistakes and its warnings.
-    """
+    """Read the log of a scene: entries, landmarks where it tells any, mistakes and warnings."""
     sound, scene = file.sound, loaded.value
     assert sound is not None
     if log is None and recording.path is None:
@@ -199,11 +188,9 @@ def recorded(
 
 
 def scene_in(
-    file: "File", path: Path, world: str | Path | None = None, settings: Sequence[Setting] = ()
+    file: File, path: Path, world: str | Path | None = None, settings: Sequence[Setting] = ()
 ) -> Loaded[Scene]:
-    """The scene that was found in a file,
-    in the world that it names or in the one given, its log not yet read.
-    """
+    """The scene found in a file, in its own world or the one given; its log is not yet read."""
     if file.sound is None:  # nothing can be read in it, not even its world
         return Loaded(mistakes=file.mistakes)
     source = (
@@ -227,7 +214,7 @@ def scene_in(
 
 
 def own_world(
-    file: "File", source: Path, logged: bool, settings: Sequence[Setting] = ()
+    file: File, source: Path, logged: bool, settings: Sequence[Setting] = ()
 ) -> Loaded[World]:
     """The world that a commands file names. A missing one is a mistake in that file."""
     sound = file.sound
@@ -250,17 +237,8 @@ def own_world(
     return read_world(source, os.path.normpath(source), logged, settings)
 
 
-def kind_of(path: str | Path) -> Kind:
-    """Whether a file is a world or a commands file.
-    Raises UsageError or InputError where it cannot be read.
-    """
-    root, _ = parse(as_written(Path(path), str(path)), str(path))
-    return kind_of_tree(root)
-
-
 def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
-    """All mistakes and warnings of a file of either kind,
-    a scene's world and log included where it names them.
+    """All mistakes and warnings of a file of either kind, and of the world and log that it names.
 
     Raises UsageError where there is no such file.
     """
@@ -277,89 +255,3 @@ def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
     ):
         recorded(loaded, file, file.keys.recording, Path(path), None)
     return loaded
-
-
-@dataclass
-class File:
-    """What was found in a file of either kind."""
-
-    kind: Kind
-    mistakes: list[Mistake]
-    sound: Sound | None = None  # None where nothing in the file can be told apart
-    keys: BaseModel | None = None  # None where a key is wrong
-    warnings: list[str] = field(default_factory=list)
-
-
-@without_collection()
-def read(path: Path, shown: str, kind: Kind | None, settings: Sequence[Setting] = ()) -> File:
-    """Read a file as one of a kind, or as whatever it is.
-    Raises UsageError where there is no such file.
-    """
-    try:
-        root, mistakes = parse(as_written(path, shown), shown)
-    except InputError as error:
-        return File(kind or "world", error.mistakes)
-    kind = kind or kind_of_tree(root)
-    if other := other_kind(root, kind):
-        return File(kind, [*mistakes, at(shown, *other)])
-    warnings = [] if kind == "commands" else list(pinned(root, settings))
-    root = overruled(root, kind, settings)
-    keys, wrong = None, set[tuple[str | int, ...]]()
-    try:
-        keys = MODELS[kind].model_validate(root.plain())
-    except ValidationError as error:
-        mistakes += tell(error, kind, root, shown)
-        wrong = {detail["loc"] for detail in details_of(error)}
-    sound = Sound(shown, root, wrong)
-    mistakes += (
-        (*check_world(sound), *check_system(sound))
-        if kind == "world"
-        else (*check_commands(sound), *check_ways(sound))
-    )
-    warnings += [remark(warning, settings) for warning in angle_warnings(sound)]
-    return File(kind, sorted(mistakes, key=in_order_of_place), sound, keys, warnings)
-
-
-def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
-    """Why a file is not of the kind that is wanted:
-    its place and field, what is wrong, what would be right.
-    """
-    if not isinstance(root.value, dict):
-        held = "a list" if isinstance(root.value, list) else "no 'key: value'"
-        return root.mark, (), f"the file holds {held}", "see `ekfsim new` for one to start from"
-    if kind != "study" and kind_of_tree(root) == "study":
-        return (
-            root.mark,
-            (),
-            "this is a study file",
-            "run it with `ekfsim study`, or name another file here",
-        )
-    if kind == "world" and kind_of_tree(root) == "commands":
-        return root.mark, (), "this is a commands file", "name a world file here"
-    if kind == "commands" and kind_of_tree(root) == "world" and root.keys.keys() & ONLY_IN_WORLDS:
-        return (
-            root.mark,
-            (),
-            "this is a world file: it has no 'commands'",
-            "name a commands file here",
-        )
-    return None
-
-
-def kind_of_tree(root: Node) -> Kind:
-    """The kind of a file, by its keys;
-    one that names its world is none, even if it says nothing to do.
-    """
-    if "study" in root.keys:
-        return "study"
-    keys = root.keys.keys()
-    return (
-        "world"
-        if keys.isdisjoint(WAYS) and ("world" not in keys or keys & ONLY_IN_WORLDS)
-        else "commands"
-    )
-
-
-def in_order_of_place(mistake: Mistake) -> tuple[int, int]:
-    """Mistakes are told in the order of the file."""
-    return mistake.place.line, mistake.place.column

@@ -9,7 +9,8 @@ import pytest
 from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense, expanded_length
 from ekfsim.errors import InputError
 from ekfsim.files.packaged import resolve
-from ekfsim.files.scenes.load import check, kind_of, load_scene, load_world, read_scene, read_world
+from ekfsim.files.scenes.load import check, load_scene, load_world, read_scene, read_world
+from ekfsim.files.scenes.one_file import kind_of
 from ekfsim.scene import Expect
 from ekfsim.world import Faults, Landmark, Noise
 

@@ -1,0 +1,100 @@
+"""One file → its keys, with all its mistakes and warnings; what it refers to is not read."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pydantic import BaseModel, ValidationError
+
+from ekfsim.errors import InputError, Mistake
+from ekfsim.files.keys.commands import WAYS
+from ekfsim.files.keys.fields import aliases
+from ekfsim.files.keys.world import WorldKeys
+from ekfsim.files.scenes.checks import Sound, angle_warnings, check_commands, check_world
+from ekfsim.files.scenes.drive_checks import check_ways
+from ekfsim.files.scenes.overruling import overruled, pinned, remark
+from ekfsim.files.scenes.settings import Setting
+from ekfsim.files.scenes.system_checks import check_system
+from ekfsim.files.source import as_written
+from ekfsim.files.yaml.marked import Mark, Node
+from ekfsim.files.yaml.marked import Path as Route
+from ekfsim.files.yaml.parsing import parse, without_collection
+from ekfsim.files.yaml.schema import MODELS, Kind
+from ekfsim.files.yaml.telling import at, details_of, tell
+
+ONLY_IN_WORLDS = {*aliases(WorldKeys).values()} - {"description"}
+
+
+@dataclass
+class File:
+    """What was found in a file of either kind."""
+
+    kind: Kind
+    mistakes: list[Mistake]
+    sound: Sound | None = None  # None where nothing in the file can be told apart
+    keys: BaseModel | None = None  # None where a key is wrong
+    warnings: list[str] = field(default_factory=list)
+
+
+@without_collection()
+def read(path: Path, shown: str, kind: Kind | None, settings: Sequence[Setting] = ()) -> File:
+    """Read a file as one of a kind, or as what it is. Raises UsageError where there is none."""
+    try:
+        root, mistakes = parse(as_written(path, shown), shown)
+    except InputError as error:
+        return File(kind or "world", error.mistakes)
+    kind = kind or kind_of_tree(root)
+    if other := other_kind(root, kind):
+        return File(kind, [*mistakes, at(shown, *other)])
+    warnings = [] if kind == "commands" else list(pinned(root, settings))
+    root = overruled(root, kind, settings)
+    keys, wrong = None, set[tuple[str | int, ...]]()
+    try:
+        keys = MODELS[kind].model_validate(root.plain())
+    except ValidationError as error:
+        mistakes += tell(error, kind, root, shown)
+        wrong = {detail["loc"] for detail in details_of(error)}
+    sound = Sound(shown, root, wrong)
+    mistakes += (
+        (*check_world(sound), *check_system(sound))
+        if kind == "world"
+        else (*check_commands(sound), *check_ways(sound))
+    )
+    warnings += [remark(warning, settings) for warning in angle_warnings(sound)]
+    return File(kind, sorted(mistakes, key=in_order_of_place), sound, keys, warnings)
+
+
+def kind_of(path: str | Path) -> Kind:
+    """Of which kind a file is. Raises UsageError or InputError where it cannot be read."""
+    root, _ = parse(as_written(Path(path), str(path)), str(path))
+    return kind_of_tree(root)
+
+
+def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
+    """Why a file is not of the kind that is wanted: place and field, what is wrong, what right."""
+    if not isinstance(root.value, dict):
+        held = "a list" if isinstance(root.value, list) else "no 'key: value'"
+        return root.mark, (), f"the file holds {held}", "see `ekfsim new` for one to start from"
+    if kind != "study" and kind_of_tree(root) == "study":
+        right = "run it with `ekfsim study`, or name another file here"
+        return root.mark, (), "this is a study file", right
+    if kind == "world" and kind_of_tree(root) == "commands":
+        return root.mark, (), "this is a commands file", "name a world file here"
+    if kind == "commands" and kind_of_tree(root) == "world" and root.keys.keys() & ONLY_IN_WORLDS:
+        wrong = "this is a world file: it has no 'commands'"
+        return root.mark, (), wrong, "name a commands file here"
+    return None
+
+
+def kind_of_tree(root: Node) -> Kind:
+    """The kind of a file, by its keys; what names its world is none, even with nothing to do."""
+    keys = root.keys.keys()
+    if "study" in keys:
+        return "study"
+    is_world = keys.isdisjoint(WAYS) and ("world" not in keys or keys & ONLY_IN_WORLDS)
+    return "world" if is_world else "commands"
+
+
+def in_order_of_place(mistake: Mistake) -> tuple[int, int]:
+    """Mistakes are told in the order of the file."""
+    return mistake.place.line, mistake.place.column
