@@ -10,18 +10,20 @@ from ekfsim.geometry import Array, Integers
 from ekfsim.raycast.rules import REACH, TIE, meet
 
 
-def measure(ends: Array, x: Array, y: Array, dx: Array, dy: Array, span: Array) -> Array:
+def measure(
+    ends: Array, x: Array | float, y: Array | float, dx: Array, dy: Array, span: Array
+) -> Array:
     """(n,): the range in m at which beams meet walls, pair by pair, inf where not.
 
-    ends : (n, 4) m; the beams' origins (x, y) in m and unit directions; span : (n,) m, the
-    coordinates' size
+    ends : (n, 4) m; the beams' origins (x, y) in m, or the one of all, and unit directions;
+    span : (n,) m, the coordinates' size
     """
     ax, ay, bx, by = ends.T
     return crossing(seen(ax, ay, x, y, dx, dy), seen(bx, by, x, y, dx, dy), span)
 
 
 def seen(
-    px: Array | float, py: Array | float, x: Array, y: Array, dx: Array, dy: Array
+    px: Array | float, py: Array | float, x: Array | float, y: Array | float, dx: Array, dy: Array
 ) -> tuple[Array, Array]:
     """Where beams see points (px, py) m, or one point : `along` and `across` of rules.py, (n,) m"""
     ahead, aside = px - x, py - y

@@ -75,9 +75,9 @@ def suited(walls: Walls, beams: Array) -> tuple[Array, Integers, Integers]:
     if not (farthest < grid.horizon and np.isfinite(low).all()):
         return np.full(n, np.nan), np.full(n, -1), np.arange(n)
     x, y, dx, dy = beams
-    span = grid.size + np.abs(x) + np.abs(y)
     if low[0] == high[0] and low[1] == high[1]:
-        return scan(ends, x[0], y[0], dx, dy, span[0])
+        return scan(ends, float(low[0]), float(low[1]), dx, dy, grid.size + farthest)
+    span = grid.size + np.abs(x) + np.abs(y)
     if len(ends) > VERY_FEW_WALLS:
         hits = nearby_beams(ends, beams, low, high, span)
         if hits is not None:

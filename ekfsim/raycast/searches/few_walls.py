@@ -42,22 +42,22 @@ def few_walls(
     blur, nearest, side = BLUR * span, np.empty(x.shape), np.empty(x.shape)
     pairs = []
     step = max(1, ROUGH // len(ends))
-    work = np.empty((4, len(ends) * min(step, len(x))))  # again and again: new memory costs time
     for first in range(0, len(x), step):
         part = slice(first, first + step)
-        shape = len(ends), len(x[part])
-        across_a, across_b, r, apart = work[:, : shape[0] * shape[1]].reshape(4, *shape)
-        np.matmul(to_a, aims[:, part], out=across_a)
-        np.matmul(to_b, aims[:, part], out=across_b)
-        np.matmul(to_area, origins[:, part], out=r)
+        # (W, step)
+        across_a, across_b, r = (
+            to_a @ aims[:, part],
+            to_b @ aims[:, part],
+            to_area @ origins[:, part],
+        )
         with np.errstate(divide="ignore", invalid="ignore"):
-            r /= np.subtract(across_b, across_a, out=apart)
+            r /= np.subtract(across_b, across_a)
         sides = np.multiply(across_a, across_b, out=across_a)
-        np.copyto(r, np.inf, where=(sides >= 0) | (r < -blur[part]))
+        r = np.where((sides >= 0) | (r < -blur[part]), np.inf, r)
         least = r.min(0, out=nearest[part])
         near = np.flatnonzero(r <= np.where(least < np.inf, least + 2 * blur[part], -1))
         np.abs(sides, out=sides).min(0, out=side[part])
-        wall, beam = np.divmod(near, shape[1])
+        wall, beam = np.divmod(near, len(least))
         pairs.append((wall, beam + first))
     wall, beam = (
         pairs[0] if len(pairs) == 1 else (np.concatenate(each) for each in zip(*pairs, strict=True))

@@ -47,7 +47,7 @@ def scan(
     near = np.flatnonzero(r <= (nearest + 2 * blur)[beam])
     wall, beam = wall[near], beam[near]
     spans = np.full(len(dx), span)
-    exact = measure(ends[wall], np.array(x), np.array(y), dx[beam], dy[beam], spans[beam])
+    exact = measure(ends[wall], x, y, dx[beam], dy[beam], spans[beam])
     ranges, walls = first_of(beam, wall, exact, spans, len(ends))
     return ranges, walls, np.flatnonzero((nearest < np.inf) & ~(ranges <= nearest + blur))
 

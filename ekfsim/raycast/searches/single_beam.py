@@ -49,8 +49,13 @@ def walk(grid: Grid, x: float, y: float, dx: float, dy: float) -> tuple[float, i
         if entry is None:
             return nan, -1
         i, j = entry
-    x_step, x_exit, x_cell = _way(u, i, dx, cell, rows)
-    y_step, y_exit, y_cell = _way(v, j, dy, cell, 1)
+    # the step to the next cell's number, the range at which it is due, and that to one more
+    x_step, x_exit, x_cell = rows if dx > 0 else -rows, inf, inf
+    y_step, y_exit, y_cell = 1 if dy > 0 else -1, inf, inf
+    if dx:
+        x_exit, x_cell = (i + (dx > 0) - u) * cell / dx, abs(cell / dx)
+    if dy:
+        y_exit, y_cell = (j + (dy > 0) - v) * cell / dy, abs(cell / dy)
 
     span = size + abs(x) + abs(y)
     tie, doubt = TIE * span, 4 * REACH * span * span
@@ -120,17 +125,6 @@ def _meet(along_a: float, across_a: float, along_b: float, across_b: float, reac
     if (across_a < 0) == (across_b < 0):
         return nan
     return (along_a * across_b - along_b * across_a) / aside
-
-
-def _way(u: float, i: int, d: float, cell: float, stride: int) -> tuple[int, float, float]:
-    """One axis of a walk: the step to the next cell's number, the range at which it is due, and
-    that to one more.
-    """
-    if d > 0:
-        return stride, (i + 1 - u) * cell / d, cell / d
-    if d < 0:
-        return -stride, (i - u) * cell / d, -cell / d
-    return 0, inf, inf
 
 
 def _entry(
