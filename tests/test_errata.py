@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from documents import as_written, equation
 
+from ekfsim.cli.options import DOCUMENTS
 from ekfsim.filters.arithmetic.square_root import square_root
 from ekfsim.filters.arithmetic.unscented import sigma_points, unscented_transform, weights
 from ekfsim.geometry.ellipse import ellipse, radius_factor
@@ -16,7 +17,6 @@ from ekfsim.models.layout import SPEED_POSE
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.polar import cartesian, cartesian_moments
 from ekfsim.models.sensors.position import Position
-from ekfsim.options import DOCUMENTS
 from ekfsim.simulation.bench import sigma_of
 from ekfsim.systems.echo import Pair, flight_bound
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from ekfsim.cli.process import heed, part_with, say
 from ekfsim.errors import EkfsimError
-from ekfsim.process import heed, part_with, say
 
 if TYPE_CHECKING:
     from ekfsim.study.engines import Engine

@@ -1,15 +1,12 @@
 """The options that several commands share, and what they accept."""
 
-import math
 from collections.abc import Callable, Sequence
-from difflib import get_close_matches
-from pathlib import Path
 from typing import Any
 
 import click
 
+from ekfsim.cli.kinds import Gate, Probability, Result, Seed, Source, Whole
 from ekfsim.errors import UsageError
-from ekfsim.seeds import MOST_SEED, REPEATS
 from ekfsim.twins import taking
 
 MOST = 2**63 - 1  # of runs' numbers
@@ -62,103 +59,6 @@ EXPLAIN = click.option(
     "--explain", is_flag=True, help="Narrate in the long form: every matrix, every equation."
 )
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
-
-
-class Whole(click.IntRange):
-    """A whole number of a range, called by a word that a person knows where what was written is
-    none.
-    """
-
-    name = "integer"
-
-
-class Seed(Whole):
-    """A seed. One that is too large is told why it is."""
-
-    def __init__(self) -> None:
-        super().__init__(0, MOST_SEED)
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """A whole number. Fails beyond the largest, with the reason, and for what is no seed at
-        all.
-        """
-        seed = click.INT.convert(value, param, ctx)
-        if seed > MOST_SEED:
-            self.fail(
-                f"{seed} is too large: {REPEATS}; choose one from 0 to {MOST_SEED}.", param, ctx
-            )
-        return super().convert(value, param, ctx)
-
-
-class Word(click.Choice[str]):
-    """One of a few words."""
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """The word. Fails for another, and tells the one that it nearly is."""
-        try:
-            return super().convert(value, param, ctx)
-        except click.BadParameter as refusal:
-            if near := get_close_matches(str(value).lower(), map(str, self.choices), 1):
-                self.fail(f"{refusal.message.rstrip('.')}; did you mean {near[0]!r}?", param, ctx)
-            raise
-
-
-class Source(click.Path):
-    """The name of something that is to be read. Whether it may be, its reader finds out, and tells
-    in a line.
-    """
-
-    def __init__(self) -> None:
-        super().__init__(readable=False)
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """A name. Fails for the empty one that an unset variable leaves: it would be the folder one
-        stands in.
-        """
-        if value == "":
-            self.fail("the name is empty.", param, ctx)
-        return super().convert(value, param, ctx)
-
-
-class Probability(click.FloatRange):
-    """A number between 0 and 1, and neither of them."""
-
-    def __init__(self) -> None:
-        super().__init__(0, 1, min_open=True, max_open=True)
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """A float. Fails for nan too, which lies in no range and outside of none."""
-        number = float(super().convert(value, param, ctx))
-        if math.isnan(number):
-            self.fail(f"{value} is not in the range {self._describe_range()}.", param, ctx)
-        return number
-
-
-class Gate(Probability):
-    """A probability, or "off"."""
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """A float, or "off". Fails for anything else."""
-        return value if value == "off" else super().convert(value, param, ctx)
-
-
-class Result(click.Path):
-    """Where a result is to be written."""
-
-    def __init__(self) -> None:
-        super().__init__(path_type=Path, readable=False)
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """A path. Fails for a name that an unset variable leaves, and for the dash that other
-        programs know.
-        """
-        if value == "":
-            self.fail("the name is empty.", param, ctx)
-        if value == "-":
-            self.fail("'-' names no file; /dev/stdout is the standard output.", param, ctx)
-        return super().convert(value, param, ctx)
 
 
 PARTICLES = click.option(

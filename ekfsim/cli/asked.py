@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING, Any, Literal
 
+from ekfsim.cli.process import say, warn
 from ekfsim.errors import UsageError
-from ekfsim.process import say, warn
 
 if TYPE_CHECKING:
     from ekfsim.scene import Scene

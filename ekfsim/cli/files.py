@@ -1,0 +1,153 @@
+"""The commands that look at files and make them: check, schema, list, new, figures."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from ekfsim.cli.asked import scene_of
+from ekfsim.cli.kinds import Result, Seed, Source, Word
+from ekfsim.cli.options import DOCUMENTS, FORCE, PLAIN, READING
+from ekfsim.cli.process import say, shown, warn
+from ekfsim.errors import MOST_TOLD, Mistake, UsageError, told
+from ekfsim.printable import in_a_line
+
+if TYPE_CHECKING:
+    from ekfsim.files.packaged import Folder
+
+
+@click.command(short_help="Validate FILES: every mistake with its place, or ok.")
+@click.argument("files", nargs=-1, required=True)
+def check(files: tuple[str, ...]) -> None:
+    """Validate world and command FILES: every mistake with its place, or `ok`."""
+    from ekfsim.files.packaged import packaged, resolve
+    from ekfsim.files.scenes.check_study import check as mistakes_in
+
+    # of a world that other files name, too, told once
+    wrong, before, warned = False, set[Mistake](), set[str]()
+    for file in files:
+        try:
+            found = mistakes_in(
+                resolve(file, "worlds" if file in packaged("worlds") else "commands")
+            )
+        except UsageError as missing:
+            say(str(missing))
+            wrong = True
+            continue
+        new = [
+            mistake
+            for mistake in found.mistakes
+            if not before or mistake.placed_alike not in before
+        ]
+        odd = (warning for warning in found.warnings if warning not in warned)
+        warn(odd, MOST_TOLD - len(told(new)))  # together no more than anybody reads
+        warned.update(found.warnings)
+        if len(files) > 1:
+            before.update(mistake.placed_alike for mistake in new)
+        all_told = in_a_line(
+            f"{file}: {'what is wrong with it is told above' if found.mistakes else 'ok'}"
+        )
+        click.echo("\n".join(told(new)) or all_told)
+        wrong = wrong or bool(found.mistakes)
+    if wrong:
+        sys.exit(UsageError.status)
+
+
+@click.command(short_help="Print the JSON Schema by which editors check a file.")
+@click.argument("kind", type=click.Choice(["world", "commands", "study"]))
+def schema(kind: str) -> None:
+    """Print the JSON Schema from which editors complete and check a world, commands or study
+    file.
+    """
+    import json
+    from typing import cast
+
+    from ekfsim.files.yaml.schema import Kind, json_schema
+
+    click.echo(json.dumps(json_schema(cast("Kind", kind)), indent=2, ensure_ascii=False))
+
+
+@click.command("list", short_help="List what comes along, or all that is said of NAME.")
+@click.argument("name", required=False)
+@click.option("--worlds", is_flag=True, help="The worlds in place of the commands.")
+def list_packaged(name: str | None, worlds: bool) -> None:
+    """List the commands that come along, or the worlds; with NAME, all that is said of that one."""
+    from ekfsim.files.packaged import described, description_of, grouped, packaged, resolve
+
+    if name is not None:
+        is_world = worlds or (name in packaged("worlds") and name not in packaged("commands"))
+        kind: Folder = "worlds" if is_world else "commands"
+        click.echo(
+            shown(described(resolve(name, kind)) or in_a_line(f"{name}: has no description"))
+        )
+        return
+    for title, files in [("worlds", packaged("worlds"))] if worlds else grouped():
+        click.echo(f"{title}:")
+        for one, path in files.items():
+            click.echo(f"  {one:{max(map(len, files))}}  {description_of(path)}")
+
+
+@click.command()
+@click.argument("file", type=Result())
+@click.option(
+    "--kind", type=click.Choice(["world", "commands"]), help="Where the name of FILE does not tell."
+)
+@FORCE
+def new(file: Path, kind: str | None, force: bool) -> None:
+    """Write a commented world or commands FILE to start from."""
+    from ekfsim.files.results.writing import whole_text
+    from ekfsim.files.template import template
+
+    name = file.stem.lower()
+    if kind is None and ("world" in name) == ("command" in name):
+        raise UsageError(f"{file}: a world or commands? say --kind world or --kind commands")
+    told: Literal["world", "commands"] = (
+        "world" if kind == "world" or (kind is None and "world" in name) else "commands"
+    )
+    with whole_text(file, force) as out:
+        out.write(template(told))
+    click.echo(in_a_line(f"{file}: a {told} file to start from; ekfsim check {file} validates it"))
+
+
+@click.command(epilog=DOCUMENTS, short_help="Draw the figures and tables of a document.")
+@click.argument("name", type=Word(["classroom", "mower", "pioneer", "gnss", "pylon", "gallery"]))
+@click.option(
+    "--out",
+    "-o",
+    type=Result(),
+    required=True,
+    help="A folder for the figures, tables and captions.md.",
+)
+@click.option("--format", "formats", type=click.Choice(["png", "svg", "pdf"]), multiple=True,
+    default=("png",),
+              show_default=True, help="May be given several times.")  # fmt: skip
+@click.option(
+    "--log", type=Source(), metavar="PATH", help="A recorded log in place of the simulated twin."
+)
+@READING
+@click.option("--seed", type=Seed(), help="In place of the scene's seed.")
+@PLAIN
+@FORCE
+def figures(
+    name: str,
+    out: Path,
+    formats: tuple[str, ...],
+    log: str | None,
+    reading: str,
+    seed: int | None,
+    force: bool,
+) -> None:
+    """Draw every figure and table of one of the five documents, or of the gallery, with
+    captions.
+    """
+    from ekfsim.views.picture.look import get_ready
+
+    get_ready()
+    from ekfsim.figures import draw_figures
+
+    simulated = {"classroom": "tour", "gallery": "diverge-00-control"}.get(name)
+    commands = simulated or (name if log is None else f"{name}_log")
+    scene = scene_of(commands, log=log, reading=reading, seed=seed)
+    written = draw_figures(name, scene, out, formats, force)
+    click.echo(in_a_line(f"{out}: {len(written)} files, read captions.md first"))

@@ -1,0 +1,146 @@
+"""The commands that play one run: play, render, run, record."""
+
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ekfsim.cli.asked import scene_of
+from ekfsim.cli.kinds import Result, Whole
+from ekfsim.cli.options import EXPLAIN, FORCE, scene_options
+from ekfsim.cli.process import heed, say, warn
+from ekfsim.printable import in_a_line
+
+
+@click.command(short_help="Step through COMMANDS with single keys.")
+@scene_options
+@click.option("--show", type=click.Choice(["auto", "window", "text", "files"]), default="auto",
+    show_default=True,
+              help="Draw in a window, as text in the terminal, or into one file rewritten in "
+                   "place.")  # fmt: skip
+@click.option("--out", "-o", type=Result(), default=Path("out"), show_default=True,
+              help="Folder for the pictures of --show files and of the key s.")  # fmt: skip
+@click.option(
+    "--conditional",
+    is_flag=True,
+    help="Draw the ellipse for the heading at either edge of its cone, too.",
+)
+@EXPLAIN
+@FORCE
+def play(
+    show: str, out: Path, conditional: bool, explain: bool, force: bool, confidence: float,
+    **chosen: Any
+) -> None:  # fmt: skip
+    """Step through COMMANDS with single keys: n next, p back, q quit, ? for all of them."""
+    from ekfsim.views.picture.look import Look
+    from ekfsim.views.terminal.interactive import play_interactively
+
+    play_interactively(scene_of(**chosen), show, out, Look(confidence, conditional), force, explain)
+
+
+@click.command()
+@scene_options
+@click.option(
+    "--out",
+    "-o",
+    type=Result(),
+    required=True,
+    help="A folder for numbered PNG files, or the name of a .gif or an .mp4.",
+)
+@click.option("--every", type=Whole(min=1), default=1, metavar="N", help="Only every N-th picture.")
+@click.option(
+    "--conditional",
+    is_flag=True,
+    help="Draw the ellipse for the heading at either edge of its cone, too.",
+)
+@FORCE
+def render(
+    out: Path, every: int, conditional: bool, force: bool, confidence: float, **chosen: Any
+) -> None:
+    """Draw every step of COMMANDS into files."""
+    from ekfsim.views.picture.look import Look, get_ready
+
+    get_ready()
+    from ekfsim.files.results.outputs import kept
+    from ekfsim.localization import play as steps_of
+    from ekfsim.views.film import animation
+    from ekfsim.views.picture import limits
+    from ekfsim.views.picture.lettering import boxes
+    from ekfsim.views.terminal.playback import Tally, together
+    from ekfsim.views.words.captions import texts
+
+    scene, tally = scene_of(**chosen), Tally()
+    warn(boxes(texts(scene)))
+    first, *others = scene.alone()
+    runs = (kept(steps_of(first), [tally.write]), *map(steps_of, others))
+    extent = limits.of_all(scene, runs, confidence)
+    pictures = animation.number_of_pictures(tally.views, every)
+    with click.progressbar(
+        length=pictures, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()
+    ) as bar:
+
+        def made_one(made: int) -> None:
+            heed()
+            bar.update(1)
+
+        animation.render(
+            together(steps_of(first), map(steps_of, others)), scene, extent, out,
+            look=Look(confidence, conditional), every=every, force=force, progress=made_one,
+        )  # fmt: skip
+    click.echo(f"{in_a_line(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
+
+
+@click.command()
+@scene_options
+@click.option("--trace", type=Result(), help="Write every number of every step, as JSON lines.")
+@click.option("--tum", type=Result(), help="Folder for truth.tum and estimate.tum.")
+@click.option("--csv", type=Result(), help="Write a flat table.")
+@click.option("--summary", type=Result(), help="Write the closing summary as JSON.")
+@click.option("--quiet", "-q", is_flag=True, help="Only the closing summary, no narrative.")
+@EXPLAIN
+@FORCE
+def run(
+    trace: Path | None, tum: Path | None, csv: Path | None, summary: Path | None, quiet: bool,
+    explain: bool,
+    force: bool, confidence: float, **chosen: Any,
+) -> None:  # fmt: skip
+    """Narrate COMMANDS from the first step to the last, and sum up."""
+    from ekfsim.diagnostics.summary import Summary
+    from ekfsim.files.results.outputs import Outputs, kept
+    from ekfsim.localization import play as steps_of
+    from ekfsim.views.terminal.playback import together
+    from ekfsim.views.words.closing import conclude_all
+    from ekfsim.views.words.narrative import narrate
+
+    scene = scene_of(**chosen)
+    alone, outputs = scene.alone(), Outputs(trace, tum, csv, summary, force)
+    results = [Summary.of(one) for one in alone]
+    with ExitStack() as stack:
+        runs = []
+        for one, result, files in zip(alone, results, outputs.for_each(scene), strict=True):
+            sinks = stack.enter_context(files.open(one, confidence, result))
+            runs.append(kept(result.following(steps_of(one)), [sink.write for sink in sinks]))
+        for view in together(runs[0], runs[1:]):
+            heed()
+            if not quiet:
+                sys.stdout.write(narrate(view, scene, confidence, explain))
+    (sys.stderr if outputs.on_stdout() else sys.stdout).write(conclude_all(scene, results, quiet))
+
+
+@click.command(short_help="Write the simulated run of COMMANDS as a recorded log.")
+@scene_options
+@click.option(
+    "--out", "-o", type=Result(), required=True, help="A folder for the files of the log."
+)
+@FORCE
+def record(out: Path, force: bool, confidence: float, **chosen: Any) -> None:
+    """Write the simulated run of COMMANDS, a drive, as the files of a recorded log."""
+    from ekfsim.files.logs import write_log
+    from ekfsim.simulation import simulate
+
+    scene = scene_of(**chosen)
+    for remark in write_log(scene, simulate(scene), out, force):
+        say(f"{out}: {remark}")
+    click.echo(f"{in_a_line(out)}: a {scene.world.system} log; run the filter on it with --log")
