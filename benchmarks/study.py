@@ -9,7 +9,8 @@ from the wall that was hit; it does not look whether a wall stands in the robot'
 does.
 
 The peers are timed on a part of the runs: a loop over all of them takes as much longer. Ours is
-timed with NumPy, and with compiled code where the extra `fast` is installed.
+timed with NumPy, and with compiled code where the extra `fast` is installed: then with rays it is
+the block of a study, tally included, which makes no Steps.
 
 python benchmarks/study.py [--quick]
 """
@@ -17,6 +18,7 @@ python benchmarks/study.py [--quick]
 import argparse
 import math
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -35,6 +37,7 @@ from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.landmarks import RangeOnly
 from ekfsim.records import Control, Entry, Log, Reading, Step
 from ekfsim.scene import Scene
+from ekfsim.study.block import run_block, watched
 from ekfsim.world import Map, Noise, Obstacle, Told, World
 
 RUNS, STEPS = 1000, 100
@@ -54,7 +57,7 @@ def main() -> None:
     if optional("filterpy") is None:
         return
     log, scene, some = recorded(), among_pillars(), list(range(10 if quick else 25))
-    trees, all_runs = Trees(scene.world.map), np.arange(RUNS)
+    trees = Trees(scene.world.map)
     for name, way in WAYS.items():
         if way == "compiled" and optional("numba") is None:
             continue
@@ -70,18 +73,26 @@ def main() -> None:
             some,
             quick,
         )
-        *_, last = play(scene, all_runs)
-        ours, theirs = (
-            np.median(last.nees.value),
-            np.median([played(scene, trees, run)[1] for run in range(100)]),
-        )
+        ours = np.median(watched(scene, 0, RUNS).ends.nees.value)
+        theirs = np.median([played(scene, trees, run)[1] for run in range(100)])
         print(
             f"{name}, {len(scene.world.map.walls.segments)} walls; median NEES at the end "
             f"{ours:.1f} and {theirs:.1f}"
         )
-        compare(
-            lambda: every(play(scene, all_runs)), lambda: play_all(scene, trees, some), some, quick
-        )
+        study = block if way == "compiled" else steps
+        compare(partial(study, scene), partial(play_all, scene, trees, some), some, quick)
+
+
+def block(scene: Scene) -> int:
+    """What a study makes of all runs, tally included: of Steps there are none where it is
+    compiled.
+    """
+    return run_block(scene, 0, RUNS).runs
+
+
+def steps(scene: Scene) -> int:
+    """Every Step of all runs."""
+    return every(play(scene, np.arange(RUNS)))
 
 
 def compare(ours: Task, peer: Task, some: list[int], quick: bool) -> None:
