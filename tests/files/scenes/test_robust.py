@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from ekfsim.errors import InputError
 from ekfsim.files.scenes.load import check, load_scene, load_world
-from ekfsim.files.scenes.template import template
+from ekfsim.files.template import template
 from ekfsim.scene import Scene
 from ekfsim.world import World
 

@@ -11,7 +11,7 @@ import ekfsim.files
 from ekfsim.files import packaged as packaged_files
 from ekfsim.files.packaged import description_of, packaged, resolve, source_name
 from ekfsim.files.scenes.load import check, load_scene, load_world
-from ekfsim.files.scenes.template import template
+from ekfsim.files.template import template
 from ekfsim.files.yaml.schema import json_schema, schema_at
 from ekfsim.filters import FILTERS
 
