@@ -38,8 +38,7 @@ class Driver:
         # after the last tick it would go on as it went
         speed = np.append(course.speed, course.speed[-1:])
         turn_rate = np.append(course.turn_rate, course.turn_rate[-1:])
-        way = np.column_stack([wanted[:, :2], wrap(wanted[:, 2])])
-        self._asked = np.column_stack([speed, turn_rate, np.sign(speed), way])  # (T + 1, 6)
+        self._asked = np.column_stack([speed, turn_rate, np.sign(speed), wanted])  # (T + 1, 6)
         self._gains = (ALONG, ACROSS, AROUND) if course.held else (0.0, 0.0, 0.0)
         self._root, self._disturbances = square_root(process), disturbances
         x, y, θ = np.moveaxis(start, -1, 0)

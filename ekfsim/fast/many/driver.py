@@ -18,9 +18,10 @@ def driven(here: Array, asked: Array, noise: Array, gains: Gains, dt: float) -> 
     ahead, to, parts = np.empty((3, 2, len(here)))  # cos and sin, a way, products of the two
     middle = np.empty(len(here))
     along, across, around = gains
-    wanted = asked[:, 3:5, None]
-    steps = zip(rows[:-1], rows[1:], asked.tolist(), wanted, np.moveaxis(noise, -1, 1), strict=True)
-    for before, after, (speed, rate, sign, _, _, to_θ), place, disturbed in steps:
+    orders = np.column_stack([asked[:, :3], wrap(asked[:, 5])]).tolist()
+    places, noises = asked[:, 3:5, None], np.moveaxis(noise, -1, 1)
+    steps = zip(rows[:-1], rows[1:], orders, places, noises, strict=True)
+    for before, after, (speed, rate, sign, to_θ), place, disturbed in steps:
         θ, way, turn = before[2:]
         next_θ, next_way, next_turn = after[2:]
         np.multiply(turn, 0.5, out=middle)
