@@ -10,18 +10,18 @@ import numpy as np
 from ekfsim.geometry import Array
 
 
-def lanes(axes: tuple[int, ...], *inner: int) -> Array:
+def soa_zeros(axes: tuple[int, ...], *inner: int) -> Array:
     """Zeros (*axes, *inner), the same entry of all runs side by side in memory.
 
-    >>> lanes((1000,), 3, 3)[:, 0, 1].strides
+    >>> soa_zeros((1000,), 3, 3)[:, 0, 1].strides
     (8,)
     """
     d = len(inner)
     return np.zeros((*inner, *axes)).transpose(*range(d, d + len(axes)), *range(d))
 
 
-def front(M: Array, inner: int = 2) -> Array:
-    """A view of (…, n, m) with its entries in front : (n, m, …)
+def to_soa(M: Array, inner: int = 2) -> Array:
+    """A view of matrices (…, n, m) with their entries in front : (n, m, …)
 
     inner : how many axes at the end are entries, 2 of a matrix, 1 of a vector
     """
@@ -29,6 +29,6 @@ def front(M: Array, inner: int = 2) -> Array:
     return M.transpose(*range(axes, M.ndim), *range(axes))
 
 
-def back(M: Array, inner: int = 2) -> Array:
-    """What `front` took apart: a view of (n, m, …) as (…, n, m)."""
+def from_soa(M: Array, inner: int = 2) -> Array:
+    """What `to_soa` took apart: a view of (n, m, …) as (…, n, m)."""
     return M.transpose(*range(inner, M.ndim), *range(inner))

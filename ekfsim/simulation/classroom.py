@@ -7,7 +7,7 @@ import numpy as np
 from ekfsim.commands import Kidnap, Move, Say, Sense, expand
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
-from ekfsim.geometry.soa import lanes
+from ekfsim.geometry.soa import soa_zeros
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.raycast.ground import CLEARANCE
@@ -89,6 +89,6 @@ def _measure(world: World, pose: Array, bearing: float, draws: Draws, i: int) ->
 
 def _paired(d: Array, a: Array) -> Array:
     """(d, a) as a motion input : (…, 2)"""
-    u = lanes(np.broadcast_shapes(np.shape(d), np.shape(a)), 2)
+    u = soa_zeros(np.broadcast_shapes(np.shape(d), np.shape(a)), 2)
     u[..., 0], u[..., 1] = d, a
     return u

@@ -6,8 +6,8 @@ import itertools
 
 import numpy as np
 import pytest
-from backends import BACKENDS
 from scenes import rich, unbounded
+from ways import WAYS
 
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.load import load_scene
@@ -48,7 +48,7 @@ def test_a_scene_is_the_same_in_the_plain_way(name, runs):
             np.testing.assert_allclose(one.correction.nis, other.correction.nis, rtol=1e-9)
 
 
-@pytest.mark.parametrize("name", BACKENDS)
+@pytest.mark.parametrize("name", WAYS)
 @pytest.mark.parametrize(
     ("made", "reasons"), [(rich(), 3), (unbounded(), 3), (rich(gate=None, guard="skip"), 3)]
 )

@@ -5,7 +5,6 @@ import sys
 
 import numpy as np
 import pytest
-from backends import BACKENDS
 from wall_worlds import (
     DESK,
     ROOM,
@@ -18,6 +17,7 @@ from wall_worlds import (
     together,
     town,
 )
+from ways import WAYS
 
 from ekfsim.raycast.searches.choice import BLOCK
 from ekfsim.raycast.searches.few_walls import few_walls
@@ -27,7 +27,7 @@ from ekfsim.raycast.walls import Walls
 from ekfsim.twins import taking
 
 needs_numba = pytest.mark.skipif(
-    "compiled" not in BACKENDS, reason="numba, the extra `fast`, is not installed"
+    "compiled" not in WAYS, reason="numba, the extra `fast`, is not installed"
 )
 
 
@@ -62,7 +62,7 @@ def test_walls_on_each_other_are_no_doubt_to_the_compiled_walk():
     assert not len(compiled.walk(walls.flat_grid, *near[:4])[2])
 
 
-@pytest.mark.parametrize("name", BACKENDS)
+@pytest.mark.parametrize("name", WAYS)
 def test_a_beam_in_a_batch_has_the_hit_that_it_has_alone(name):
     """Whatever the batch: how many, from where, and what stands beside it."""
     walls = Walls.of(town("houses", 5, 20.0))

@@ -2,7 +2,6 @@ import math
 
 import numpy as np
 import pytest
-from backends import BACKENDS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from wall_worlds import (
@@ -17,6 +16,7 @@ from wall_worlds import (
     tangle,
     town,
 )
+from ways import WAYS
 
 from ekfsim.raycast.rules import REACH
 from ekfsim.raycast.walls import Walls
@@ -26,7 +26,7 @@ SCENE = Walls.of({"boundary": ROOM, "desk": DESK})  # walls 0–3 and 4–7: sou
 NONE = (pytest.approx(math.nan, nan_ok=True), -1)
 
 
-@pytest.fixture(params=["plain", *BACKENDS])
+@pytest.fixture(params=["plain", *WAYS])
 def way(request):
     """The text by itself, and what may stand in for it."""
     with taking(request.param):

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import shapely
-from backends import BACKENDS
+from ways import WAYS
 
 from ekfsim.raycast.brute import brute_force
 from ekfsim.raycast.searches.few_walls import few_walls
@@ -102,7 +102,7 @@ def assert_all_searches_agree(walls, origin, heading, scale=1.0):
     with a scan."""
     ranges, _ = expected = by_brute_force(walls, origin, heading)
     assert_same(one_by_one(walls, origin, heading), expected, scale)
-    for way in ("plain", *BACKENDS):
+    for way in ("plain", *WAYS):
         with taking(way):
             hit = walls.cast(np.repeat(origin, 2, axis=0)[:, None], np.repeat(heading, 2)[:, None])
         assert_same((hit.range[::2, 0], hit.wall[::2, 0]), expected, scale)

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.soa import back, front, lanes
+from ekfsim.geometry.soa import from_soa, soa_zeros, to_soa
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import ALONG, Laser
 from ekfsim.twins import compiled
@@ -22,10 +22,10 @@ def move_turn(
         return None
     N = len(x)
     new = np.empty((3, N)), np.empty((3, 3, N)), np.empty((3, 2, N)), np.empty((2, 2, N))
-    x, u = (np.ascontiguousarray(front(each, 1)) for each in (x, u))
+    x, u = (np.ascontiguousarray(to_soa(each, 1)) for each in (x, u))
     _move_turn(x, u, motion.distance_ratio, motion.angle_ratio, *new)
     f, F, G, M = new
-    return back(f, 1), back(F), back(G), back(M), 0.0
+    return from_soa(f, 1), from_soa(F), from_soa(G), from_soa(M), 0.0
 
 
 def laser(sensor: Laser, x: Array) -> tuple[Array, Array, Array] | None:
@@ -34,9 +34,9 @@ def laser(sensor: Laser, x: Array) -> tuple[Array, Array, Array] | None:
         return None
     direction, walls = x[:, 2] + sensor.bearing, sensor.walls
     hit = walls.cast(x[:, :2], direction)
-    h, H, R = np.empty(len(x)), lanes((len(x),), 1, 3), np.empty(len(x))
+    h, H, R = np.empty(len(x)), soa_zeros((len(x),), 1, 3), np.empty(len(x))
     _beam(
-        direction, hit.range, hit.wall, walls.normals, sensor.range_ratio, ALONG, h, front(H)[0], R
+        direction, hit.range, hit.wall, walls.normals, sensor.range_ratio, ALONG, h, to_soa(H)[0], R
     )
     return h[:, None], H, R[:, None, None]
 

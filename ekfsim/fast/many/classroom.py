@@ -3,7 +3,7 @@
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.soa import front
+from ekfsim.geometry.soa import to_soa
 from ekfsim.raycast.ground import CLEARANCE
 from ekfsim.raycast.walls import Walls
 from ekfsim.simulation.classroom import until_wall as text
@@ -26,7 +26,7 @@ def _may_bump(walls: Walls, pose: Array, way: Array) -> Integers:
     """Which of N runs may meet a wall on their way or come near one: few in a study, where all go
     much the same way.
     """
-    reach, place = np.abs(way) + 2 * CLEARANCE, front(pose, 1)[:2]
+    reach, place = np.abs(way) + 2 * CLEARANCE, to_soa(pose, 1)[:2]
     far = np.fmax.reduce(reach)  # of those that are numbers
     near = walls.near(np.fmin.reduce(place, axis=1) - far, np.fmax.reduce(place, axis=1) + far)
     if not 0 < len(near) <= FEW:

@@ -16,7 +16,7 @@ from ekfsim.filters.kalman import Linearized, Rule
 from ekfsim.filters.kalman import update as update_of_any
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap
-from ekfsim.geometry.soa import back, front
+from ekfsim.geometry.soa import from_soa, to_soa
 from ekfsim.twins import as_written
 
 MANY = 64  # runs from which on this pays
@@ -52,13 +52,13 @@ def predicted(
         return None
     if not len(P) == len(G) == len(M) == len(F):
         return None
-    new = propagate(front(P), front(F), front(G), front(M))
+    new = propagate(to_soa(P), to_soa(F), to_soa(G), to_soa(M))
     if new is None:
         return None
     if np.ndim(Q):
         Q = np.asarray(Q)
-        new += front(Q) if Q.ndim == 3 else Q[..., None]
-    return back(_forced(new, sound))
+        new += to_soa(Q) if Q.ndim == 3 else Q[..., None]
+    return from_soa(_forced(new, sound))
 
 
 def updated(
@@ -71,8 +71,8 @@ def updated(
         return None
     if not (H.shape == (N, 1, 3) and R.shape == (N, 1, 1) and len(rule.headings) == 1):
         return None
-    x, P = front(prior.mean, 1), front(prior.covariance)
-    s, K, mean, covariance, nis, clear = revise(x, P, front(H)[0], R[..., 0, 0], ν[..., 0], SHARP)
+    x, P = to_soa(prior.mean, 1), to_soa(prior.covariance)
+    s, K, mean, covariance, nis, clear = revise(x, P, to_soa(H)[0], R[..., 0, 0], ν[..., 0], SHARP)
     (heading,) = rule.headings
     mean[heading] = wrap(mean[heading])
     refused = np.full(N, np.int64(Refused.NOT))
@@ -82,8 +82,8 @@ def updated(
         refused[np.broadcast_to(rule.skip, refused.shape)] = Refused.GUARD
     # of those that are not clear nan may be in it: they are done again below
     covariance = _forced(covariance, sound)
-    posterior = Gaussian(back(mean, 1), back(covariance))
-    correction = Correction(h, ν, R, s[:, None, None], H, back(K, 1)[..., None], nis, refused)
+    posterior = Gaussian(from_soa(mean, 1), from_soa(covariance))
+    correction = Correction(h, ν, R, s[:, None, None], H, from_soa(K, 1)[..., None], nis, refused)
     kept = refused != Refused.NOT
     if kept.any():
         np.copyto(mean, x, where=kept)
@@ -146,7 +146,7 @@ def sound(P: Array) -> bool:
 def _forced(P: Array, sound: Sound) -> Array:
     """P as a covariance must be : (3, 3, N); mostly all are, which is soon seen."""
     with np.errstate(invalid="ignore"):
-        return P if sound(P) else front(as_covariance(back(P)))
+        return P if sound(P) else to_soa(as_covariance(from_soa(P)))
 
 
 def _with_care(

@@ -11,7 +11,7 @@ from ekfsim.diagnostics.nees import OUTSIDE, ROUNDING, error
 from ekfsim.diagnostics.nees import squared_mahalanobis as squares
 from ekfsim.filters.belief import Belief, posed
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.geometry.soa import front
+from ekfsim.geometry.soa import to_soa
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Nees
 from ekfsim.twins import as_written
@@ -51,7 +51,7 @@ def judged(e: Array, P: Array, full: Squares) -> tuple[Array, Integers, Booleans
     if e.ndim != 2 or len(e) < MANY or n not in (2, 3) or e.shape != P.shape[:-1]:
         return None
     with np.errstate(all="ignore"):
-        value, clear = full(front(e, 1), front(P))
+        value, clear = full(to_soa(e, 1), to_soa(P))
     rank, impossible = np.full(len(e), n), np.zeros(len(e), bool)
     for judge in (singular, as_written(squares)):
         if clear.all():
@@ -102,7 +102,7 @@ def singular(e: Array, P: Array) -> tuple[Array, Integers, Booleans]:
     (w, −1) is its null vector.
     """
     n = e.shape[-1]
-    e, P = front(e, 1), front(P)
+    e, P = to_soa(e, 1), to_soa(P)
     variance = P.diagonal().T
     there = variance > ROUNDING**2
     pairs = [(i, j) for i in range(n) for j in range(i)]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
-from ekfsim.geometry.soa import back, front, lanes
+from ekfsim.geometry.soa import from_soa, soa_zeros, to_soa
 from ekfsim.models.sensors.frozen import Frozen
 from ekfsim.models.sensors.infrared import InfraredBeam
 from ekfsim.models.sensors.laser import ALONG, Laser
@@ -18,7 +18,8 @@ def laser(sensor: Laser, x: Array) -> Linearized:
     """Twin of h, H and R of `Laser`."""
     direction = x[..., 2] + sensor.bearing
     hit = sensor.walls.cast(x[..., :2], direction)
-    (nx, ny), c, s = front(_normal(sensor.walls, hit.wall), 1), np.cos(direction), np.sin(direction)
+    nx, ny = to_soa(_normal(sensor.walls, hit.wall), 1)
+    c, s = np.cos(direction), np.sin(direction)
     n_d = nx * c + ny * s
     met = np.abs(n_d) > ALONG
     r = hit.range
@@ -29,7 +30,7 @@ def laser(sensor: Laser, x: Array) -> Linearized:
             np.where(met, r, np.nan),
             np.divide(-1.0, n_d, out=np.zeros_like(n_d), where=met),
         )
-    H, R = lanes(r.shape, 1, 3), lanes(r.shape, 1, 1)
+    H, R = soa_zeros(r.shape, 1, 3), soa_zeros(r.shape, 1, 1)
     H[..., 0, 0], H[..., 0, 1] = nx * per, ny * per
     H[..., 0, 2] = np.where(met, r, 0.0) * (ny * c - nx * s) * per
     R[..., 0, 0] = np.square(sensor.range_ratio * r)
@@ -73,6 +74,6 @@ def _normal(walls: Walls, wall: Integers) -> Array:
     """Unit normals : (…, 2), zero where there is no wall."""
     if not len(walls.normals):
         return np.zeros((*wall.shape, 2))
-    normals = back(front(walls.normals, 1)[:, wall], 1)
+    normals = from_soa(to_soa(walls.normals, 1)[:, wall], 1)
     normals[wall < 0] = 0.0
     return normals

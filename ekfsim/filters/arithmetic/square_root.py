@@ -13,7 +13,7 @@ import numpy as np
 from ekfsim.filters.arithmetic.algebra import symmetric
 from ekfsim.filters.arithmetic.tolerances import ROUNDING
 from ekfsim.geometry import Array
-from ekfsim.geometry.soa import lanes
+from ekfsim.geometry.soa import soa_zeros
 from ekfsim.twins import twinned
 
 
@@ -78,7 +78,7 @@ def square_root(P: Array, seen: Array | None = None) -> Array:
         L = square_root(np.take_along_axis(P, order[..., None, :], axis=-1))
         return np.take_along_axis(L, np.argsort(order, axis=-1)[..., :, None], axis=-2)
     n = P.shape[-1]
-    L = lanes(P.shape[:-2], n, n)
+    L = soa_zeros(P.shape[:-2], n, n)
     for j in range(n):
         rest = P[..., j:, j]
         for m in range(j):
@@ -112,9 +112,9 @@ def conditioned(L: Array, D: Array, R: Array, h: Array) -> Conditioned:
     """
     n, k = L.shape[-1], D.shape[-2]
     axes = np.broadcast_shapes(L.shape[:-2], D.shape[:-2], R.shape[:-2], h.shape[:-1])
-    A, rest = lanes(axes, n + k, n), lanes(axes, k, k)  # rows of L, then of D; R
+    A, rest = soa_zeros(axes, n + k, n), soa_zeros(axes, k, k)  # rows of L, then of D; R
     A[..., :n, :], A[..., n:, :], rest[...] = L, D, R
-    K, T, s = lanes(axes, n, k), lanes(axes, k, k), lanes(axes, k)
+    K, T, s = soa_zeros(axes, n, k), soa_zeros(axes, k, k), soa_zeros(axes, k)
     T[...], h = np.eye(k), np.broadcast_to(h, (*axes, k))
     if np.any(rest != rest * np.eye(k)):
         dullest = np.argsort(-_dullness(rest, A[..., n:, :]), axis=-1, kind="stable")

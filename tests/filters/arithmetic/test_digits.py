@@ -6,9 +6,9 @@ from dataclasses import replace
 import mpmath
 import numpy as np
 import pytest
-from backends import BACKENDS
 from problems import ROOM, begun
 from scenes import DESK, scene
+from ways import WAYS
 
 from ekfsim import play
 from ekfsim.commands import Move, Sense
@@ -153,7 +153,7 @@ def test_an_update_is_right_to_six_digits_where_noises_have_much_in_common(seed)
         assert (np.abs(correction.K - K) <= 1e-6 * unit).all()
 
 
-@pytest.mark.parametrize("name", BACKENDS)
+@pytest.mark.parametrize("name", WAYS)
 def test_a_sharp_laser_leaves_its_own_doubt_and_no_rounding(name):
     """A beam along x, the heading known: of 0.01 m² its R is left, be that as small as it may."""
     x, P = np.tile([3.0, 4.0, 0.0], (MANY, 1)), np.tile(np.diag([0.01, 0.01, 0.0]), (MANY, 1, 1))
@@ -163,7 +163,7 @@ def test_a_sharp_laser_leaves_its_own_doubt_and_no_rounding(name):
     np.testing.assert_allclose(posterior.covariance[:, 0, 0], correction.R[:, 0, 0], rtol=1e-9)
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("backend", WAYS)
 def test_the_twin_of_many_runs_is_right_to_six_digits(backend):
     random = np.random.default_rng(5)
     problems = [problem(random, 3, 1) for _ in range(MANY)]
@@ -278,7 +278,7 @@ def test_a_covariance_stays_one_in_every_world(name, hard):
 
 
 @pytest.mark.parametrize(
-    ("name", "backend"), [*((name, "quick") for name in EXACT), ("ekf", BACKENDS[-1])]
+    ("name", "backend"), [*((name, "quick") for name in EXACT), ("ekf", WAYS[-1])]
 )
 @pytest.mark.parametrize("off", [1e-3, 1e-6, 1e-8])
 def test_the_way_back_leaves_a_covariance(name, backend, off):

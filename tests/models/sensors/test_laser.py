@@ -3,10 +3,10 @@ import math
 import numpy as np
 import pytest
 import shapely
-from backends import BACKENDS
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from numerics import jacobian
+from ways import WAYS
 
 from ekfsim.diagnostics.ambiguity import sighting
 from ekfsim.models.sensors.laser import Laser
@@ -135,7 +135,7 @@ def test_a_batch_equals_its_runs(axes):
             assert batch == pytest.approx(one, abs=1e-12, nan_ok=True)
 
 
-@pytest.mark.parametrize("name", BACKENDS)
+@pytest.mark.parametrize("name", WAYS)
 def test_a_beam_along_a_wall_among_others(name):
     random = np.random.default_rng(11)
     x = random.uniform((1, 1, -3), (9, 7, 3), (200, 3))
@@ -151,7 +151,7 @@ def test_a_beam_along_a_wall_among_others(name):
 
 def test_nothing_in_a_map_without_walls_is_met():
     x = np.random.default_rng(11).uniform((1, 1, -3), (9, 7, 3), (200, 3))
-    for name in BACKENDS:
+    for name in WAYS:
         with taking(name):
             h, H, R = Laser(Walls.of({}), 0.1, 0.01).linearize(x)
         assert np.isnan(h).all()

@@ -2,4 +2,4 @@
 
 from ekfsim import twins
 
-BACKENDS = ("quick", "compiled") if twins.compiles() else ("quick",)
+WAYS = ("quick", "compiled") if twins.compiles() else ("quick",)
