@@ -11,7 +11,7 @@ from numerics import jacobian
 import ekfsim
 from ekfsim.figures.album import Album, filled
 from ekfsim.figures.crowd import crowd_of, over_runs, set_down
-from ekfsim.figures.pioneer import beams, echo, polar, square
+from ekfsim.figures.pioneer import beams, echo, flight, polar, square
 from ekfsim.figures.pioneer import document as pioneer
 from ekfsim.figures.pioneer import filters as pioneer_filters
 from ekfsim.filters.belief import Gaussian, Refused
@@ -150,7 +150,7 @@ def test_figure_6_shows_the_sigma_that_the_filter_is_told(scene, album):
 
 
 def test_figure_5_marks_the_flight(scene, album):
-    echo._draw_fit(scene, album, echo.Pair())
+    echo.draw_echo(scene, album)
     whole, close = album.figures["fig5-echo"].axes
     true = 2 / 343 * 1e3
     assert lines(close)["true τ"].get_xdata()[0] == pytest.approx(true)
@@ -165,7 +165,7 @@ def test_figure_5_marks_the_flight(scene, album):
 
 
 def test_the_printed_envelope_is_drawn_where_the_print_is_followed(scene, album):
-    echo._draw_fit(replace(scene, reading="printed"), album, echo.Pair())
+    echo.draw_echo(replace(scene, reading="printed"), album)
     t, grown = lines(album.figures["fig5-echo"].axes[0])["eq. 38 as printed"].get_data()
     seen = grown[(t > 5.9) & np.isfinite(grown)]
     assert np.all(np.diff(seen) > 0)  # it never falls
@@ -173,23 +173,23 @@ def test_the_printed_envelope_is_drawn_where_the_print_is_followed(scene, album)
 
 
 def test_the_ukf_is_better_than_the_threshold_at_20_dB_and_best_at_30():
-    at_20, at_30 = (echo.trial(echo.Pair(), snr, 200, 1) for snr in (20.0, 30.0))
+    at_20, at_30 = (flight.trial(flight.Pair(), snr, 200, 1) for snr in (20.0, 30.0))
     for at, factor in ((at_20, 1.2), (at_30, 2.0)):
-        assert echo.rmse(at.threshold) > factor * echo.rmse(at.ukf)
-        assert echo.rmse(at.ukf) > at.bound
-    assert echo.rmse(at_20.ukf) == pytest.approx(14e-6, abs=2e-6)
+        assert flight.rmse(at.threshold) > factor * flight.rmse(at.ukf)
+        assert flight.rmse(at.ukf) > at.bound
+    assert flight.rmse(at_20.ukf) == pytest.approx(14e-6, abs=2e-6)
 
 
 def test_the_flight_is_drawn_and_told_over_the_SNR(scene, album, monkeypatch):
-    monkeypatch.setattr(echo, "TRIALS", 20)
-    echo.draw_echo(scene, album)
+    monkeypatch.setattr(flight, "TRIALS", 20)
+    flight.draw_flight(scene, album)
     axes = album.figures["fig5b-flight"].axes[0]
     table = rows(album, "flight")
     assert [row["SNR (dB)"] for row in table] == ["0", "5", "10", "15", "20", "25", "30"]
     drawn = lines(axes)["UKF, four parameters"].get_ydata()
     assert [float(row["UKF RMSE (µs)"]) for row in table] == pytest.approx(drawn, abs=0.06)
-    assert echo._millimetres(1e6) == pytest.approx(343e3 / 2)
-    assert echo._microseconds(echo._millimetres(7.0)) == pytest.approx(7)
+    assert flight._millimetres(1e6) == pytest.approx(343e3 / 2)
+    assert flight._microseconds(flight._millimetres(7.0)) == pytest.approx(7)
 
 
 # the square, and the three filters

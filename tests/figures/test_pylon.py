@@ -10,7 +10,6 @@ from kept import Kept
 
 from ekfsim.errors import UsageError
 from ekfsim.figures.pylon.document import draw_pylon
-from ekfsim.figures.pylon.innovations import Tries
 from ekfsim.figures.pylon.runs import (
     Runs,
     Told,
@@ -22,6 +21,7 @@ from ekfsim.figures.pylon.runs import (
     turned_by_the_yaw_of,
 )
 from ekfsim.figures.pylon.sight import Innovations
+from ekfsim.figures.pylon.what_is_left import Tries
 from ekfsim.figures.track import rmse
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play

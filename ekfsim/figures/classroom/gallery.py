@@ -51,8 +51,8 @@ description tells its mechanism, and `ekfsim run NAME` one of its runs.
 def draw_gallery(scene: Scene, album: Album) -> None:
     """Make the table of an album. scene : whose seed all inputs are run with"""
     album.source = (
-        f"ekfsim {VERSION}, all inputs diverge-…, filter ekf, seed {scene.seed}, runs "
-        f"0 to {RUNS - 1}"
+        f"ekfsim {VERSION}, all inputs diverge-…, filter ekf, seed {scene.seed}, runs 0 to "
+        f"{RUNS - 1}"
     )
     names = [name for name in packaged("commands") if name.startswith("diverge-")]
     rows = [row(name, scene.seed) for name in names]

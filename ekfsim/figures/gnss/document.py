@@ -7,8 +7,8 @@ import numpy as np
 from ekfsim.errors import UsageError
 from ekfsim.figures.album import BLACK, BLUE, ORANGE, PURPLE, VERMILLION, Album, labelled, square
 from ekfsim.figures.gnss.runs import FILTER, RECIPE, ManyRuns, Runs, length, pose_error
-from ekfsim.figures.over_runs import spread
-from ekfsim.figures.track import Track, rmse, running_rmse
+from ekfsim.figures.gnss.tables import table, table_over_runs, times
+from ekfsim.figures.track import rmse, running_rmse
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.scene import Scene
@@ -65,9 +65,8 @@ def paths(runs: Runs, album: Album) -> None:
         figure,
         "fig1-paths",
         "Figure 1: truth, GNSS fixes and estimate",
-        f"{_seen(runs)}{off} The printed figure shows truth, fixes and estimate over the full "
-        f"run; its text says that "
-        "they closely match, and tells no numbers.",
+        f"{_seen(runs)}{off} The printed figure shows truth, fixes and estimate over the full run; "
+        "its text says that they closely match, and tells no numbers.",
     )
 
 
@@ -100,18 +99,17 @@ def headings(runs: Runs, album: Album) -> None:
     axes.legend(loc="best", fontsize=8)
     axes.set_title("Heading")
     errors = "" if not runs.right.has_truth.any() else (
-        f" RMSE: estimate {np.degrees(rmse(runs.estimate.heading_error)):.3g}°, "
-        f"wheels alone {np.degrees(rmse(pose_error(runs.wheels, runs.right.truth)[:, 2])):.3g}°."
+        f" RMSE: estimate {np.degrees(rmse(runs.estimate.heading_error)):.3g}°, wheels alone "
+        f"{np.degrees(rmse(pose_error(runs.wheels, runs.right.truth)[:, 2])):.3g}°."
     )  # fmt: skip
     album.add(
         figure,
         "fig2-heading",
         "Figure 2: the heading φ",
         "A fix tells no heading: the filter learns it from how the fixes run against the wheels. "
-        "As a check, the "
-        f"course from each fix to the one a second later is drawn, too.{errors} The printed "
-        f"figure shows truth and "
-        "estimate over the full run (its caption names GNSS, which has no heading of its own).",
+        f"As a check, the course from each fix to the one a second later is drawn, too.{errors} "
+        "The printed figure shows truth and estimate over the full run (its caption names GNSS, "
+        "which has no heading of its own).",
     )
 
 
@@ -138,7 +136,7 @@ def errors_so_far(runs: Runs, number: int, album: Album) -> None:
     axes.set_ylim(bottom=FLOOR)
     axes.legend(loc="lower right", fontsize=8)
     axes.set_title(f"RMS error of {name} over time")
-    worse = f"Wheels alone end {_times(ends[WHEELS] / ends[FILTER])} the error of the filter. " + (
+    worse = f"Wheels alone end {times(ends[WHEELS] / ends[FILTER])} the error of the filter. " + (
         f"Each fix alone is off by {ends[GNSS]:.3g} m. "
         if GNSS in ends
         else "A fix tells no heading. "
@@ -147,11 +145,9 @@ def errors_so_far(runs: Runs, number: int, album: Album) -> None:
         figure,
         f"fig{number + 3}-rms-{('x', 'y', 'phi')[number]}",
         f"Figure {number + 3}: RMS error of {name}",
-        f"The root of the mean of all squared errors up to each instant, on a logarithmic axis. "
-        f"{worse}The authors' "
-        f"recipe ends at {ends[RECIPE]:.3g} {unit}. The printed figure has a line for the filter; "
-        f"its numbers are not "
-        "in the text.",
+        "The root of the mean of all squared errors up to each instant, on a logarithmic axis. "
+        f"{worse}The authors' recipe ends at {ends[RECIPE]:.3g} {unit}. The printed figure has a "
+        "line for the filter; its numbers are not in the text.",
     )
 
 
@@ -173,30 +169,24 @@ def counter_example(runs: Runs, album: Album) -> None:
     time.set_ylim(bottom=FLOOR)
     time.legend(loc="lower right", fontsize=8)
     figure.suptitle(
-        f"Counter-example: the authors' recipe, {recipe:.3g} m against {raw:.3g} m of the fixes "
-        f"it is given"
+        f"Counter-example: the authors' recipe, {recipe:.3g} m against {raw:.3g} m of the fixes it "
+        "is given"
     )
     album.add(
         figure,
         "fig6-recipe",
         "Counter-example: the recipe of the document's authors (--reading coded)",
-        f"Position RMSE {recipe:.3g} m: {_times(recipe / raw)} that of the raw fixes, {raw:.3g} "
-        f"m, which are all it "
-        "has to go by. Its position prediction has no dt: every row of the wheels moves the robot "
-        "by V metres in place "
-        "of V dt. Its yaw rate is made of the mean speed, φ + 0.27 V dt, and not of the wheels' "
-        "difference. Q, R and "
-        "P₀ are the identity, whatever the units and the length of a step. It takes each "
-        "innovation at the state "
-        "before the prediction. So it keeps up with the robot only because it corrects at every "
-        "row, by a fix "
-        "between two recorded ones, the later of which no robot can know yet; and those are "
-        "spread evenly over the "
-        "rows by their number, whatever their stamps say. Corrected at the recorded fixes alone "
-        "it is "
-        f"{rmse(runs.sparse.position_error):.3g} m off. {_beside_the_wheels(runs)} The document "
-        f"prints the right "
-        "equations and mentions none of this.",
+        f"Position RMSE {recipe:.3g} m: {times(recipe / raw)} that of the raw fixes, {raw:.3g} m, "
+        "which are all it has to go by. Its position prediction has no dt: every row of the wheels "
+        "moves the robot by V metres in place of V dt. Its yaw rate is made of the mean speed, φ + "
+        "0.27 V dt, and not of the wheels' difference. Q, R and P₀ are the identity, whatever the "
+        "units and the length of a step. It takes each innovation at the state before the "
+        "prediction. So it keeps up with the robot only because it corrects at every row, by a fix "
+        "between two recorded ones, the later of which no robot can know yet; and those are spread "
+        "evenly over the rows by their number, whatever their stamps say. Corrected at the "
+        f"recorded fixes alone it is {rmse(runs.sparse.position_error):.3g} m off. "
+        f"{_beside_the_wheels(runs)} The document prints the right equations and mentions none "
+        "of this.",
     )
 
 
@@ -207,77 +197,8 @@ def _beside_the_wheels(runs: Runs) -> str:
     recipe, heading = rmse(runs.recipe.position_error), rmse(runs.recipe.heading_error)
     return (
         f"The wheels alone, without any fix, have a position RMSE of {off:.3g} m and a heading "
-        f"RMSE of {turned:.3g} "
-        f"rad, the recipe {recipe:.3g} m and {heading:.3g} rad: its heading is "
-        f"{'worse than theirs' if heading > turned else 'the better one'}."
-    )
-
-
-def table(runs: Runs, album: Album) -> None:
-    """All errors in numbers."""
-    truth, raw = runs.right.truth, rmse(length(runs.fixes.error))
-
-    def row(name: str, error: Array, φ: float | None, nis: float | None = None) -> list[str]:
-        position = length(error[:, :2])
-        numbers = [rmse(error[:, 0]), rmse(error[:, 1]), rmse(position), float(np.nanmax(position))]
-        told = ["-" if number is None else f"{number:.4f}" for number in (*numbers, φ)]
-        return [name, *told, f"{rmse(position) / raw:.2f}", "-" if nis is None else f"{nis:.2f}"]
-
-    def filtered(name: str, track: Track) -> list[str]:
-        return row(name, pose_error(track.pose, track.truth), rmse(track.heading_error), track.nis)
-
-    wheels = pose_error(runs.wheels, truth)
-    rows = [
-        row("raw GNSS, at its own instants", runs.fixes.error, None),
-        row("wheels alone", wheels, rmse(wheels[:, 2])),
-        filtered("the document's filter, written with dt (printed, corrected)", runs.right),
-        filtered("the authors' recipe, a fix at every row (coded)", runs.recipe),
-        filtered("the authors' recipe, at the recorded fixes alone", runs.sparse),
-    ]
-    header = ["method", "RMSE x (m)", "RMSE y (m)", "RMSE position (m)", "largest (m)",
-    "RMSE φ (rad)", "of raw GNSS",
-              "mean NIS per number"]  # fmt: skip
-    cost = rmse(runs.recipe.position_error) / rmse(runs.right.position_error)
-    album.table(
-        "errors",
-        "Errors in numbers, and what each reading costs",
-        header,
-        rows,
-        f"Errors at all {len(runs.right.t)} instants of the wheels; a NIS of 1 per number read is "
-        f"what a filter that "
-        "knows its own uncertainty has on average. 'Of raw GNSS' above 1 is a filter that makes "
-        "its data worse. To "
-        f"follow the recipe (--reading coded) costs {_times(cost)} the position error of the "
-        f"filter with dt; the "
-        "equations as printed are right, so that reading costs nothing.",
-    )
-
-
-def table_over_runs(many: ManyRuns, album: Album) -> None:
-    """The same over many simulated runs:
-    what is said of the filters, none of them alone decides.
-    """
-    right, recipe, fixes = many.right, many.recipe, many.fixes
-    rows = [
-        ["raw GNSS, at its own instants", spread(fixes), "-", "1", "-"],
-        ["wheels alone", spread(right.reckoned_position), spread(right.reckoned_heading),
-         spread(right.reckoned_position / fixes), "-"],
-        ["the document's filter, written with dt", spread(right.position), spread(right.heading),
-         spread(right.position / fixes), spread(right.nis)],
-        ["the authors' recipe (coded)", spread(recipe.position), spread(recipe.heading),
-         spread(recipe.position / fixes), spread(recipe.nis)],
-    ]  # fmt: skip
-    worse = int(np.count_nonzero(recipe.heading > right.reckoned_heading))
-    album.table(
-        "errors-over-runs",
-        f"The same over {len(fixes)} simulated runs",
-        ["method", "RMSE position (m)", "RMSE φ (rad)", "of raw GNSS", "mean NIS per number"],
-        rows,
-        "The mean of the runs, and from the least to the most of them. The filter with dt has "
-        f"{spread(right.position / fixes, 2)} times the error of the raw fixes, the recipe "
-        f"{spread(recipe.position / fixes, 2)} times. The recipe's heading is worse than that of "
-        f"the wheels alone in "
-        f"{worse} runs.",
+        f"RMSE of {turned:.3g} rad, the recipe {recipe:.3g} m and {heading:.3g} rad: its heading "
+        f"is {'worse than theirs' if heading > turned else 'the better one'}."
     )
 
 
@@ -305,10 +226,6 @@ def _beside(heading: Array, t: Array, times: Array, truth: Array) -> Array:
     return near + np.degrees(wrap(heading - np.radians(near)))
 
 
-def _times(factor: float) -> str:
-    return f"{factor:.2g} times" if factor < 10 else f"{factor:.0f} times"
-
-
 def _seen(runs: Runs) -> str:
     if not runs.right.has_truth.any():
         return "The truth is not known."
@@ -319,8 +236,8 @@ def _seen(runs: Runs) -> str:
             f"The estimate is farther from the truth than the fixes that it is made of: {numbers}"
         )
     return (
-        f"The estimate lies within the scatter of the fixes and is smoother than they are: "
-        f"{numbers}"
+        "The estimate lies within the scatter of the fixes and is smoother than they "
+        f"are: {numbers}"
     )
 
 

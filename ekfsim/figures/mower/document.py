@@ -88,10 +88,9 @@ def _strayed(reading: DocumentReading, outcome: Outcome, album: Album) -> None:
     """What another reading makes of ideal angles."""
     album.note(
         "Ideal angles",
-        f"Figure 7 and the ideal columns of table 1 are filtered by the *corrected* reading. The "
-        f"reading *{reading}* "
-        "trusts ideal angles as much, but not at the right place: its position RMSE with them is "
-        f"{told_range(outcome.rmse)}.",
+        "Figure 7 and the ideal columns of table 1 are filtered by the *corrected* reading. The "
+        f"reading *{reading}* trusts ideal angles as much, but not at the right place: its "
+        f"position RMSE with them is {told_range(outcome.rmse)}.",
     )
 
 

@@ -50,8 +50,8 @@ def paths(scene: Scene, track: Track, album: Album) -> None:
     album.add(
         figure, "fig4-paths", "Figure 4: true and estimated path, and the markers",
         "Where no marker is in view the estimate wanders off, by dead reckoning alone; with the "
-        "next one it jumps "
-        "back. In the print, too, the reference is darker and the estimate lighter. "
+        "next one it jumps back. In the print, too, the reference is darker and the "
+        "estimate lighter. "
         + ("The field has its 50 by 75 m and its 28 markers; where they stood it does not say."
            if scene.log is None else ""),
     )  # fmt: skip
@@ -81,12 +81,9 @@ def markers_and_trace(track: Track, blind: Array, album: Album) -> None:
     album.add(
         figure, "fig5-markers-and-trace", "Figure 5: number of visible markers, and trace of P",
         "Whenever a marker comes into view the trace falls, and it grows until the next. Without "
-        "markers it grows "
-        f"ever faster, because an unsure heading makes an unsure place.{longest} The print shows "
-        f"the same saw on a "
-        "linear scale, where one tooth hides the others; hence the logarithm here. The trace adds "
-        "m² and rad², as the "
-        "document does.",
+        f"markers it grows ever faster, because an unsure heading makes an unsure place.{longest} "
+        "The print shows the same saw on a linear scale, where one tooth hides the others; hence "
+        "the logarithm here. The trace adds m² and rad², as the document does.",
     )  # fmt: skip
 
 
@@ -119,9 +116,8 @@ def errors(track: Track, blind: Array, album: Album) -> None:
         + " The heading's ±2σ is wider than its errors, and meant to be: the document takes the "
           "noise of the heading "
         "from the wheels as well (eq. 22), although the gyro turns it, and chose Q with room to "
-        "spare. The "
-        "print shows the errors alone, with peaks of the same kind where no marker or a single "
-        "one was visible.",
+        "spare. The print shows the errors alone, with peaks of the same kind where no marker or a "
+        "single one was visible.",
     )  # fmt: skip
 
 
@@ -146,10 +142,8 @@ def _told_of_errors(track: Track, blind: Array) -> str:
     held = np.mean(np.abs(track.heading_error) <= 2 * np.sqrt(P[:, 2, 2]))
     return (
         f"The position error is largest at {worst:.0f} s ({np.nanmax(error):.2f} "
-        f"m){''.join(after[:1])}. It stays "
-        f"below 2√(P_xx + P_yy), which should hold 95 to 98 %, for {100 * inside:.1f} % of the "
-        f"time, and the heading "
-        f"within ±2σ for {100 * held:.1f} %."
+        f"m){''.join(after[:1])}. It stays below 2√(P_xx + P_yy), which should hold 95 to 98 %, "
+        f"for {100 * inside:.1f} % of the time, and the heading within ±2σ for {100 * held:.1f} %."
     )
 
 
@@ -193,14 +187,11 @@ def close_up(scene: Scene, track: Track, blind: Array, album: Album) -> None:
     album.add(
         figure, "fig7-close-up", "Figure 7: close-up with the time along the path",
         f"Ideal marker angles, around the longest interruption: from {a:.0f} to {b:.0f} s no "
-        f"marker is in view. The "
-        f"numbers are seconds from the beginning, beside the true path; dotted lines join truth "
-        f"and estimate of one "
-        f"instant. The estimate strays by up to {np.nanmax(apart, initial=0.0):.2f} m and jumps "
-        f"back when a marker is "
-        "seen again: perfect angles cannot help while there are none. In the print the jump is at "
-        "285 to 300 s, in a "
-        "curve with a single marker or none.",
+        "marker is in view. The numbers are seconds from the beginning, beside the true path; "
+        "dotted lines join truth and estimate of one instant. The estimate strays by up to "
+        f"{np.nanmax(apart, initial=0.0):.2f} m and jumps back when a marker is seen again: "
+        "perfect angles cannot help while there are none. In the print the jump is at 285 to 300 "
+        "s, in a curve with a single marker or none.",
     )  # fmt: skip
 
 

@@ -31,11 +31,9 @@ READ = ["position RMSE (m)", "heading RMSE (°)", "mean NEES (3 expected)",
         "what it is"]  # fmt: skip
 LISTING = (
     "the listing's derivatives are of before the last motion input, which is a centimetre and "
-    "matters little, but it "
-    "holds every marker of a picture against the estimate from before that picture, so that an "
-    "error which the first "
-    "marker has corrected is corrected once more by the next, while P shrinks as if each had told "
-    "something new"
+    "matters little, but it holds every marker of a picture against the estimate from before that "
+    "picture, so that an error which the first marker has corrected is corrected once more by the "
+    "next, while P shrinks as if each had told something new"
 )
 
 
@@ -70,32 +68,23 @@ def table_1(real: Outcome, ideal: Outcome, alone: Outcome, album: Album) -> None
     runs = real.position.shape[1]
     whose = (
         f"Over {runs} runs, each figure the mean of the runs' ± its standard deviation between "
-        f"them; errors are "
-        "counted five times a second. What truly disturbs this mower is less than the filter is "
-        "told (see its world "
-        "file): the document chose Q with room to spare, and where a mower is shaken by 0.5° "
-        "every 10 ms no ideal "
-        "angles can halve the errors of its heading."
+        "them; errors are counted five times a second. What truly disturbs this mower is less than "
+        "the filter is told (see its world file): the document chose Q with room to spare, and "
+        "where a mower is shaken by 0.5° every 10 ms no ideal angles can halve the errors of "
+        "its heading."
         if runs > 1 else f"Of one log, errors at {len(real.position)} motion inputs."
     )  # fmt: skip
     album.table(
         "table1-errors", "Table 1: position and heading error statistics", header, rows,
-        f"{whose}\n\n"
-        f"Ideal angles are those of the true pose, with R = 10⁻¹² I (eq. 31). They leave "
-        f"{mean:.0f} % of the mean "
-        f"position error and {turned:.0f} % of the heading's standard deviation; in the print it "
-        f"is 35 % and 37 %. "
-        "What accumulates between two sights of a marker no angle can undo; the document blames, "
-        "besides, camera "
-        "stamps that do not quite fit its pose log. By the motion inputs alone the last pose is "
-        "off by "
-        f"{drift:.2g}° and {strayed:.2g} m{' (RMS)' if runs > 1 else ''}: the gyro keeps the "
-        f"heading, "
-        "though Q does not trust it, and the place needs the markers.\n\n"
-        "The printed column of real headings does not hang together: a standard deviation of "
-        "3.488° has a variance of "
-        "12.17, not 2.168, which belongs to 1.472°. In the other columns the variance is the "
-        "square.",
+        f"{whose}\n\nIdeal angles are those of the true pose, with R = 10⁻¹² I (eq. 31). They "
+        f"leave {mean:.0f} % of the mean position error and {turned:.0f} % of the heading's "
+        "standard deviation; in the print it is 35 % and 37 %. What accumulates between two sights "
+        "of a marker no angle can undo; the document blames, besides, camera stamps that do not "
+        f"quite fit its pose log. By the motion inputs alone the last pose is off by {drift:.2g}° "
+        f"and {strayed:.2g} m{' (RMS)' if runs > 1 else ''}: the gyro keeps the heading, though Q "
+        "does not trust it, and the place needs the markers.\n\nThe printed column of real "
+        "headings does not hang together: a standard deviation of 3.488° has a variance of 12.17, "
+        "not 2.168, which belongs to 1.472°. In the other columns the variance is the square.",
     )  # fmt: skip
 
 
@@ -130,11 +119,9 @@ def differences(entries: Iterable[Entry], album: Album) -> None:
     album.table(
         "differences", "R: measured angles less those of the true pose", header, rows,
         f"{len(e)} sights of one run. So the document has found the R of eq. 30: 0.048 rad are "
-        f"2.750°, 0.006 rad are "
-        f"0.344°. A standard deviation of so many is itself unsure by "
-        f"{100 / np.sqrt(2 * len(e)):.1f} %, a mean by the "
-        f"{np.sqrt(len(e)):.0f}th part of it. A mean that is far from 0 tells of a bias, which no "
-        f"R makes up for.",
+        "2.750°, 0.006 rad are 0.344°. A standard deviation of so many is itself unsure by "
+        f"{100 / np.sqrt(2 * len(e)):.1f} %, a mean by the {np.sqrt(len(e)):.0f}th part of it. A "
+        "mean that is far from 0 tells of a bias, which no R makes up for.",
     )  # fmt: skip
 
 
@@ -152,19 +139,14 @@ def readings_of_runs(
     album.table(
         "readings", "What the print and the listing cost", ["true mower", "reading", *READ], rows,
         f"Runs 0 to {runs - 1}, each drive filtered in every way; ± is the standard deviation "
-        f"between runs. *As it is* "
-        "the mower is disturbed by less than the filter is told; *as told* it is disturbed as Q "
-        "says (eq. 29).\n\n"
-        f"The sign of eq. 25 makes the filter go away from a marker that is too near, and that "
-        f"does not depend on the "
-        f"mower: {costs(quiet, 'printed')} as it is, {costs(shaken, 'printed')} as told.\n\n"
-        f"What the listing costs does depend on it: {LISTING}. As it is: {costs(quiet, 'coded')}, "
-        f"and "
+        "between runs. *As it is* the mower is disturbed by less than the filter is told; *as "
+        "told* it is disturbed as Q says (eq. 29).\n\nThe sign of eq. 25 makes the filter go away "
+        "from a marker that is too near, and that does not depend on the mower: "
+        f"{costs(quiet, 'printed')} as it is, {costs(shaken, 'printed')} as told.\n\nWhat the "
+        f"listing costs does depend on it: {LISTING}. As it is: {costs(quiet, 'coded')}, and "
         f"{_turned(quiet)} the heading RMSE; its mean NEES is {_judged(quiet['coded'])}, as long "
-        f"as Q has so much room "
-        f"to spare. As told: {costs(shaken, 'coded')}, {_turned(shaken)} the heading RMSE, and "
-        f"its mean NEES is "
-        f"{_judged(shaken['coded'])}.",
+        f"as Q has so much room to spare. As told: {costs(shaken, 'coded')}, {_turned(shaken)} the "
+        f"heading RMSE, and its mean NEES is {_judged(shaken['coded'])}.",
     )  # fmt: skip
 
 
@@ -180,13 +162,10 @@ def readings_of_log(
     album.table(
         "readings", "What the print and the listing cost", ["reading", *READ], _rows(outcomes),
         f"One log, filtered three times, its pictures at the rows to which *{associated}* assigns "
-        f"them; one log proves "
-        "little. The sign of eq. 25 makes the filter go away from a "
-        f"marker that is too near: {wrong:.3g} m in place of {best:.3g} m. The listing gives "
-        f"{listing:.3g} m: "
-        f"{LISTING}. What that costs depends on how much room Q leaves; the figures of the "
-        f"simulated mower tell it "
-        "over many runs.",
+        "them; one log proves little. The sign of eq. 25 makes the filter go away from a marker "
+        f"that is too near: {wrong:.3g} m in place of {best:.3g} m. The listing gives "
+        f"{listing:.3g} m: {LISTING}. What that costs depends on how much room Q leaves; the "
+        "figures of the simulated mower tell it over many runs.",
     )  # fmt: skip
 
 
@@ -210,8 +189,8 @@ def costs(outcomes: Mapping[DocumentReading, Outcome], reading: DocumentReading)
     low, high = 100 * (ratio.min() - 1), 100 * (ratio.max() - 1)
     return (
         f"{abs(100 * (mean - 1)):.0f} % {'more' if mean > 1 else 'less'} RMSE "
-        f"({_signed(f'{low:.0f}')} to "
-        f"{_signed(f'{high:.0f}')} % in single runs, worse in {worse} of {len(ratio)})"
+        f"({_signed(f'{low:.0f}')} to {_signed(f'{high:.0f}')} % in single runs, worse in {worse} "
+        f"of {len(ratio)})"
     )
 
 

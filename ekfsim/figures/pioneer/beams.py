@@ -19,37 +19,27 @@ from ekfsim.systems.instruments import Infrared, Ultrasonic
 SHADES = {"white": ORANGE, "red": VERMILLION, "blue": BLUE, "green": GREEN, "black": BLACK}
 EACH = 200  # ultrasonic readings at each distance
 INFRARED = """
-What a pair of emitter and receiver says of a wall {nearest:g} to {farthest:g} m in front of it, \
-for five colours:
-lines are the model I = ρ (offset − gain ln r), dots simulated readings with σ = {sigma:g} V. On \
-the right the same
-over the logarithm of the distance: straight lines, whose slope is the colour. So an intensity \
-alone is no distance:
-{volt:.2f} V is a white wall at {far:.2f} m or a blue one at {near:.2f} m, and the filter has to \
-be told the colour of
-its walls.
+What a pair of emitter and receiver says of a wall {nearest:g} to {farthest:g} m in front of it, for
+five colours: lines are the model I = ρ (offset − gain ln r), dots simulated readings with σ =
+{sigma:g} V. On the right the same over the logarithm of the distance: straight lines, whose slope
+is the colour. So an intensity alone is no distance: {volt:.2f} V is a white wall at {far:.2f} m or
+a blue one at {near:.2f} m, and the filter has to be told the colour of its walls.
 
-Compared with the print: the text says of figure 4 that the dependency is almost logarithmic and \
-that the colour has
-an important impact, and so it is here, by the model. It prints no numbers: gain {gain:g} V per \
-e-fold, offset
-{offset:g} V and the reflectances ρ are ours.
+Compared with the print: the text says of figure 4 that the dependency is almost logarithmic and
+that the colour has an important impact, and so it is here, by the model. It prints no numbers: gain
+{gain:g} V per e-fold, offset {offset:g} V and the reflectances ρ are ours.
 """
 ULTRASONIC = """
-The error of {each} simulated readings at each of {n} distances from {nearest:g} to {farthest:g} \
-m. Left: |error|
-(dots), its root mean square at each distance (circles), and what the filter is told, σ(r) = \
-{sigma:g} mm + {slope:g}
-mm/m · r (line). Right: the variance of the error, with the same σ²(r), and the constant one that \
-would fit on average
-(dashed), {low:.1f} times too large at the near end and {high:.1f} times too small at the far end. \
-{each} readings
-leave ± {scatter:.0f} % of σ to chance; the worst circle is {worst:.0f} % off.
+The error of {each} simulated readings at each of {n} distances from {nearest:g} to {farthest:g} m.
+Left: |error| (dots), its root mean square at each distance (circles), and what the filter is told,
+σ(r) = {sigma:g} mm + {slope:g} mm/m · r (line). Right: the variance of the error, with the same
+σ²(r), and the constant one that would fit on average (dashed), {low:.1f} times too large at the
+near end and {high:.1f} times too small at the far end. {each} readings leave ± {scatter:.0f} % of σ
+to chance; the worst circle is {worst:.0f} % off.
 
-Compared with the print: figure 6 is the document's reason for a covariance that depends on the \
-distance; it prints no
-numbers, so that σ(r) is ours. The model has no outliers: no second echoes and no crosstalk, which \
-a real room has.
+Compared with the print: figure 6 is the document's reason for a covariance that depends on the
+distance; it prints no numbers, so that σ(r) is ours. The model has no outliers: no second echoes
+and no crosstalk, which a real room has.
 """
 
 

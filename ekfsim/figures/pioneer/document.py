@@ -11,6 +11,7 @@ from ekfsim.figures.album import Album
 from ekfsim.figures.pioneer.beams import draw_infrared, draw_ultrasonic
 from ekfsim.figures.pioneer.echo import draw_echo
 from ekfsim.figures.pioneer.filters import draw_filters
+from ekfsim.figures.pioneer.flight import draw_flight
 from ekfsim.figures.pioneer.polar import draw_polar
 from ekfsim.figures.pioneer.square import draw_square, told_of_arctan
 from ekfsim.figures.track import Track, rmse
@@ -20,12 +21,10 @@ from ekfsim.version import VERSION
 
 ON_LOGS = {"kf": "LKF", "ekf": "EKF", "ukf": "UKF"}
 LOG = """
-Errors at every instant of the recorded run whose truth is known. One run cannot tell NEES or the \
-share of lost runs:
-the simulated twin's table, drawn without `--log`, does. The LKF is linearised once, at the first \
-belief, and fails
-where the robot has turned; about the way as it was planned it would not, and that a log does not \
-tell.
+Errors at every instant of the recorded run whose truth is known. One run cannot tell NEES or the
+share of lost runs: the simulated twin's table, drawn without `--log`, does. The LKF is linearised
+once, at the first belief, and fails where the robot has turned; about the way as it was planned it
+would not, and that a log does not tell.
 """
 
 
@@ -37,6 +36,7 @@ def draw_pioneer(scene: Scene, album: Album) -> None:
     draw_polar(scene, bench)
     draw_infrared(scene, bench)
     draw_echo(scene, bench)
+    draw_flight(scene, bench)
     draw_ultrasonic(scene, bench)
     if scene.log is not None:
         draw_square(scene, album, "")

@@ -37,38 +37,30 @@ LINES = {  # all but the first lie on one another
 STARTS = ((0.02, 2.0), (0.2, 20.0), (0.3, 30.0))
 RESAMPLED = 2000  # times, to see what other runs might have said
 OVER_TIME = """
-RMSE of position (top) and heading (bottom) over {runs} runs, at every instant; the robot is set \
-down on its mark to 2
-cm and 2°. Corners are shaded. All filters are given the same readings. The LKF that is linearised \
-once, at the first
-belief, is nearly as good as the others on the first side ({kf_first:.1f} mm against \
-{ekf_first:.1f} mm) and lost from
-the first corner on: it goes on believing that the robot drives east and that each beam looks at \
-the wall it looked at
-first. Over the run it is {kf:.2f} m off, which is worse than no filter ({odometry:.2f} m). \
-Linearised about the path
-as it is planned, the same LKF is {nominal:.1f} mm off, the EKF {ekf:.1f} mm and the UKF {ukf:.1f} \
-mm. What fails is not
-the linear filter, but a line that is drawn where the robot no longer is.
+RMSE of position (top) and heading (bottom) over {runs} runs, at every instant; the robot is set
+down on its mark to 2 cm and 2°. Corners are shaded. All filters are given the same readings. The
+LKF that is linearised once, at the first belief, is nearly as good as the others on the first side
+({kf_first:.1f} mm against {ekf_first:.1f} mm) and lost from the first corner on: it goes on
+believing that the robot drives east and that each beam looks at the wall it looked at first. Over
+the run it is {kf:.2f} m off, which is worse than no filter ({odometry:.2f} m). Linearised about the
+path as it is planned, the same LKF is {nominal:.1f} mm off, the EKF {ekf:.1f} mm and the UKF
+{ukf:.1f} mm. What fails is not the linear filter, but a line that is drawn where the robot no
+longer is.
 
 The document has no such figure: it names the three and compares them in words.
 """
 TABLE = """
-{runs} runs (0 to {last}, seed {seed}), driven alike and read alike. "Set down to": the standard \
-deviation of the
-first pose, which all filters are told. RMSE over all instants and runs, and of the median run; \
-NEES of the pose at
-the end (a mean of 3, a median of 2.4 are right; a few lost runs dominate a mean); lost: NEES \
-beyond the 99.9 % point
-of χ², 16.3. In brackets are 95 % intervals: of an RMSE or a ratio of two by drawing these runs \
-again and again, of a
-share Wilson's. "Refused": readings in a run that the filter did not use because it predicted none.
+{runs} runs (0 to {last}, seed {seed}), driven alike and read alike. "Set down to": the standard
+deviation of the first pose, which all filters are told. RMSE over all instants and runs, and of the
+median run; NEES of the pose at the end (a mean of 3, a median of 2.4 are right; a few lost runs
+dominate a mean); lost: NEES beyond the 99.9 % point of χ², 16.3. In brackets are 95 % intervals: of
+an RMSE or a ratio of two by drawing these runs again and again, of a share Wilson's. "Refused":
+readings in a run that the filter did not use because it predicted none.
 
-- The LKF about the start (`kf`) fails in every run: a square has four headings, and it knows one. \
-The same filter
-  about the plan (`kf-nominal`) knows where the robot should be. The driver holds the robot to its \
-path by its true
-  pose, so the plan is nearly the truth: this is the best that such a filter can do.
+- The LKF about the start (`kf`) fails in every run: a square has four headings, and it knows one.
+The same filter   about the plan (`kf-nominal`) knows where the robot should be. The driver holds
+the robot to its path by its true   pose, so the plan is nearly the truth: this is the best that
+such a filter can do.
 
 - Set down to 2 cm and 2°: {usual}
 
@@ -76,19 +68,16 @@ path by its true
 
 - To 30 cm and 30°: {wide}
 
-- A UKF refuses a reading where any one of its sigma points sees no wall, an EKF where its mean \
-sees none. The cautious
-  EKF is an EKF with the UKF's rule. At 30 cm and 30° the EKF refuses {ekf_blind:.0f} readings a \
-run and loses
-  {ekf_lost} of the runs, the cautious EKF {cautious_blind:.0f} and {cautious_lost}, the UKF \
-{ukf_blind:.0f} and
-  {ukf_lost}. In percentage points of lost runs the rule costs {rule}, and what is unscented \
-{points}.
+- A UKF refuses a reading where any one of its sigma points sees no wall, an EKF where its mean sees
+none. The cautious   EKF is an EKF with the UKF's rule. At 30 cm and 30° the EKF refuses
+{ekf_blind:.0f} readings a run and loses   {ekf_lost} of the runs, the cautious EKF
+{cautious_blind:.0f} and {cautious_lost}, the UKF {ukf_blind:.0f} and   {ukf_lost}. In percentage
+points of lost runs the rule costs {rule}, and what is unscented {points}.
 
-- The augmented UKF (`ukf-augmented`) has the noise in its sigma points, as eq. 22 has it; the UKF \
+- The augmented UKF (`ukf-augmented`) has the noise in its sigma points, as eq. 22 has it; the UKF
 adds it. {eq_22}
 
-{verdict} What decides is where a filter linearises, and which readings it refuses. The document \
+{verdict} What decides is where a filter linearises, and which readings it refuses. The document
 prints no numbers.
 """
 
@@ -245,8 +234,8 @@ def _compared(a: str, b: str, crowds: dict[str, Crowd]) -> str:
     told = f"The {first} errs by {off[0]:.1f} mm, the {second} by {off[1]:.1f} mm"
     if low <= 1 <= high:
         return (
-            f"{told}: no difference that {crowds[a].nees.size} runs can tell ({ratio:.2f} "
-            f"times {_in(low, high, 2)})"
+            f"{told}: no difference that {crowds[a].nees.size} runs can tell ({ratio:.2f} times "
+            f"{_in(low, high, 2)})"
         )
     if low > 1:
         return f"{told}: the {second} is better, {ratio:.2f} times {_in(low, high, 2)}"

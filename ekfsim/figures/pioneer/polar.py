@@ -23,37 +23,27 @@ P_READING = np.diag([RANGE_SIGMA**2, BEARING_SIGMA**2])
 SAMPLES, SHOWN = 1_000_000, 1500
 ONE_SIGMA = 1 - math.exp(-0.5)  # the probability of the ellipse of one standard deviation
 CAPTION = """
-A range of 1 m ± 2 cm and a bearing of 90° ± 15° (standard deviations) of a beacon at (0, 1). \
-Grey: {shown} of
-{samples} readings, a banana. Ellipses reach one standard deviation. The true mean lies at (0, \
-{exact:.4f}): bearings
-that are wrong to either side pull it down. Left: the linearised mean stays at (0, 1), {off:.1f} \
-true standard
-deviations of y too high, and its ellipse is {flat:.1f} times too flat. Right: the five sigma \
-points of the unscented
-transform (κ = 1) lie on the banana, and their mean and ellipse hide the true ones: they differ by \
-{slip:.1g} m and by
-{slack:.0f} % of the smaller variance.
+A range of 1 m ± 2 cm and a bearing of 90° ± 15° (standard deviations) of a beacon at (0, 1). Grey:
+{shown} of {samples} readings, a banana. Ellipses reach one standard deviation. The true mean lies
+at (0, {exact:.4f}): bearings that are wrong to either side pull it down. Left: the linearised mean
+stays at (0, 1), {off:.1f} true standard deviations of y too high, and its ellipse is {flat:.1f}
+times too flat. Right: the five sigma points of the unscented transform (κ = 1) lie on the banana,
+and their mean and ellipse hide the true ones: they differ by {slip:.1g} m and by {slack:.0f} % of
+the smaller variance.
 
-Compared with the print: the same banana and the same two means. The document takes (0, 1) for the \
-real mean and says
-that the unscented mean coincides with it and its covariance is circular. The beacon stands at (0, \
-1); the mean of its
-readings does not, and that is what the unscented mean coincides with. Its ellipse is {round:.0f} \
-times wider than
-high; circular it looks only with axes of different scales. And sigma points do not "capture the \
-true mean and
-covariance of any nonlinear system": here the variance of y is {slack:.0f} % off. They are those \
-of eq. 14.
+Compared with the print: the same banana and the same two means. The document takes (0, 1) for the
+real mean and says that the unscented mean coincides with it and its covariance is circular. The
+beacon stands at (0, 1); the mean of its readings does not, and that is what the unscented mean
+coincides with. Its ellipse is {round:.0f} times wider than high; circular it looks only with axes
+of different scales. And sigma points do not "capture the true mean and covariance of any nonlinear
+system": here the variance of y is {slack:.0f} % off. They are those of eq. 14.
 """
 TABLE = """
-Moments of (x, y) in m and m². κ = 1 (n + κ = 3, Julier's choice for a Gaussian) is nearest to the \
-exact ones in every
-column; κ = 0 counts the mean itself for nothing and misses the variance of y by {third:.0f} %; \
-the scaled transform,
-whose points lie within two thousandths of a standard deviation, has a second-order mean and the \
-linearised variance
-of x. What is left of the Monte Carlo row's difference is chance. The document prints no numbers.
+Moments of (x, y) in m and m². κ = 1 (n + κ = 3, Julier's choice for a Gaussian) is nearest to the
+exact ones in every column; κ = 0 counts the mean itself for nothing and misses the variance of y by
+{third:.0f} %; the scaled transform, whose points lie within two thousandths of a standard
+deviation, has a second-order mean and the linearised variance of x. What is left of the Monte Carlo
+row's difference is chance. The document prints no numbers.
 """
 
 

@@ -15,45 +15,35 @@ from ekfsim.scene import Scene
 from ekfsim.systems.drives import Course
 
 DRIVEN = """
-The square of 2 × 2 m in a room of {room}, driven once in {seconds:.0f} s (run {run} of seed \
-{seed}). The driver holds
-the robot to the square by its true pose, so that only estimates stray. On the right its corners \
-are shaded.
+The square of 2 × 2 m in a room of {room}, driven once in {seconds:.0f} s (run {run} of seed
+{seed}). The driver holds the robot to the square by its true pose, so that only estimates stray. On
+the right its corners are shaded.
 """
 RECORDED = """
 A recorded run of {seconds:.0f} s in a room of {room}.
 """
 SQUARE = """
-{whence} Left: the true way (black), what the wheels alone make of it (orange) and the {filter}'s \
-estimate with its
-95.4 % ellipses, ten times as large, every {every:.0f} s (blue, close to the black line). Right: \
-the errors over time.
-Odometry ends {end:.2f} m and {turned:.1f}° off (RMSE {odometry:.3f} m): the wheels' errors turn \
-the heading, and
-nothing turns it back. The filter, which also hears and sees the walls, keeps to {filtered:.1f} mm \
-and {heading:.2f}°.
+{whence} Left: the true way (black), what the wheels alone make of it (orange) and the {filter}'s
+estimate with its 95.4 % ellipses, ten times as large, every {every:.0f} s (blue, close to the black
+line). Right: the errors over time. Odometry ends {end:.2f} m and {turned:.1f}° off (RMSE
+{odometry:.3f} m): the wheels' errors turn the heading, and nothing turns it back. The filter, which
+also hears and sees the walls, keeps to {filtered:.1f} mm and {heading:.2f}°.
 
-Compared with the print: of figure 7 the text says that the trajectory is noisy and drifts in \
-orientation, "which is
-hard to detect even with the EKF": that EKF was given no walls, and without them no filter can. \
-Here ultrasonic and
-infrared readings tell them. {arctan}
+Compared with the print: of figure 7 the text says that the trajectory is noisy and drifts in
+orientation, "which is hard to detect even with the EKF": that EKF was given no walls, and without
+them no filter can. Here ultrasonic and infrared readings tell them. {arctan}
 """
 UNKNOWN = """
-{whence} Orange: what the wheels alone make of it; blue: the {filter}'s estimate with its 95.4 % \
-ellipses, ten times
-as large, every {every:.0f} s. The log tells no truth, so there are no errors to draw; at the end \
-the two are
-{apart:.2f} m apart.
+{whence} Orange: what the wheels alone make of it; blue: the {filter}'s estimate with its 95.4 %
+ellipses, ten times as large, every {every:.0f} s. The log tells no truth, so there are no errors to
+draw; at the end the two are {apart:.2f} m apart.
 """
 ARCTAN = """
-Eq. 33 turns the heading by the arctangent of the wheels' difference over W, and the simulated \
-wheels obey it. On an
-arc the turn is that ratio itself (`robot: {{odometry: midpoint}}`): at {rate:g} inputs a second \
-the two differ by
-{gained:.2f}° over the four corners. No equation of this filter is printed wrongly and the \
-document comes without
-code, so `--reading printed` and `coded` change nothing here.
+Eq. 33 turns the heading by the arctangent of the wheels' difference over W, and the simulated
+wheels obey it. On an arc the turn is that ratio itself (`robot: {{odometry: midpoint}}`): at
+{rate:g} inputs a second the two differ by {gained:.2f}° over the four corners. No equation of this
+filter is printed wrongly and the document comes without code, so `--reading printed` and `coded`
+change nothing here.
 """
 
 

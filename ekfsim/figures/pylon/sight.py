@@ -9,12 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ekfsim.filters.chi_square import band
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.layout import INERTIAL
 from ekfsim.records import Step
 
 HALF_WINDOW = 5  # steps to each side, over which a turn rate is taken
 TURNING = (0.0, 5.0, 20.0, 40.0)  # degrees/s from which on a turn is slow, …, fast
+INSIDE = 0.95  # of χ²₂: the band that a NIS is held against
 LONG = 1.5  # usual steps, a longer one is a gap
 
 
@@ -108,3 +110,9 @@ class Innovations:
         """Where a reading comes after a gap : (K,)"""
         dt = np.diff(self.t)
         return np.concatenate([[False], dt > LONG * np.median(dt)])
+
+
+def inside(found: Innovations) -> float:
+    """The share of readings whose NIS lies in the 95 % band, in %."""
+    low, high = band(INSIDE, 2)
+    return 100 * float(np.mean((found.nis >= low) & (found.nis <= high)))

@@ -21,9 +21,8 @@ def yaw_filter(scene: Scene, album: Album) -> None:
         album.note(
             "The yaw filter",
             "Read in the lidar's own frame (`--world pylon-lidar`), a reading corrects the yaw as "
-            "well: the second row "
-            "of the table above. What that is worth to the heading needs a truth, and many runs: "
-            "`ekfsim figures pylon` without a log tells it.",
+            "well: the second row of the table above. What that is worth to the heading needs a "
+            "truth, and many runs: `ekfsim figures pylon` without a log tells it.",
         )
         return
     told = retold(scene, "corrected")
@@ -40,19 +39,13 @@ def yaw_filter(scene: Scene, album: Album) -> None:
          "NEES beyond its 99.9 % quantile (%)"],
         rows,
         "The mean of the runs, and from the least to the most of them. The document turns the "
-        "reading by the yaw "
-        "before its filter sees it, and says in its conclusion that so the yaw is not filtered at "
-        "all. Read in its own "
-        "frame (the sensor `lidar`: `ekfsim play pylon-lidar`) the pylon tells of the yaw, too: θ "
-        "is in "
-        "H. "
-        f"The heading's error is {np.mean(own.heading / turned.heading):.2f} times as large on "
-        f"average, smaller in "
+        "reading by the yaw before its filter sees it, and says in its conclusion that so the yaw "
+        "is not filtered at all. Read in its own frame (the sensor `lidar`: `ekfsim play "
+        "pylon-lidar`) the pylon tells of the yaw, too: θ is in H. The heading's error is "
+        f"{np.mean(own.heading / turned.heading):.2f} times as large on average, smaller in "
         f"{better} of {RUNS} runs; the position's {np.mean(own.position / turned.position):.3f} "
-        f"times, for the R of "
-        "the one holds the error of the yaw that is in the P of the other. Of an honest filter "
-        "0.1 % of the instants "
-        "have a NEES beyond that quantile.",
+        "times, for the R of the one holds the error of the yaw that is in the P of the other. Of "
+        "an honest filter 0.1 % of the instants have a NEES beyond that quantile.",
     )  # fmt: skip
 
 

@@ -186,16 +186,14 @@ class TuningKeys(Strict):
         Tuning.range_variance,
         alias="rangeVariance",
         description="Whence the classroom's C_v = (ratio · r)² takes its r: the prediction, or (a "
-        "counter-example) the "
-        "reading.",
+        "counter-example) the reading.",
         examples=["reading"],
     )
     cross_covariances: CrossCovariances = Field(
         Tuning.cross_covariances,
         alias="crossCovariances",
         description="Whether σ_xθ and σ_yθ are kept in the classroom's P, or (a counter-example) "
-        "dropped after every "
-        "step. Not of the pf, which has no P.",
+        "dropped after every step. Not of the pf, which has no P.",
         examples=["dropped"],
     )
 
@@ -222,8 +220,7 @@ class CommandsKeys(Strict):
     world: Name | None = Field(
         None,
         description="The world file, relative to this file, or the bare name of one that comes "
-        "along; a world named on "
-        "the command line wins.",
+        "along; a world named on the command line wins.",
         examples=["../worlds/classroom.yaml"],
     )
     seed: Seed = Field(0, description="Whole number below 2³² that fixes all noise; --seed wins.")

@@ -24,8 +24,7 @@ class PathKeys(PartKeys):
 
     path: Literal["spiral", "square", "circle"] = Field(
         description="spiral: from the outside of a field inwards. square: straight sides and "
-        "turns in place. "
-        "circle: round and round.",
+        "turns in place. circle: round and round.",
         examples=["spiral"],
     )
     width: Positive | None = Field(

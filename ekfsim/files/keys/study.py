@@ -58,8 +58,7 @@ class StudyKeys(Strict):
     world: Name | None = Field(
         None,
         description="A world file in place of the one that the commands file names, relative to "
-        "this file, or the "
-        "name of one that comes along.",
+        "this file, or the name of one that comes along.",
         examples=["../worlds/classroom.yaml"],
     )
     description: Text = Field("", description="What this study is to show.")
@@ -102,8 +101,7 @@ class StudyKeys(Strict):
     fast: bool = Field(
         False,
         description="Whether the runs are calculated by code that Numba compiles (the extra "
-        "`fast`); alike but for the "
-        "last digits.",
+        "`fast`); alike but for the last digits.",
         examples=[True],
     )
     a: Side = Field(

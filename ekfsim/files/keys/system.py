@@ -123,10 +123,8 @@ class ToldRobotKeys(PartKeys):
     odometry: Literal["arctan", "midpoint", "skidSteer", "gyro"] | None = Field(
         None,
         description="What tells the turn. mower: its gyro (the default), or the wheels by "
-        "equation 20 (midpoint). "
-        "pioneer: the wheels by equation 33 with its arctangent (the default), by the mid-point "
-        "rule, or by the "
-        "skid-steer matrix of equation 30.",
+        "equation 20 (midpoint). pioneer: the wheels by equation 33 with its arctangent (the "
+        "default), by the mid-point rule, or by the skid-steer matrix of equation 30.",
         examples=["midpoint"],
     )
     skid: list[Row] | None = Field(
@@ -135,8 +133,8 @@ class ToldRobotKeys(PartKeys):
         min_length=3,
         max_length=3,
         description="The skid-steer matrix of equation 30: forward speed, sideward speed (m/s) "
-        "and turn rate (rad/s) "
-        "of the speeds [right, left] (m/s). Default: pioneer [[0.5, 0.5], [0, 0], [2.5, -2.5]].",
+        "and turn rate (rad/s) of the speeds [right, left] (m/s). Default: pioneer [[0.5, 0.5], "
+        "[0, 0], [2.5, -2.5]].",
         examples=[[[0.5, 0.5], [0, 0], [2.5, -2.5]]],
     )
     skid_sigma: Spread | None = Field(

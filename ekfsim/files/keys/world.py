@@ -99,9 +99,8 @@ class StartKeys(Pose):
     sigma: SigmaKeys | None = Field(
         None,
         description="Standard deviations from which the true start of each run is drawn, x and y "
-        "in m, theta in "
-        "degrees. The first belief has the same, unless `belief` says otherwise. 0 where nothing "
-        "is said.",
+        "in m, theta in degrees. The first belief has the same, unless `belief` says otherwise. 0 "
+        "where nothing is said.",
         examples=[SIGMA],
     )
 
@@ -188,8 +187,8 @@ class BeliefKeys(Strict):
     sigma: SigmaKeys | None = Field(
         None,
         description="Standard deviations of the first belief, x and y in m, theta in degrees; "
-        "each left out is that "
-        "of start.sigma, and 0 where nothing is said. Moves nothing in the truth.",
+        "each left out is that of start.sigma, and 0 where nothing is said. Moves nothing in "
+        "the truth.",
         examples=[SIGMA],
     )
     noise: ToldNoiseKeys | None = Field(
@@ -200,16 +199,15 @@ class BeliefKeys(Strict):
     robot: ToldRobotKeys | None = Field(
         None,
         description="What the filter is told of the robot; what is left out is as in `robot`. Not "
-        "in the classroom. "
-        "(`ekfsim check` also refuses skidSteer for one of the two alone, as no schema can.)",
+        "in the classroom. (`ekfsim check` also refuses skidSteer for one of the two alone, as no "
+        "schema can.)",
         examples=[{"wheelSigma": 0.02}],
     )
     sensors: ToldSensorsKeys | None = Field(
         None,
         description="What the filter is told of the sensors, by their names; what is left out is "
-        "as in `sensors`. Not "
-        "in the classroom. (`ekfsim check` also refuses sensors that the robot does not carry, as "
-        "no schema can.)",
+        "as in `sensors`. Not in the classroom. (`ekfsim check` also refuses sensors that the "
+        "robot does not carry, as no schema can.)",
         examples=[{"markers": {"azimuthSigma": 5}}],
     )
     missing: list[Name] | None = Field(
@@ -241,8 +239,7 @@ class WorldKeys(Strict):
     system: SystemName = Field(
         "classroom",
         description="Whose robot this is: the classroom's, which obeys commands, or that of a "
-        "document or a recorded "
-        "log, which is driven along a way.",
+        "document or a recorded log, which is driven along a way.",
         examples=["mower"],
     )
     boundary: Polygon | None = Field(
@@ -264,8 +261,7 @@ class WorldKeys(Strict):
     noise: NoiseKeys | None = Field(
         None,
         description="The five noise ratios, all required in the classroom; the other systems have "
-        "theirs in robot and "
-        "sensors.",
+        "theirs in robot and sensors.",
         examples=[
             {
                 "executionDstSigmaRatio": 0.05,
@@ -292,8 +288,7 @@ class WorldKeys(Strict):
         None,
         alias="expectedPath",
         description="The way that was meant to be driven: an outline that closes by itself, [x, "
-        "y] in m. It is drawn, "
-        "and the summary's path_rmse is measured to it.",
+        "y] in m. It is drawn, and the summary's path_rmse is measured to it.",
         examples=[SQUARE],
     )
     belief: BeliefKeys | None = Field(

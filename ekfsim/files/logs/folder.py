@@ -38,8 +38,8 @@ def find_any(folder: Path, what: str, *patterns: str) -> Path | None:
         if len(found) > 1:
             names_of_some = ", ".join([*found[:3], *(["…"] if len(found) > 3 else [])])
             raise UsageError(
-                f"{folder}: several files '{pattern}' in it: {names_of_some}; leave one there for "
-                f"{what}"
+                f"{folder}: several files '{pattern}' in it: {names_of_some}; leave one there "
+                f"for {what}"
             )
         if found:
             return folder / found[0]

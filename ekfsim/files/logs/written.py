@@ -92,7 +92,7 @@ def _differences(scene: Scene, run: Run) -> list[str]:
     )
     return [
         f"the filter of a recorded log begins {belief}: this run began otherwise, and its numbers "
-        f"will differ"
+        "will differ"
     ]
 
 

@@ -33,8 +33,8 @@ class Tum:
         clock = "step" if scene.commanded else "t (s)"
         for file, name in ((truth, "truth"), (estimate, "estimate")):
             file.write(
-                f"# {name}: {told_in_a_line(scene)}\n# {clock} x y z qx qy qz qw (m, unit "
-                f"quaternion)\n"
+                f"# {name}: {told_in_a_line(scene)}\n# {clock} x y z qx qy qz qw (m, "
+                "unit quaternion)\n"
             )
         if scene.log is not None and all(entry.truth is None for entry in scene.log.entries):
             truth.write("# the log does not tell the truth\n")

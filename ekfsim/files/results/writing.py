@@ -74,14 +74,14 @@ def refuse_existing_folder(path: Path, *patterns: str, force: bool = False) -> P
         held = sorted(place.iterdir()) if is_folder(place) else []
         if held and not force:
             raise UsageError(
-                f"{path}: the folder is not empty; choose another, or replace what it holds with "
-                f"--force"
+                f"{path}: the folder is not empty; choose another, or replace what it holds "
+                "with --force"
             )
         for file in held:
             if is_folder(file) or not any(map(file.match, patterns)):
                 raise UsageError(
-                    f"{path}: holds {file.name!r}, which is no result of ekfsim; choose another "
-                    f"folder"
+                    f"{path}: holds {file.name!r}, which is no result of ekfsim; choose "
+                    "another folder"
                 )
     return place
 

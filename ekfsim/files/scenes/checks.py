@@ -263,8 +263,8 @@ def perfect_beam_warnings(file: Sound, world: World) -> Iterator[str]:
     for path in (("belief", "noise", "rangeSigmaRatio"), ("noise", "rangeSigmaRatio")):
         if (node := file.root.at(path)) is not None:
             wrong = (
-                "a linearised filter takes a beam without noise for certain, and soon claims "
-                "a place it is not at"
+                "a linearised filter takes a beam without noise for certain, and soon claims a "
+                "place it is not at"
             )
             yield str(
                 at(

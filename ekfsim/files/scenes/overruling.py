@@ -106,8 +106,8 @@ def _with_sensor(root: Node, kind: str, one: Setting) -> tuple[Node, int]:
         )
     if kinds.count(kind) > 1:
         raise UsageError(
-            f"{one.told}: the world has more than one sensor '{kind}'; write the number into its "
-            f"file"
+            f"{one.told}: the world has more than one sensor '{kind}'; write the number into "
+            "its file"
         )
     return root, kinds.index(kind)
 

@@ -94,8 +94,8 @@ def check_classroom(file: Sound) -> Iterator[Mistake]:
     for key in ("robot", "sensors"):
         if file.root.at(("belief", key)):
             wrong = (
-                f"what is believed of the classroom's "
-                f"{'robot' if key == 'robot' else 'laser'} is told by 'noise'"
+                f"what is believed of the classroom's {'robot' if key == 'robot' else 'laser'} is "
+                "told by 'noise'"
             )
             yield file.mistake(
                 ("belief", key),

@@ -29,8 +29,8 @@ CANNOT_OF: dict[Kind, tuple[str, ...]] = {
     "commands": (
         "whether the files that are named are there",
         "whether it fits the world, as a drive in a classroom does not",
-        "which numbers a drive's path has, and which kappa leaves sigma points to the filter's "
-        "state",
+        "which numbers a drive's path has, and which kappa leaves sigma points to the "
+        "filter's state",
         "pairs whose first number is the larger",
     ),
     "study": (

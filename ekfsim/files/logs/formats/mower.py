@@ -111,7 +111,7 @@ def _landmarks(table: Rows, warnings: list[str]) -> tuple[Landmark, ...]:
         if not np.array_equal(ids, np.arange(len(ids))):
             warnings.append(
                 f"{table.file}: its ids are not 0, 1, 2, …: the angles name a marker by its row, "
-                f"from 0"
+                "from 0"
             )
     elif len(table):
         warnings.append(f"{table.file}: its ids are no names: the markers go by their rows, from 0")

@@ -74,8 +74,8 @@ def _truth(folder: Path, robot: str, warnings: list[str]) -> Truth | None:
     file = find_any(folder, "the true poses", f"{robot}_Groundtruth.dat")
     if file is None:
         warnings.append(
-            f"{folder}: no {robot}_Groundtruth.dat in it: the truth is unknown, and so are the "
-            f"errors"
+            f"{folder}: no {robot}_Groundtruth.dat in it: the truth is unknown, and so are "
+            "the errors"
         )
         return None
     return truth_of(bare_table(file, GROUNDTRUTH, warnings), warnings)

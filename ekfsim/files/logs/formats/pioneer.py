@@ -95,12 +95,12 @@ def _samples(
     if not found:
         names = " nor ".join(f"{name}.csv" for name in wanted or FILES)
         none = (
-            f"{'neither' if ' nor ' in names else 'no'} {names} in it for a sensor of "
-            f"{world.name!r}"
+            f"{'neither' if ' nor ' in names else 'no'} {names} in it for a sensor "
+            f"of {world.name!r}"
         )
         none = (
-            f"{'neither' if ' nor ' in names else 'no'} {names} in it for a sensor of "
-            f"{world.name!r}"
+            f"{'neither' if ' nor ' in names else 'no'} {names} in it for a sensor "
+            f"of {world.name!r}"
         )
         raise UsageError(f"{folder}: {none}: nothing to localize with")
     return samples

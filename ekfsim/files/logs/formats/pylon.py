@@ -101,8 +101,8 @@ def _timed(rows: Rows, lines: Lines, step: float, warnings: list[str]) -> Rows:
     if len(back):
         more = f", and so do {len(back) - 1} more" if len(back) > 1 else ""
         told = (
-            f"{rows.at(int(back[0]))}: Time Stamp lies {-ahead[back[0] - 1] / 1e6:g} s before "
-            f"the row above{more}"
+            f"{rows.at(int(back[0]))}: Time Stamp lies {-ahead[back[0] - 1] / 1e6:g} s before the "
+            f"row above{more}"
         )
         warnings.append(f"{told}: the rows are put in order of time")
     rows = replace(rows, values=np.column_stack([t, rows.values]))[np.argsort(t, kind="stable")]
