@@ -11,6 +11,7 @@ from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.load import check
 from ekfsim.filters.tuning import Tuning
+from ekfsim.study import block as study_block
 from ekfsim.study.block import watched
 from ekfsim.twins import taking
 from ekfsim.world import Faults, Map, Noise
@@ -136,9 +137,9 @@ def test_packaged_scenes_are_tallied_as_the_text_has_it(name):
     verify(CLASSROOM[name], 100)
 
 
-def test_of_a_long_run_some_steps_are_told():
-    made = scene(Repeat(1200, (Sense(1.0),)), Repeat(300, (Move(0.01, 0.5),)), sigma=(0.1, 0.1, 0))
-    verify(made, 3)
+def test_of_a_long_run_some_steps_are_told(monkeypatch):
+    monkeypatch.setattr(study_block, "MOST_STEPS", 7)
+    verify(SCENES["everything that can happen"], 30)
 
 
 def test_runs_of_two_blocks_draw_what_each_of_them_does():
