@@ -4,6 +4,7 @@ force."""
 import math
 
 import numpy as np
+import pytest
 import shapely
 from ways import WAYS
 
@@ -12,10 +13,15 @@ from ekfsim.raycast.searches.few_walls import few_walls
 from ekfsim.raycast.searches.many_beams import many_beams
 from ekfsim.raycast.searches.nearby_beams import nearby_beams
 from ekfsim.raycast.searches.scan import scan
+from ekfsim.raycast.walls import Walls
 from ekfsim.twins import taking
 
 ROOM = np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])
 DESK = np.array([[2, 2], [4, 2], [4, 3], [2, 3.0]])
+SCENE = Walls.of({"boundary": ROOM, "desk": DESK})  # walls 0–3 and 4–7: south, east, north, west
+NONE = (pytest.approx(math.nan, nan_ok=True), -1)  # a beam that meets no wall
+
+in_every_way = pytest.mark.usefixtures("way")  # see conftest.py
 
 
 def stars(count, seed, side=100.0, corners=5, overlap=1.0):
