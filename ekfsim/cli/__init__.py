@@ -22,8 +22,8 @@ def main() -> NoReturn:
 )
 @click.version_option(VERSION, message="%(prog)s %(version)s")
 def ekfsim() -> None:
-    """Simulate a robot that localizes itself with an extended Kalman filter, and read every
-    calculation.
+    """Simulate a robot that localizes itself with an extended Kalman filter,
+    and read every calculation.
 
     COMMANDS is a commands file, or the name of one that comes along: try `ekfsim play tour` and
     press n.

@@ -18,8 +18,8 @@ def scene_of(
     log: str | None = None, reading: str = "corrected", settings: tuple[str, ...] = (),
     particles: int | None = None,
 ) -> "Scene":  # fmt: skip
-    """The scene of a commands file, overruled by the options that were given. filter_name : one, or
-    several: ekf,ukf
+    """The scene of a commands file, overruled by the options that were given.
+    filter_name : one, or several: ekf,ukf
     """
     from dataclasses import replace
     from typing import cast

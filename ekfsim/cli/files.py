@@ -57,8 +57,8 @@ def check(files: tuple[str, ...]) -> None:
 @click.command(short_help="Print the JSON Schema by which editors check a file.")
 @click.argument("kind", type=click.Choice(["world", "commands", "study"]))
 def schema(kind: str) -> None:
-    """Print the JSON Schema from which editors complete and check a world, commands or study
-    file.
+    """Print the JSON Schema from which editors complete and check a world,
+    commands or study file.
     """
     import json
     from typing import cast
@@ -138,8 +138,8 @@ def figures(
     seed: int | None,
     force: bool,
 ) -> None:
-    """Draw every figure and table of one of the five documents, or of the gallery, with
-    captions.
+    """Draw every figure and table of one of the five documents,
+    or of the gallery, with captions.
     """
     from ekfsim.views.picture.look import get_ready
 

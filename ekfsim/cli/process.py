@@ -1,5 +1,5 @@
-"""How the process begins and ends: streams, signals, exit statuses, and mistakes told in
-sentences.
+"""How the process begins and ends:
+streams, signals, exit statuses, and mistakes told in sentences.
 """
 
 import atexit
@@ -30,8 +30,8 @@ atexit.register(gc.freeze)
 
 
 def run(program: click.Group) -> NoReturn:
-    """Run a program and exit with its status: 0 done, 1 the run failed, 2 wrong usage or file, 130,
-    143.
+    """Run a program and exit with its status:
+    0 done, 1 the run failed, 2 wrong usage or file, 130, 143.
     """
     gc.set_threshold(SELDOM)
     # of pydantic; to look for some goes through all that is installed
@@ -60,8 +60,8 @@ def run(program: click.Group) -> NoReturn:
 
 
 def _status(program: click.Group) -> int:
-    """What the program's exit status is; mistakes of its user end here in a sentence, ours keep
-    their traceback.
+    """What the program's exit status is;
+    mistakes of its user end here in a sentence, ours keep their traceback.
     """
     try:
         program(prog_name="ekfsim", standalone_mode=False)
@@ -88,8 +88,8 @@ def _status(program: click.Group) -> int:
 
 
 def _open_closed_streams() -> None:
-    """Give a stream that was closed by whoever started us (`>&-`) to /dev/null: no result must come
-    in its place.
+    """Give a stream that was closed by whoever started us (`>&-`) to /dev/null:
+    no result must come in its place.
     """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
@@ -102,8 +102,8 @@ def _forget_what_is_buffered() -> None:
 
 
 def _end(number: int, frame: FrameType | None) -> None:
-    """End by an exception, so that every block cleans up behind itself, undisturbed by whoever is
-    impatient.
+    """End by an exception, so that every block cleans up behind itself,
+    undisturbed by whoever is impatient.
     """
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
@@ -123,15 +123,15 @@ def heed() -> None:
 
 
 def part_with(words: str = "") -> None:
-    """Tell it in a line where SIGTERM ends us, as of Ctrl-C always; and have these words stand in
-    that line.
+    """Tell it in a line where SIGTERM ends us, as of Ctrl-C always;
+    and have these words stand in that line.
     """
     _parting.append(words)
 
 
 def say(*lines: str) -> None:
-    """Tell the user something on standard error: a mistake with its place as it is, all else in our
-    name.
+    """Tell the user something on standard error:
+    a mistake with its place as it is, all else in our name.
     """
     with suppress(OSError):
         told = map(in_a_line, lines)
@@ -147,8 +147,8 @@ def warn(warnings: Iterable[str], most: int = MOST_TOLD) -> None:
 
 
 def width() -> int | None:
-    """How many columns the terminal has that results are printed on; None where they go
-    elsewhere.
+    """How many columns the terminal has that results are printed on;
+    None where they go elsewhere.
     """
     return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 @contextmanager
 def progress(plan: "Plan", journal: "Journal") -> Iterator[Callable[["Task", "Tally"], None]]:
-    """A bar on standard error where that is a terminal, with the share of runs that are lost so
-    far.
+    """A bar on standard error where that is a terminal,
+    with the share of runs that are lost so far.
     """
     total = plan.blocks * len(plan.cases)
     runs = lost = 0

@@ -23,8 +23,8 @@ def study(
     expect: bool,
     **asked: Any,
 ) -> None:
-    """Run COMMANDS, or what a study file tells, many times: how often is it lost, and is the filter
-    honest?
+    """Run COMMANDS, or what a study file tells, many times:
+    how often is it lost, and is the filter honest?
     """
     part_with()
     from ekfsim.files.scenes import load_study

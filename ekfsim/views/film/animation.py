@@ -1,5 +1,5 @@
-"""A run as pictures: numbered PNG files in a folder, a GIF or an MP4. Memory does not grow with
-their number.
+"""A run as pictures: numbered PNG files in a folder, a GIF or an MP4.
+Memory does not grow with their number.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -73,8 +73,8 @@ def render(
 
 
 def number_of_pictures(views: int, every: int) -> int:
-    """How many pictures `render` makes of so many views: every `every`-th, from the first, and the
-    last.
+    """How many pictures `render` makes of so many views:
+    every `every`-th, from the first, and the last.
 
     >>> [number_of_pictures(views, 3) for views in (1, 2, 4, 5)]
     [1, 2, 2, 3]

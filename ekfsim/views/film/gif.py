@@ -1,5 +1,5 @@
-"""An animated GIF, written frame by frame: what is in memory is one picture and the one before
-it.
+"""An animated GIF, written frame by frame:
+what is in memory is one picture and the one before it.
 """
 
 from collections.abc import Iterable, Iterator
@@ -32,8 +32,8 @@ END = b";"
 
 
 def write(file: BinaryIO, pictures: Iterable[tuple[Pixels, float]], comment: str) -> None:
-    """Write pictures, each with the seconds that it stays, as a GIF that runs for ever. Each is (h,
-    w, 3).
+    """Write pictures, each with the seconds that it stays, as a GIF that runs for ever.
+    Each is (h, w, 3).
 
     Only the rectangle that changed is written, and all pictures share one palette, so that no
     colour flickers.
@@ -57,8 +57,8 @@ def write(file: BinaryIO, pictures: Iterable[tuple[Pixels, float]], comment: str
 
 @cache
 def palette() -> Image.Image:
-    """The 256 colours of all pictures: greys, and every ink on every ground at all strengths that
-    soft edges need.
+    """The 256 colours of all pictures:
+    greys, and every ink on every ground at all strengths that soft edges need.
     """
     colors = list(dict.fromkeys(_colors()))
     assert len(colors) <= 256

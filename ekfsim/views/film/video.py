@@ -109,8 +109,8 @@ def ticks(seconds: float) -> int:
 
 
 def even(pixels: Pixels) -> Pixels:
-    """Without the last row or column where their number is odd: H.264 halves the colours'
-    resolution.
+    """Without the last row or column where their number is odd:
+    H.264 halves the colours' resolution.
     """
     height, width = pixels.shape[:2]
     return pixels[: height - height % 2, : width - width % 2]

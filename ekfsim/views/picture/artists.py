@@ -1,5 +1,5 @@
-"""What is drawn in one Axes: the world, the belief with the truth beside it, the beam. Made once,
-then moved.
+"""What is drawn in one Axes: the world, the belief with the truth beside it, the beam.
+Made once, then moved.
 
 Each artist carries a gid. Colours are Okabe and Ito's; whatever a colour tells, a line style or a
 marker tells too.

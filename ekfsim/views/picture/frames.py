@@ -141,8 +141,8 @@ class Picture:
 
 
 class Frame:
-    """Pictures of 900 × 700 pixels, many of one scene: what stands still is drawn once, what moves
-    for each view.
+    """Pictures of 900 × 700 pixels, many of one scene:
+    what stands still is drawn once, what moves for each view.
     """
 
     def __init__(

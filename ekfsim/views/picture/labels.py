@@ -64,8 +64,8 @@ def label_obstacles(axes: Axes, floor: Map) -> list[Text]:
 def label_landmarks(
     axes: Axes, landmarks: Sequence[Landmark], names: Sequence[Text] = ()
 ) -> list[Text]:
-    """Write each landmark's number beside it, where that covers no other landmark, number or
-    name.
+    """Write each landmark's number beside it,
+    where that covers no other landmark, number or name.
     """
     if not landmarks or len(landmarks) > MOST_NUMBERS:
         return []

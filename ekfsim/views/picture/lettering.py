@@ -1,5 +1,5 @@
-"""Any text a person may have written, made fit for a picture: short, on few lines, and with glyphs
-for every sign.
+"""Any text a person may have written, made fit for a picture:
+short, on few lines, and with glyphs for every sign.
 """
 
 import textwrap
@@ -41,8 +41,8 @@ def shortened(text: str, width: int) -> str:
 
 
 def wrapped(paragraphs: Iterable[str], width: int, most: int) -> list[str]:
-    """At most `most` lines of at most `width` characters, wide ones counting twice; an ellipsis for
-    the rest.
+    """At most `most` lines of at most `width` characters, wide ones counting twice;
+    an ellipsis for the rest.
     """
     lines: list[str] = []
     for paragraph in paragraphs:
@@ -56,8 +56,8 @@ def wrapped(paragraphs: Iterable[str], width: int, most: int) -> list[str]:
 
 
 def drawable(text: str) -> str:
-    """The same text with a box for each sign that no font at hand has; what has no shape of its own
-    is left out.
+    """The same text with a box for each sign that no font at hand has;
+    what has no shape of its own is left out.
     """
     if text.isascii():
         return text

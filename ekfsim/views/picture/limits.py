@@ -34,8 +34,8 @@ class Limits:
 
     @classmethod
     def around(cls, points: Array) -> Self:
-        """The smallest that holds all the finite ones of (n, 2) points; the unit square where there
-        is none.
+        """The smallest that holds all the finite ones of (n, 2) points;
+        the unit square where there is none.
         """
         finite = points[np.isfinite(points).all(axis=-1)]
         if len(finite) == 0:
@@ -82,8 +82,8 @@ class Limits:
         return Limits(self.left - by, self.bottom - by, self.right + by, self.top + by)
 
     def shaped(self, aspect: float) -> "Limits":
-        """Grown to the shape of a box whose width is `aspect` times its height, about the same
-        centre.
+        """Grown to the shape of a box whose width is `aspect` times its height,
+        about the same centre.
         """
         width, height = (
             max(self.width, self.height * aspect, LEAST),
@@ -99,8 +99,8 @@ class Limits:
 
 
 class _Box:
-    """A rectangle that grows around points, one at a time and as fast as a run of many thousand
-    steps asks for.
+    """A rectangle that grows around points,
+    one at a time and as fast as a run of many thousand steps asks for.
     """
 
     __slots__ = ("bottom", "left", "right", "top")
@@ -133,8 +133,8 @@ class _Box:
 
 
 def of(scene: Scene, steps: Iterable[Step], probability: float = 0.954) -> Limits:
-    """The limits of a run: both maps, every estimate and every truth, whatever else a picture shows
-    of them.
+    """The limits of a run: both maps, every estimate and every truth,
+    whatever else a picture shows of them.
 
     Ellipses, recorded fixes and the ends of readings are held as well, up to twice the size of all
     that: one that is larger than the world must not shrink the world to a dot. The steps are read

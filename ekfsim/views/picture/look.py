@@ -1,5 +1,5 @@
-"""What a picture is to show besides; apart from the drawing, so that who asks need not import
-matplotlib.
+"""What a picture is to show besides;
+apart from the drawing, so that who asks need not import matplotlib.
 """
 
 import logging
@@ -50,8 +50,8 @@ def _of_no_backend(record: logging.LogRecord) -> bool:
 
 
 def _of_no_folder(record: logging.LogRecord) -> bool:
-    """Whether matplotlib's warning is of another thing than its folder: without a writable home it
-    uses another.
+    """Whether matplotlib's warning is of another thing than its folder:
+    without a writable home it uses another.
     """
     return not any(
         words in record.getMessage()

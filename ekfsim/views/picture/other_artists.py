@@ -1,5 +1,5 @@
-"""What is drawn in one Axes of a filter that watches beside the first: its path, its estimate, its
-ellipse.
+"""What is drawn in one Axes of a filter that watches beside the first:
+its path, its estimate, its ellipse.
 """
 
 from collections.abc import Iterator
@@ -45,8 +45,8 @@ class OtherArtists:
         self.reference.set(markerfacecolor="white", markeredgewidth=1.4)
 
     def show(self, view: View, unit: float) -> None:
-        """Move everything to what this filter believes. unit : m, what the robot's body measures in
-        this Axes
+        """Move everything to what this filter believes.
+        unit : m, what the robot's body measures in this Axes
         """
         x, P = view.pose
         place(self.path, view.path())

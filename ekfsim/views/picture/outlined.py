@@ -1,5 +1,5 @@
-"""Text that changes from picture to picture, drawn from outlines that are kept: matplotlib's own is
-20 times slower.
+"""Text that changes from picture to picture, drawn from outlines that are kept:
+matplotlib's own is 20 times slower.
 """
 
 import unicodedata

@@ -205,8 +205,8 @@ def one_two_five(least: float) -> float:
 
 
 def sensors(scene: Scene) -> set[type[Sensor]]:
-    """The kinds of sensors whose readings a run may hold; all that the classroom has where nothing
-    is commanded yet.
+    """The kinds of sensors whose readings a run may hold;
+    all that the classroom has where nothing is commanded yet.
     """
     if _driven(scene):
         return kinds(scene)

@@ -50,8 +50,8 @@ POINTS = {RangeBearing, LandmarkOffset, LidarOffset, Position}
 
 
 class BeamArtists:
-    """The beam from the estimate with the measured length, and where the filter expected it to
-    end.
+    """The beam from the estimate with the measured length,
+    and where the filter expected it to end.
     """
 
     def __init__(self, axes: Axes) -> None:
@@ -170,8 +170,8 @@ class FixArtists:
 
 
 def recorded_fixes(entries: Iterable[Entry]) -> tuple[Array, Array]:
-    """Where in a log each fix comes up, and the fixes : (n,), (n, 2) m; one that is repeated counts
-    once.
+    """Where in a log each fix comes up, and the fixes : (n,), (n, 2) m;
+    one that is repeated counts once.
     """
     index: list[int] = []
     fixes: list[tuple[float, float]] = []
@@ -185,8 +185,8 @@ def recorded_fixes(entries: Iterable[Entry]) -> tuple[Array, Array]:
 
 
 def mark_end(line: Line2D, solid: bool, refused: Refused = Refused.NOT) -> Line2D:
-    """A ring for an end in the air, a cross for one in a wall; the cross of a refused reading is
-    hollow.
+    """A ring for an end in the air, a cross for one in a wall;
+    the cross of a refused reading is hollow.
     """
     line.set_marker(IN_WALL if solid else IN_AIR)
     line.set_markerfacecolor(VERMILLION if solid and not refused else "white")
@@ -194,8 +194,8 @@ def mark_end(line: Line2D, solid: bool, refused: Refused = Refused.NOT) -> Line2
 
 
 def mark(line: Line2D, fix: bool, refused: bool) -> Line2D:
-    """A disc for a landmark's place, a cross for the robot's; hollow where the reading is
-    refused.
+    """A disc for a landmark's place, a cross for the robot's;
+    hollow where the reading is refused.
     """
     line.set(marker=IN_WALL if fix else IN_AIR, markersize=8 if fix else 7, markeredgewidth=1.5)
     line.set_markerfacecolor("white" if refused else VERMILLION)

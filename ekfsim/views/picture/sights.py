@@ -35,8 +35,8 @@ NOWHERE = np.empty((0, 2))
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """A reading as it is drawn, from the estimate before the update. All in m; empty where there is
-    nothing to draw.
+    """A reading as it is drawn, from the estimate before the update.
+    All in m; empty where there is nothing to draw.
     """
 
     line: Array  # (n, 2) as measured: a ray, an arc about a landmark, the circle of 1 σ about a fix
@@ -106,8 +106,8 @@ def sight(step: Step) -> Sight | None:
 
 
 def beam_length(sensor: BeamSensor, z: float) -> float:
-    """The distance to a wall that a reading stands for, in m; an intensity falls with its
-    logarithm.
+    """The distance to a wall that a reading stands for, in m;
+    an intensity falls with its logarithm.
     """
     if not isinstance(sensor, InfraredBeam):
         return z
@@ -197,8 +197,8 @@ def _ray(pose: Array, bearing: float, length: float) -> Array:
 
 
 def _about(place: Array, pose: Array, measured: float, predicted: float, refused: Refused) -> Sight:
-    """Where a range says that the robot is: on a circle about the landmark, drawn where the
-    estimate is.
+    """Where a range says that the robot is:
+    on a circle about the landmark, drawn where the estimate is.
     """
     east, north = pose[:2] - place
     towards = math.atan2(north, east)

@@ -1,5 +1,5 @@
-"""The picture of a comparison: who is lost over the steps, how far off the runs end, and what
-differs.
+"""The picture of a comparison: who is lost over the steps,
+how far off the runs end, and what differs.
 """
 
 import math

@@ -50,8 +50,8 @@ def measures(found: Pairs) -> tuple[Measure, ...]:
 
 
 def conclude(comparison: Comparison, found: Pairs, width: int | None = None) -> str:
-    """All that is printed when a comparison is over. width : of the terminal; None where there is
-    none
+    """All that is printed when a comparison is over.
+    width : of the terminal; None where there is none
     """
     request = comparison.request
     what = (
@@ -113,8 +113,8 @@ def sentences(found: Pairs) -> Iterator[str]:
 
 
 def sentence(measure: Measure) -> str:
-    """By how much b differs from a, with the interval; where that holds zero, that nothing is to be
-    seen.
+    """By how much b differs from a, with the interval;
+    where that holds zero, that nothing is to be seen.
     """
     a, b, value, low, high = (measure.scale * number for number in measure.found)
     unit = measure.told_unit

@@ -1,5 +1,5 @@
-"""The three pictures of a study: NEES against χ², coverage, and divergence; over the steps or over
-what was swept.
+"""The three pictures of a study: NEES against χ², coverage, and divergence;
+over the steps or over what was swept.
 """
 
 import math
@@ -84,8 +84,8 @@ def draw_study(plan: Plan, results: Sequence[Result], folder: Path) -> None:
 def picture(
     plan: Plan, results: Sequence[Result], title: str, quantities: Sequence[Quantity]
 ) -> Figure:
-    """One picture: lines over the steps where nothing is swept, over the values of one key, maps
-    for more.
+    """One picture: lines over the steps where nothing is swept,
+    over the values of one key, maps for more.
     """
     if plan.keys:
         title = f"{title}, at the last step"
@@ -183,8 +183,8 @@ def _frame(axes: Axes, quantity: Quantity) -> None:
 def _maps(
     plan: Plan, results: Sequence[Result], heading: str, quantities: Sequence[Quantity]
 ) -> Figure:
-    """Heat maps of the last two swept keys: a row for each quantity, a column for each filter and
-    other values.
+    """Heat maps of the last two swept keys:
+    a row for each quantity, a column for each filter and other values.
     """
     held = list(_columns(plan, results))
     down, across = ([one.value for one in values] for values in plan.request.sweep[-2:])
@@ -234,8 +234,8 @@ def _columns(plan: Plan, results: Sequence[Result]) -> Iterator[tuple[str, list[
 
 
 def _norm(quantity: Quantity, shares: Array) -> Normalize:
-    """How shares become colours: white is as it should be, and as deep for as much too many as for
-    too few.
+    """How shares become colours: white is as it should be,
+    and as deep for as much too many as for too few.
     """
     known = shares[~np.isnan(shares)].tolist()
     if quantity.colours == "Reds":

@@ -1,5 +1,5 @@
-"""What the pictures of studies and comparisons are drawn on: a sheet with its foot, and panels of
-shares in percent.
+"""What the pictures of studies and comparisons are drawn on:
+a sheet with its foot, and panels of shares in percent.
 """
 
 from collections.abc import Sequence

@@ -1,5 +1,5 @@
-"""A study for a person: a table, a verdict on each row with its evidence, and how to see the runs
-behind it.
+"""A study for a person: a table, a verdict on each row with its evidence,
+and how to see the runs behind it.
 """
 
 import math

@@ -1,5 +1,5 @@
-"""Lines drawn in text: a canvas whose cells are braille characters of 2 × 4 dots, or plain ASCII
-characters.
+"""Lines drawn in text: a canvas whose cells are braille characters of 2 × 4 dots,
+or plain ASCII characters.
 
 Points are in the drawing's own units (metres), y up, with the same scale on both axes: a cell of a
 terminal is about twice as high as wide, so the dots of braille lie on a square grid. What lies
@@ -29,8 +29,8 @@ CONTROL_SEQUENCE = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x0
 
 @dataclass(frozen=True)
 class Pen:
-    """How a line looks. colour : parameters of the escape sequence that selects it; dashes are in
-    dots.
+    """How a line looks. colour : parameters of the escape sequence that selects it;
+    dashes are in dots.
     """
 
     colour: str = ""
@@ -53,8 +53,8 @@ def ansi(colour: str) -> str:
 
 
 class Canvas:
-    """A drawing of `rows` lines of at most `columns` characters, centred on the bounds. The last to
-    draw is on top.
+    """A drawing of `rows` lines of at most `columns` characters, centred on the bounds.
+    The last to draw is on top.
     """
 
     def __init__(self, columns: int, rows: int, bounds: Bounds, ascii: bool = False) -> None:
@@ -79,8 +79,8 @@ class Canvas:
         self._colours = np.full((rows, columns), "", dtype=object)
 
     def polyline(self, points: ArrayLike, pen: Pen) -> None:
-        """Draw a line through points : (n, 2); a single one is a dot. It is broken where a point is
-        no number.
+        """Draw a line through points : (n, 2); a single one is a dot.
+        It is broken where a point is no number.
 
         Dashes run on around the corners.
         """
@@ -108,8 +108,8 @@ class Canvas:
             )
 
     def text(self, point: ArrayLike, text: str, colour: str = "") -> None:
-        """Write a text, or a single marker, with its middle on a point : (2,); wide characters
-        become `?`.
+        """Write a text, or a single marker, with its middle on a point : (2,);
+        wide characters become `?`.
         """
         here = np.asarray(point, dtype=np.float64)
         if not inside(here, self.bounds):
@@ -148,8 +148,8 @@ class Canvas:
 
 
 def clip(start: Array, end: Array, bounds: Bounds) -> tuple[Array, Array]:
-    """The parts of the segments from start : (n, 2) to end : (n, 2) that lie within the bounds, m ≤
-    n of them.
+    """The parts of the segments from start : (n, 2) to end :
+    (n, 2) that lie within the bounds, m ≤ n of them.
 
     Liang and Barsky 1984: a + t (b − a) is inside where p t ≤ q for each of the four sides.
 
@@ -181,8 +181,8 @@ def inside(point: Array, bounds: Bounds) -> bool:
 
 
 def printable(text: str, ascii: bool = False) -> str:
-    r"""A text that cannot disturb a line: one character in each place, no controls, no marks that
-    combine.
+    r"""A text that cannot disturb a line:
+    one character in each place, no controls, no marks that combine.
 
     >>> printable("a\x1b[31m\tb\n c"), printable("Å → B", ascii=True)
     ('a b c', 'A ? B')

@@ -1,5 +1,5 @@
-"""A view drawn in text, for a terminal over any ssh: what the window shows, in braille dots or in
-plain ASCII.
+"""A view drawn in text, for a terminal over any ssh:
+what the window shows, in braille dots or in plain ASCII.
 """
 
 import math
@@ -107,8 +107,8 @@ def _draw_others(canvas: Canvas, view: View, scene: Scene, probability: float) -
 
 
 def _draw_world(canvas: Canvas, world: World) -> list[Item]:
-    """Walls, with their names where there is room; those on one map only, the true one or the
-    filter's, are broken.
+    """Walls, with their names where there is room;
+    those on one map only, the true one or the filter's, are broken.
     """
     true, told = dict(world.map.rings()), dict(world.told.map.rings())
     both = {
@@ -150,8 +150,8 @@ def _draw_landmarks(canvas: Canvas, landmarks: Sequence[Landmark]) -> None:
 
 
 def _place(ring: Array, box: Array) -> Array | None:
-    """The middle of a box : (2,) m inside a polygon : (n, 2) m, near the polygon's own; None where
-    none fits.
+    """The middle of a box : (2,) m inside a polygon :
+    (n, 2) m, near the polygon's own; None where none fits.
     """
     low, high = ring.min(axis=0) + box / 2, ring.max(axis=0) - box / 2
     if np.any(low > high):

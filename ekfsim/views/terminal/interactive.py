@@ -1,5 +1,5 @@
-"""Puts an interactive run together: keys from the terminal and the window, pictures on the screen
-that there is.
+"""Puts an interactive run together:
+keys from the terminal and the window, pictures on the screen that there is.
 """
 
 import itertools
@@ -38,8 +38,8 @@ WIDEST, HIGHEST = 1000, 300  # columns and rows of a picture, whatever COLUMNS a
 def play_interactively(
     scene: Scene, show: str, out: Path, look: Look, force: bool, explain: bool
 ) -> None:
-    """Step through a scene until a key quits. show : auto, window, text or files; out : folder of
-    saved pictures; explain : the narrative in its long form
+    """Step through a scene until a key quits. show : auto, window, text or files;
+    out : folder of saved pictures; explain : the narrative in its long form
 
     Raises UsageError where a window is asked for and there is none.
     """
@@ -145,8 +145,8 @@ class Pictures:
         self._write(view, self._out / "current.png", force=True)
 
     def save(self, view: View) -> str:
-        """Save the picture of a view under its number, beside those saved of it before; says where,
-        or why not.
+        """Save the picture of a view under its number, beside those saved of it before;
+        says where, or why not.
         """
         path = self._out / f"view-{view.number:04}.png"
         for again in itertools.count(2):

@@ -17,8 +17,8 @@ GATHERED = 200  # motion inputs of a driven or recorded robot in one view, at mo
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What is on the screen after so many presses of `n`. View 0 is the world before anything
-    happens.
+    """What is on the screen after so many presses of `n`.
+    View 0 is the world before anything happens.
 
     A reading has two: first the beam, while the estimate is still the old one, then the revised
     estimate without it. The motion inputs of a driven or recorded robot that follow each other
@@ -54,8 +54,8 @@ class View:
 
     @property
     def span(self) -> tuple[float, float] | None:
-        """The first and the last instant of its steps, in s since the start; None where there is no
-        clock.
+        """The first and the last instant of its steps, in s since the start;
+        None where there is no clock.
         """
         last = self.step.entry.t
         return (
@@ -70,8 +70,8 @@ class View:
 
 
 def views(steps: Iterable[Step]) -> Iterator[View]:
-    """Every view of a run, in order. Until the next motion the path's last corner moves with each
-    revised estimate.
+    """Every view of a run, in order.
+    Until the next motion the path's last corner moves with each revised estimate.
     """
     settled: list[Array] = []
     number, start = itertools.count(), None
@@ -95,8 +95,8 @@ def together(steps: Iterable[Step], others: Iterable[Iterable[Step]]) -> Iterato
 
 
 def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, Step, int]]:
-    """The steps that a view gathers: the first, the last and how many. Those between are not
-    kept.
+    """The steps that a view gathers: the first, the last and how many.
+    Those between are not kept.
     """
     first: Step | None = None
     last: Step | None = None
@@ -118,8 +118,8 @@ def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, Step, int]]:
 
 
 def _gathered(step: Step) -> bool:
-    """Whether a step shares its view with its neighbours: a motion input that no command asked
-    for.
+    """Whether a step shares its view with its neighbours:
+    a motion input that no command asked for.
     """
     return step.entry.command is None and isinstance(step.entry.given, Control)
 

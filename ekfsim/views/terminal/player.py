@@ -25,8 +25,8 @@ class Screen(Protocol):
 
 @dataclass
 class Player:
-    """Steps through a run as keys are pressed. What it says goes to `out`, what it draws to
-    `screen`.
+    """Steps through a run as keys are pressed.
+    What it says goes to `out`, what it draws to `screen`.
     """
 
     scene: Scene

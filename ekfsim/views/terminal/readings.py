@@ -30,8 +30,8 @@ class Item(NamedTuple):
 
 
 def draw_reading(canvas: Canvas, view: View) -> list[Item]:
-    """A reading as measured, from the estimate, and a mark where the filter had expected its
-    end.
+    """A reading as measured, from the estimate,
+    and a mark where the filter had expected its end.
     """
     seen = sight(view.step)
     if seen is None:

@@ -75,8 +75,8 @@ def _opens(name: str) -> bool:
 
 
 class Window:
-    """A window with the picture of a view; keys pressed in it are handed on as those of the
-    terminal are.
+    """A window with the picture of a view;
+    keys pressed in it are handed on as those of the terminal are.
     """
 
     def __init__(self, scene: Scene, limits: Limits, look: Look = STANDARD) -> None:
@@ -106,8 +106,8 @@ class Window:
         self._canvas.flush_events()
 
     def poll(self, timeout: float | None = None) -> Key | None:
-        """The next key, or None where none is pressed for `timeout` s. Closing the window asks to
-        quit.
+        """The next key, or None where none is pressed for `timeout` s.
+        Closing the window asks to quit.
         """
         waited = 0.0
         while not self._pressed and not self.closed and (timeout is None or waited < timeout):

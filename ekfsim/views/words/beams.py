@@ -1,5 +1,5 @@
-"""What can be said of a beam to a wall: where it ends in the filter's map, and where else it might
-have ended.
+"""What can be said of a beam to a wall:
+where it ends in the filter's map, and where else it might have ended.
 """
 
 import math
@@ -25,8 +25,8 @@ TOUCHING = 1e-9  # of the range: what rounding makes of an end on the wall
 
 
 class Probe(NamedTuple):
-    """A beam from another pose that the filter holds possible, where it meets another wall or
-    none.
+    """A beam from another pose that the filter holds possible,
+    where it meets another wall or none.
     """
 
     pose: Array  # (3,) where it starts, in m, and its direction, in rad
@@ -125,8 +125,8 @@ def astray(sensor: BeamSensor, sighting: Sighting) -> Iterator[Probe]:
 
 
 def doubt(sensor: BeamSensor, sighting: Sighting, x: Array) -> str:
-    """Why a beam from x (3,) is ambiguous: a pose that disagrees, and what the beam would meet from
-    there.
+    """Why a beam from x (3,) is ambiguous:
+    a pose that disagrees, and what the beam would meet from there.
     """
     i = next(others_met(sensor.walls, sighting))
     place = elsewhere(x, sighting.probes[i]).replace(" degrees", "°")

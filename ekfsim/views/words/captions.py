@@ -25,8 +25,8 @@ ARROWS = "→↗↑↖←↙↓↘"
 
 
 def title(view: View, total: int) -> str:
-    """The command and its number, or the instant and what was measured: "3 of 12: move 1.75 m, turn
-    90°".
+    """The command and its number, or the instant and what was measured:
+    "3 of 12: move 1.75 m, turn 90°".
     """
     entry, inputs = view.step.entry, view.inputs
     if view.span is not None:
@@ -152,8 +152,8 @@ def away(step: Step, view: View) -> str:
 
 
 def source(scene: Scene) -> str:
-    """What made the picture: "classroom — seed 7, run 0, ekf". A log has a seed only where
-    particles use it.
+    """What made the picture: "classroom — seed 7, run 0, ekf".
+    A log has a seed only where particles use it.
     """
     gate = f", gate {percent(scene.gate)}" if scene.gate is not None else ""
     guard = ", guard skips" if scene.guard == "skip" else ""

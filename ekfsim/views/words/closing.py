@@ -1,5 +1,5 @@
-"""What is said when a run is over: what was done, how far off it ended, and one plain verdict with
-its evidence.
+"""What is said when a run is over:
+what was done, how far off it ended, and one plain verdict with its evidence.
 """
 
 import math
@@ -34,8 +34,8 @@ def conclude(summary: Summary) -> str:
 
 
 def conclude_all(scene: Scene, summaries: Sequence[Summary], quiet: bool = False) -> str:
-    """The same where several filters watched: side by side, and a verdict on each unless it is to
-    be quiet.
+    """The same where several filters watched:
+    side by side, and a verdict on each unless it is to be quiet.
     """
     if len(summaries) == 1:
         return conclude(summaries[0])
@@ -94,8 +94,8 @@ def _cell(value: float | None, scale: float = 1.0) -> str:
 
 
 def _done(summary: Summary) -> str:
-    """What was done: commands obeyed one by one, or a clock's time of motion inputs and
-    readings.
+    """What was done: commands obeyed one by one,
+    or a clock's time of motion inputs and readings.
     """
     if summary.duration is None:
         return _count(summary.steps, "command")

@@ -1,5 +1,5 @@
-"""The long form of the narrative: what else is needed to check each number by hand, and by which
-equation it comes.
+"""The long form of the narrative:
+what else is needed to check each number by hand, and by which equation it comes.
 """
 
 from dataclasses import dataclass
@@ -45,20 +45,20 @@ class Form:
         return ""
 
     def carried(self, view: View) -> str:
-        """What a motion input does to a belief: the covariance of its noise, and what it makes of
-        P.
+        """What a motion input does to a belief:
+        the covariance of its noise, and what it makes of P.
         """
         return ""
 
     def doubted(self, step: Step) -> str:
-        """Of an ambiguous beam the poses that disagree, and the walls that it would meet from
-        there.
+        """Of an ambiguous beam the poses that disagree,
+        and the walls that it would meet from there.
         """
         return ""
 
     def expected(self, step: Step) -> str:
-        """The corners of the wall that a beam was expected to meet; nothing of a sensor that sends
-        none.
+        """The corners of the wall that a beam was expected to meet;
+        nothing of a sensor that sends none.
         """
         return ""
 
@@ -89,8 +89,8 @@ class LongForm(Form):
         return self._by(getattr(self.origins, what))
 
     def carried(self, view: View) -> str:
-        """What a motion input does to a belief: the covariance of its noise, and what it makes of
-        P.
+        """What a motion input does to a belief:
+        the covariance of its noise, and what it makes of P.
         """
         step = view.step
         given, prediction = step.entry.given, step.prediction
@@ -117,8 +117,8 @@ class LongForm(Form):
         return "".join(told)
 
     def doubted(self, step: Step) -> str:
-        """Of an ambiguous beam the poses that disagree, and the walls that it would meet from
-        there.
+        """Of an ambiguous beam the poses that disagree,
+        and the walls that it would meet from there.
         """
         sighting = sighting_of(step)
         if sighting is None or not sighting.ambiguous:
@@ -145,8 +145,8 @@ class LongForm(Form):
         return told
 
     def expected(self, step: Step) -> str:
-        """The corners of the wall that a beam was expected to meet; nothing of a sensor that sends
-        none.
+        """The corners of the wall that a beam was expected to meet;
+        nothing of a sensor that sends none.
         """
         tangent = step.correction is not None and step.correction.tangent
         sighting = sighting_of(step)
@@ -164,8 +164,8 @@ class LongForm(Form):
         )
 
     def _last_of_many(self, step: Step) -> str:
-        """The belief that the last of several motion inputs found; what follows is of that
-        input.
+        """The belief that the last of several motion inputs found;
+        what follows is of that input.
         """
         x, P = step.prior
         return f"The last input found {state(x, step.layout)} and P:\n{matrix(P)}"

@@ -1,5 +1,5 @@
-"""Rows of words → the lines of a table, and sentences → lines: no wider than the terminal that they
-are read on.
+"""Rows of words → the lines of a table, and sentences → lines:
+no wider than the terminal that they are read on.
 """
 
 import textwrap
@@ -9,8 +9,8 @@ GAP = "  "
 
 
 def aligned(rows: Sequence[Sequence[str]], names: int, width: int | None = None) -> list[str]:
-    """The lines of a table; the first `names` columns name the row and are ranged left, all others
-    right.
+    """The lines of a table; the first `names` columns name the row and are ranged left,
+    all others right.
 
     A table wider than `width` characters is told in parts, one below the other, each with the names
     again.

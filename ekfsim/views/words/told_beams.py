@@ -1,5 +1,5 @@
-"""What is said of a beam: the wall that it was expected to meet, and what is doubtful about
-that.
+"""What is said of a beam: the wall that it was expected to meet,
+and what is doubtful about that.
 """
 
 import math
@@ -37,8 +37,8 @@ class Beam(Protocol):
 
 
 def doubts(step: Step, guarded: bool) -> str:
-    """What is doubtful about a beam before its reading is used; nothing of a sensor that sends
-    none.
+    """What is doubtful about a beam before its reading is used;
+    nothing of a sensor that sends none.
     """
     sighting = sighting_of(step)
     if sighting is None:
@@ -71,8 +71,8 @@ def doubts(step: Step, guarded: bool) -> str:
 
 
 def expected_wall(step: Step) -> str:
-    """Which wall the beam was expected to meet, and at which angle; nothing of a sensor that sends
-    none.
+    """Which wall the beam was expected to meet, and at which angle;
+    nothing of a sensor that sends none.
     """
     sighting = sighting_of(step)
     if sighting is None or step.correction is None:
@@ -89,8 +89,8 @@ def expected_wall(step: Step) -> str:
 
 
 def others_met(walls: Walls, sighting: Sighting) -> Iterator[int]:
-    """Which of the six poses make the beam ambiguous, one for each of the walls that it would meet
-    from them.
+    """Which of the six poses make the beam ambiguous,
+    one for each of the walls that it would meet from them.
     """
     line = np.append(walls.line, -1)  # the wall −1, none, takes the last
     met = set()
@@ -125,8 +125,8 @@ def elsewhere(x: Array, pose: Array) -> str:
 
 
 def wall_name(step: Step, wall: int) -> str:
-    """A wall by the number of its edge, counted from 1 in the file's order, and its polygon's
-    name.
+    """A wall by the number of its edge,
+    counted from 1 in the file's order, and its polygon's name.
     """
     if wall < 0:
         return "no wall"

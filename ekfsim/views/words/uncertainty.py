@@ -48,8 +48,8 @@ def _nees(measured: Nees) -> str:
 
 
 def surprise(name: str, value: float, dof: int) -> str:
-    """A line of its own for a single value above its 99 % quantile. A small one is none: 0 is the
-    mode of χ²₁.
+    """A line of its own for a single value above its 99 % quantile.
+    A small one is none: 0 is the mode of χ²₁.
     """
     limit = quantile(SURPRISING, dof)
     if value <= limit:
@@ -58,8 +58,8 @@ def surprise(name: str, value: float, dof: int) -> str:
 
 
 def rest(c: Correction) -> str:
-    """A line of its own where the search of an iterated filter was cut off; all others need
-    none.
+    """A line of its own where the search of an iterated filter was cut off;
+    all others need none.
     """
     if c.settled:
         return ""
@@ -70,8 +70,8 @@ def rest(c: Correction) -> str:
 
 
 def crowd(belief: Belief) -> str:
-    """How many of the particles count, where the belief is a crowd: 1/Σ wᵢ² alike ones say as
-    much.
+    """How many of the particles count, where the belief is a crowd:
+    1/Σ wᵢ² alike ones say as much.
     """
     if not isinstance(belief, Particles):
         return ""
