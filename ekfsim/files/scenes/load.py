@@ -1,7 +1,7 @@
 """World and commands files → World and Scene; all mistakes of a file at once."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Generic, TypeVar
@@ -11,18 +11,11 @@ from ekfsim.files.keys.commands import WAYS, WITH_LANDMARKS, CommandsKeys, Recor
 from ekfsim.files.keys.world import WorldKeys
 from ekfsim.files.packaged import resolve, source_name, world_beside
 from ekfsim.files.scenes.building import scene_of, world_of
-from ekfsim.files.scenes.checks import (
-    kidnap_warnings,
-    perfect_beam_warnings,
-)
+from ekfsim.files.scenes.checks import Sound, kidnap_warnings, perfect_beam_warnings
 from ekfsim.files.scenes.drive_checks import check_fit
 from ekfsim.files.scenes.filter_checks import check_filter_settings, filter_warnings
 from ekfsim.files.scenes.one_file import File, in_order_of_place, read
-from ekfsim.files.scenes.overruling import (
-    idle_on_log,
-    of_log,
-    refusal,
-)
+from ekfsim.files.scenes.overruling import idle_on_log, of_log, refusal
 from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.scenes.system_checks import system_warnings
 from ekfsim.files.source import bytes_of
@@ -91,12 +84,14 @@ def read_world(
 
 def world_in(file: File, logged: bool = False) -> Loaded[World]:
     """The world that was found in a file."""
-    loaded = Loaded[World](mistakes=file.mistakes, warnings=file.warnings)
-    if isinstance(file.keys, WorldKeys) and file.sound is not None and not file.mistakes:
-        loaded.value = world_of(file.keys)
-        loaded.warnings += system_warnings(file.sound, loaded.value, logged)
-        loaded.warnings += perfect_beam_warnings(file.sound, loaded.value)
-    return loaded
+    if not isinstance(file.keys, WorldKeys) or file.sound is None or file.mistakes:
+        return Loaded(None, file.mistakes, file.warnings)
+    world = world_of(file.keys)
+    doubts = (
+        *system_warnings(file.sound, world, logged),
+        *perfect_beam_warnings(file.sound, world),
+    )
+    return Loaded(world, [], [*file.warnings, *doubts])
 
 
 def read_scene(
@@ -119,11 +114,11 @@ def read_scene(
     loaded = _read_scene(path, world, log, reading, meant)
     if loaded.mistakes:
         raise refusal(loaded.mistakes, meant)
-    if loaded.value is not None:
-        if loaded.value.log is not None:
-            loaded.warnings += idle_on_log(settings)
-        loaded.value = replace(loaded.value, settings=tuple(map(str, settings)))
-    return loaded
+    if loaded.value is None:
+        return loaded
+    idle = idle_on_log(settings) if loaded.value.log is not None else ()
+    scene = replace(loaded.value, settings=tuple(map(str, settings)))
+    return replace(loaded, value=scene, warnings=[*loaded.warnings, *idle])
 
 
 def _read_scene(
@@ -138,103 +133,98 @@ def _read_scene(
     loaded = scene_in(file, Path(path), world, settings)
     keys = file.keys if isinstance(file.keys, CommandsKeys) else None
     if loaded.value is not None:
-        loaded.value = replace(loaded.value, reading=reading)
+        loaded = replace(loaded, value=replace(loaded.value, reading=reading))
     if keys is not None and keys.recording is not None:
-        recorded(loaded, file, keys.recording, Path(path), log)
-    elif keys is not None and log is not None and file.sound is not None:
+        return with_log(loaded, file, keys.recording, Path(path), log)
+    if keys is not None and log is not None and file.sound is not None:
         way = next(way for way in WAYS if way in file.sound.root.keys)
         wrong = f"the file has '{way}', not a recording"
-        loaded.mistakes.append(file.sound.mistake((way,), wrong, "--log has nothing to replace"))
+        mistake = file.sound.mistake((way,), wrong, "--log has nothing to replace")
+        return replace(loaded, mistakes=[*loaded.mistakes, mistake])
     return loaded
 
 
-def recorded(
+def with_log(
     loaded: Loaded[Scene],
     file: File,
     recording: RecordingKeys,
     path: Path,
     log: str | Path | None,
-) -> None:
-    """Read the log of a scene: entries, landmarks where it tells any, mistakes and warnings."""
+) -> Loaded[Scene]:
+    """A scene with its log: entries, landmarks where it tells any, mistakes and warnings."""
     sound, scene = file.sound, loaded.value
     assert sound is not None
     if log is None and recording.path is None:
         wrong = "the recording names no path"
-        loaded.mistakes.append(sound.mistake(("recording",), wrong, "give one with --log"))
+        mistake = sound.mistake(("recording",), wrong, "give one with --log")
+        return replace(loaded, mistakes=[*loaded.mistakes, mistake])
     if scene is None or loaded.mistakes:
-        return
+        return loaded
     from ekfsim.files.logs import read_log
 
     source = os.path.normpath(log if log is not None else path.parent / (recording.path or ""))
+    warnings = list(loaded.warnings)
     try:
-        found = read_log(
-            recording.format, Path(source), scene.world, scene.reading, loaded.warnings
-        )
+        found = read_log(recording.format, Path(source), scene.world, scene.reading, warnings)
     except InputError as error:
-        loaded.mistakes += error.mistakes
-        return
+        return replace(loaded, mistakes=list(error.mistakes), warnings=warnings)
     except UsageError as error:
         if log is not None:
-            loaded.refusal = error
-            return
+            return replace(loaded, warnings=warnings, refusal=error)
         wrong, _, right = str(error).partition("; ")
         right = right or "write its path relative to this file, or give one with --log"
-        loaded.mistakes.append(sound.mistake(("recording", "path"), wrong, right))
-        return
-    world = (
-        scene.world if found.landmarks is None else replace(scene.world, landmarks=found.landmarks)
-    )
-    loaded.value = replace(scene, world=world, log=found.log, log_source=source_name(source))
+        mistake = sound.mistake(("recording", "path"), wrong, right)
+        return replace(loaded, mistakes=[mistake], warnings=warnings)
+    world = scene.world
+    if found.landmarks is not None:
+        world = replace(world, landmarks=found.landmarks)
+    scene = replace(scene, world=world, log=found.log, log_source=source_name(source))
+    return replace(loaded, value=scene, warnings=warnings)
 
 
 def scene_in(
     file: File, path: Path, world: str | Path | None = None, settings: Sequence[Setting] = ()
 ) -> Loaded[Scene]:
     """The scene found in a file, in its own world or the one given; its log is not yet read."""
-    if file.sound is None:  # nothing can be read in it, not even its world
+    sound, keys = file.sound, file.keys
+    if sound is None:  # nothing can be read in it, not even its world
         return Loaded(mistakes=file.mistakes)
-    source = (
-        Path(world) if world is not None else world_beside(path, file.sound.value("world") or "")
-    )
-    logged = file.sound.value("recording", "format") in WITH_LANDMARKS
     if world is not None:
-        found = read_world(source, logged=logged, settings=settings)
+        source, shown, missing = Path(world), str(world), list[Mistake]()
     else:
-        found = own_world(file, source, logged, settings)
-    if isinstance(file.keys, CommandsKeys) and found.value is not None:
-        file.mistakes += check_fit(file.sound, file.keys, found.value)
-        file.mistakes += check_filter_settings(file.sound, file.keys, found.value)
-        file.mistakes.sort(key=in_order_of_place)
-    kidnaps = kidnap_warnings(file.sound, found.value.map) if found.value is not None else ()
-    warnings = [*file.warnings, *kidnaps, *found.warnings]
-    loaded = Loaded[Scene](mistakes=[*file.mistakes, *found.mistakes], warnings=warnings)
-    if isinstance(file.keys, CommandsKeys) and found.value is not None and not loaded.mistakes:
-        loaded.value = scene_of(file.keys, found.value, source_name(source), source_name(path))
-    return loaded
+        source = world_beside(path, sound.value("world") or "")
+        shown, missing = os.path.normpath(source), list(missing_world(sound, source))
+    found = Loaded[World]()
+    if not missing and (world is not None or sound.value("world") is not None):
+        logged = sound.value("recording", "format") in WITH_LANDMARKS
+        found = read_world(source, shown, logged, settings)
+    misfits, kidnaps = list[Mistake](), list[str]()
+    if found.value is not None:
+        kidnaps += kidnap_warnings(sound, found.value.map)
+    if found.value is not None and isinstance(keys, CommandsKeys):
+        misfits += check_fit(sound, keys, found.value)
+        misfits += check_filter_settings(sound, keys, found.value)
+    own = sorted([*missing, *file.mistakes, *misfits], key=in_order_of_place)
+    mistakes, warnings = [*own, *found.mistakes], [*file.warnings, *kidnaps, *found.warnings]
+    if mistakes or found.value is None or not isinstance(keys, CommandsKeys):
+        return Loaded(None, mistakes, warnings)
+    scene = scene_of(keys, found.value, source_name(source), source_name(path))
+    return Loaded(scene, mistakes, warnings)
 
 
-def own_world(
-    file: File, source: Path, logged: bool, settings: Sequence[Setting] = ()
-) -> Loaded[World]:
-    """The world that a commands file names. A missing one is a mistake in that file."""
-    sound = file.sound
-    assert sound is not None
+def missing_world(sound: Sound, source: Path) -> Iterator[Mistake]:
+    """A commands file that names no world, or one that cannot be read."""
     named = sound.value("world")
-    if named is None:
-        if sound.root.at(("world",)) is None:
-            right = "write e.g. world: ../worlds/classroom.yaml, or name one with --world"
-            file.mistakes.insert(0, sound.mistake((), "the scene has no world", right))
-        return Loaded()
-    try:
-        bytes_of(source, named)
-    except UsageError as error:
-        wrong, _, right = str(error).partition("; ")
-        file.mistakes.append(
-            sound.mistake(("world",), wrong, right or "write its path relative to this file")
-        )
-        file.mistakes.sort(key=in_order_of_place)
-        return Loaded()
-    return read_world(source, os.path.normpath(source), logged, settings)
+    if named is not None:
+        try:
+            bytes_of(source, named)
+        except UsageError as error:
+            wrong, _, right = str(error).partition("; ")
+            right = right or "write its path relative to this file"
+            yield sound.mistake(("world",), wrong, right)
+    elif sound.root.at(("world",)) is None:
+        right = "write e.g. world: ../worlds/classroom.yaml, or name one with --world"
+        yield sound.mistake((), "the scene has no world", right)
 
 
 def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
@@ -245,13 +235,10 @@ def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
     file = read(Path(path), str(path), None)
     if file.kind == "world":
         return world_in(file)
-    loaded = scene_in(file, Path(path))
-    if isinstance(file.keys, CommandsKeys) and file.sound is not None:
-        loaded.warnings += filter_warnings(file.sound, file.keys)
-    if (
-        isinstance(file.keys, CommandsKeys)
-        and file.keys.recording is not None
-        and file.keys.recording.path is not None
-    ):
-        recorded(loaded, file, file.keys.recording, Path(path), None)
-    return loaded
+    loaded, keys = scene_in(file, Path(path)), file.keys
+    if not isinstance(keys, CommandsKeys) or file.sound is None:
+        return loaded
+    loaded = replace(loaded, warnings=[*loaded.warnings, *filter_warnings(file.sound, keys)])
+    if keys.recording is None or keys.recording.path is None:
+        return loaded
+    return with_log(loaded, file, keys.recording, Path(path), None)

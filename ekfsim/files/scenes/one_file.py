@@ -25,7 +25,7 @@ from ekfsim.files.yaml.telling import at, details_of, tell
 ONLY_IN_WORLDS = {*aliases(WorldKeys).values()} - {"description"}
 
 
-@dataclass
+@dataclass(frozen=True)
 class File:
     """What was found in a file of either kind."""
 
