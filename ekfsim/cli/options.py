@@ -26,9 +26,8 @@ SET = click.option(
     "settings",
     multiple=True,
     metavar="KEY=VALUE",
-    help="Overrule a number of the world, e.g. noise.rangeSigmaRatio=0.02, or of "
-    "the filter, e.g. "
-    "filter.alpha=0.5; repeatable.",
+    help="Overrule a number of the world, e.g. noise.rangeSigmaRatio=0.02, "
+    "or of the filter, e.g. filter.alpha=0.5; repeatable.",
 )
 
 
@@ -52,8 +51,8 @@ PLAIN = click.option(
     is_flag=True,
     callback=_one_way,
     expose_value=False,
-    help="Calculate as the readable code stands, without its quicker twins: slow, and alike but "
-    "for the last digits.",
+    help="Calculate as the readable code stands, without its quicker twins: "
+    "slow, and alike but for the last digits.",
 )
 EXPLAIN = click.option(
     "--explain", is_flag=True, help="Narrate in the long form: every matrix, every equation."
@@ -144,10 +143,10 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 "--filter",
                 "filter_name",
                 metavar="NAME,…",
-                help="In place of the file's filter: kf, kf-nominal, ekf, iekf, ukf, "
-                "ukf-augmented or pf. "
-                "Several are put side by side; the name of each then stands before the "
-                "ending of its files.",
+                help="In place of the file's filter: "
+                "kf, kf-nominal, ekf, iekf, ukf, ukf-augmented or pf. "
+                "Several are put side by side; the name of each then stands before the ending "
+                "of its files.",
             ),
             GATE,
             GUARD,
@@ -222,8 +221,8 @@ def compare_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 "--a",
                 "a",
                 metavar="KEY=VALUE,…",
-                help="What one side sets: numbers of the world, gate, guard, filter; nothing "
-                "where left out.",
+                help="What one side sets: numbers of the world, gate, guard, filter; "
+                "nothing where left out.",
             ),
             click.option("--b", "b", metavar="KEY=VALUE,…", help="What the other side sets."),
             WORLD,

@@ -77,8 +77,8 @@ def kept(journal: "Journal", total: int) -> str:
     if len(journal) == total:
         return f"all blocks are kept in {journal.path.parent}, --resume goes on with the tables"
     return (
-        f"{len(journal)} of {total} blocks are kept in {journal.path.parent}, --resume goes on "
-        f"with the rest"
+        f"{len(journal)} of {total} blocks are kept in {journal.path.parent}, "
+        "--resume goes on with the rest"
     )
 
 
@@ -99,8 +99,8 @@ def study_into(
     with journal_in(partial, plan, resume, force) as journal:
         if resume and not len(journal):
             say(
-                f"{partial}: nothing is kept there to go on with; this is a study from the "
-                f"beginning"
+                f"{partial}: nothing is kept there to go on with; "
+                "this is a study from the beginning"
             )
         with progress(plan, journal) as done:
             do(plan, journal, engine, done)

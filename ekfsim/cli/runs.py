@@ -18,8 +18,8 @@ from ekfsim.printable import in_a_line
 @scene_options
 @click.option("--show", type=click.Choice(["auto", "window", "text", "files"]), default="auto",
     show_default=True,
-              help="Draw in a window, as text in the terminal, or into one file rewritten in "
-                   "place.")  # fmt: skip
+              help="Draw in a window, as text in the terminal, "
+                   "or into one file rewritten in place.")  # fmt: skip
 @click.option("--out", "-o", type=Result(), default=Path("out"), show_default=True,
               help="Folder for the pictures of --show files and of the key s.")  # fmt: skip
 @click.option(

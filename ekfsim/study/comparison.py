@@ -88,8 +88,8 @@ def told_side(text: str, option: str) -> tuple[Setting, ...]:
     for part in text.split(","):
         if "," in text and "=" not in part:
             raise UsageError(
-                f"{option} {text}: '{part}' is no KEY=VALUE; write e.g. {option} "
-                f"guard=skip,gate=0.99"
+                f"{option} {text}: '{part}' is no KEY=VALUE; "
+                f"write e.g. {option} guard=skip,gate=0.99"
             )
         key, _, value = (word.strip() for word in part.partition("="))
         if key == FILTER:

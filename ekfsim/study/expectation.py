@@ -43,8 +43,8 @@ def promised(plan: Plan, runs: int | None) -> Plan:
     """
     if len(plan.cases) > 1:
         raise UsageError(
-            "--expect verifies what one scene promises of one filter; leave --sweep out, and name "
-            "one"
+            "--expect verifies what one scene promises of one filter; "
+            "leave --sweep out, and name one"
         )
     expect, name = plan.cases[0].scene.expect, plan.request.commands_name
     if expect is None or not list(findings(expect, None)):

@@ -53,8 +53,8 @@ def render(
             suffix = "" if is_folder(target) else suffix
     if suffix not in ("", *ANIMATIONS):
         raise UsageError(
-            f"{target}: '{suffix}' is no kind of picture; name a .gif, an .mp4, or a folder for "
-            f"PNG files"
+            f"{target}: '{suffix}' is no kind of picture; "
+            "name a .gif, an .mp4, or a folder for PNG files"
         )
     write_video = video.writer() if suffix == ".mp4" else None
     if suffix:

@@ -26,8 +26,8 @@ def writer() -> Writer:
         if shutil.which("ffmpeg"):
             return with_ffmpeg
         raise UsageError(
-            "an .mp4 needs PyAV or ffmpeg: pip install 'ekfsim[video]', or choose a name that "
-            "ends in .gif"
+            "an .mp4 needs PyAV or ffmpeg: "
+            "pip install 'ekfsim[video]', or choose a name that ends in .gif"
         ) from None
     return with_av
 

@@ -55,8 +55,8 @@ def conclude(comparison: Comparison, found: Pairs, width: int | None = None) -> 
     """
     request = comparison.request
     what = (
-        f"{found.a.runs} runs of seed {comparison.a.seed}, each under either setting on the "
-        f"same draws"
+        f"{found.a.runs} runs of seed {comparison.a.seed}, "
+        "each under either setting on the same draws"
     )
     head = (
         f"{in_a_line(request.commands_name)}: {what}",
@@ -105,8 +105,8 @@ def sentences(found: Pairs) -> Iterator[str]:
             100 * position.a_less / position.runs,
         )
         yield (
-            f"b ends nearer to the truth than a in {nearer:.1f} % of the runs, and farther from "
-            f"it in {farther:.1f} %"
+            f"b ends nearer to the truth than a in {nearer:.1f} % of the runs, "
+            f"and farther from it in {farther:.1f} %"
         )
     if left_out := found.a.runs - position.runs:
         yield f"{left_out} runs are left out of the means: an estimate of theirs is no number"

@@ -24,13 +24,13 @@ def verify(plan: Plan, findings: Sequence[Finding]) -> str:
 def _lines(plan: Plan, findings: Sequence[Finding]) -> Iterator[str]:
     request = plan.request
     yield (
-        f"{in_a_line(request.commands_name)}: {request.runs} runs of seed {plan.seed}, filter "
-        f"{plan.cases[0].filter}"
+        f"{in_a_line(request.commands_name)}: "
+        f"{request.runs} runs of seed {plan.seed}, filter {plan.cases[0].filter}"
     )
     for found in findings:
         yield (
-            f"{found.name}: {'kept' if found.kept else 'NOT kept'}: {_measured(found)}, "
-            f"{_promise(found)} promised"
+            f"{found.name}: {'kept' if found.kept else 'NOT kept'}: "
+            f"{_measured(found)}, {_promise(found)} promised"
         )
 
 

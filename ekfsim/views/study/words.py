@@ -26,8 +26,8 @@ from ekfsim.views.words.text_table import aligned, folded
 
 MOST_TOLD = 6  # rows, each with what its verdict rests on
 IN_TABLE = (
-    "What each verdict rests on, and the worst and a typical run of each row, stand in "
-    "summary.csv (-o)."
+    "What each verdict rests on, and the worst and a typical run of each row, "
+    "stand in summary.csv (-o)."
 )
 HEAD = (
     *(
@@ -205,8 +205,8 @@ def evidence(found: Verdict) -> list[str]:
         of = found.result.tally.of
         above, below = (percent(Share(runs, of.nis_runs)) for runs in (of.nis_above, of.nis_below))
         told.append(
-            f"{above} % of the runs have a sum of NIS above its 95 % band, {below} % below (2.5 % "
-            f"each is chance)"
+            f"{above} % of the runs have a sum of NIS above its 95 % band, "
+            f"{below} % below (2.5 % each is chance)"
         )
     if way.steps:
         share, steps = way.worst.above_999, len(way.steps)

@@ -81,8 +81,8 @@ class Player:
             case Action.EXPLAIN:
                 self.explain = not self.explain
                 self.out.write(
-                    f"The narrative in its {'long' if self.explain else 'short'} form, from this "
-                    f"view on:\n"
+                    f"The narrative in its {'long' if self.explain else 'short'} form, "
+                    "from this view on:\n"
                 )
                 self.out.write(self._narrated(self._view(self.number)))
             case Action.HELP:

@@ -28,8 +28,8 @@ BACKENDS = {  # matplotlib's, each with the modules of which it needs one
 PATIENCE = 20  # s for a display to answer
 LONGEST_WAIT = 0.05  # s between two looks for keys while a poll has no end
 TRIAL = (
-    "import sys; from matplotlib import pyplot as p; p.switch_backend(sys.argv[1]); "
-    "p.figure().canvas.draw()"
+    "import sys; from matplotlib import pyplot as p; "
+    "p.switch_backend(sys.argv[1]); p.figure().canvas.draw()"
 )
 NAMES: dict[str, Key] = {  # keys that write no character, as matplotlib calls them
     **dict.fromkeys(("right", "down", "pagedown", "enter", "space"), Action.NEXT),

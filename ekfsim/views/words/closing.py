@@ -41,8 +41,8 @@ def conclude_all(scene: Scene, summaries: Sequence[Summary], quiet: bool = False
         return conclude(summaries[0])
     names, first = (scene.filter, *scene.beside), summaries[0]
     lines = [
-        f"The run is over after {_done(first)}; {len(names)} filters side by side (RMSE in m, "
-        f"degrees):",
+        f"The run is over after {_done(first)}; "
+        f"{len(names)} filters side by side (RMSE in m, degrees):",
         *_table(names, summaries),
     ]
     told = (
@@ -124,8 +124,8 @@ def sentence(evidence: Evidence) -> str:
         case Verdict.LOST:
             assert evidence.last_nees is not None
             return (
-                f"{verdict.value} from step {evidence.lost_from} on: at the last step "
-                f"{_nees(evidence.last_nees)}"
+                f"{verdict.value} from step {evidence.lost_from} on: "
+                f"at the last step {_nees(evidence.last_nees)}"
             )
         case Verdict.NO_EVIDENCE:
             return f"{verdict.value}: not one reading could be held against a prediction"
@@ -133,13 +133,13 @@ def sentence(evidence: Evidence) -> str:
             return f"{verdict.value}: {_nis(evidence, 'within')}{_also(evidence)}"
         case Verdict.OVER_CONFIDENT:
             return (
-                f"{verdict.value}: {_nis(evidence, 'above')}: the filter trusts itself more "
-                f"than its readings allow"
+                f"{verdict.value}: {_nis(evidence, 'above')}: "
+                "the filter trusts itself more than its readings allow"
             )
         case Verdict.OVER_CAUTIOUS:
             return (
-                f"{verdict.value}: {_nis(evidence, 'below')}: the filter trusts itself less "
-                f"than it could"
+                f"{verdict.value}: {_nis(evidence, 'below')}: "
+                "the filter trusts itself less than it could"
             )
 
 

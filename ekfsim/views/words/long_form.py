@@ -139,8 +139,8 @@ class LongForm(Form):
             )
             after = "" if wall < 0 else f", after {fine(float(sighting.probe_ranges[i]))}"
             told += (
-                f"  From (x, y, th) = {pose(sighting.probes[i].tolist())}{back}, it would "
-                f"meet {met}{after}\n"
+                f"  From (x, y, th) = {pose(sighting.probes[i].tolist())}{back}, "
+                f"it would meet {met}{after}\n"
             )
         return told
 

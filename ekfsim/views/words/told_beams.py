@@ -18,13 +18,13 @@ from ekfsim.views.words.numbers import number, point, turn
 SLIGHT = 0.1  # of the longer part of an offset: a part that is shorter is not told
 UNTURNED = math.radians(0.05)  # nor is a smaller turn
 TANGENT = (
-    "It comes from the tangent that the filter keeps, not from a beam: no wall of the map "
-    "was looked for\n"
+    "It comes from the tangent that the filter keeps, not from a beam: "
+    "no wall of the map was looked for\n"
 )
 NEGATIVE = "A range cannot be negative: the robot is believed far from where that tangent holds\n"
 MISSED = (
-    "The beam of the estimate itself meets no wall of the filter's map; those of some "
-    "particles do\n"
+    "The beam of the estimate itself meets no wall of the filter's map; "
+    "those of some particles do\n"
 )
 
 

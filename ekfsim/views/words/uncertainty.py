@@ -31,8 +31,8 @@ def judged(step: Step, pose: Gaussian, probability: float) -> str:
     ellipse_side = "inside" if inside_ellipse(pose, step.entry.truth, probability) else "outside"
     cone_side = "inside" if inside_cone(pose, step.entry.truth, probability) else "outside"
     told = (
-        f"The true position lies {ellipse_side} the ellipse, the true heading {cone_side} the "
-        f"cone; "
+        f"The true position lies {ellipse_side} the ellipse, "
+        f"the true heading {cone_side} the cone; "
     )
     return told + _nees(step.nees)
 
@@ -64,8 +64,8 @@ def rest(c: Correction) -> str:
     if c.settled:
         return ""
     return (
-        "The search for the most probable state did not settle: where it was cut off stands "
-        "for the end of it\n"
+        "The search for the most probable state did not settle: "
+        "where it was cut off stands for the end of it\n"
     )
 
 
@@ -78,11 +78,11 @@ def crowd(belief: Belief) -> str:
     weights = belief.weights
     if np.all(weights == weights[0]):
         return (
-            f"The particles were weighed by the reading, and {len(weights)} alike ones drawn "
-            f"anew by their weights\n"
+            "The particles were weighed by the reading, "
+            f"and {len(weights)} alike ones drawn anew by their weights\n"
         )
     alike = 1 / float(np.sum(weights**2))
     return (
-        f"The particles were weighed by the reading; the {len(weights)} say as much as "
-        f"{alike:.0f} alike\n"
+        "The particles were weighed by the reading; "
+        f"the {len(weights)} say as much as {alike:.0f} alike\n"
     )

@@ -15,7 +15,7 @@ from scenes import DESK, NOISE, ROOM, SILENT, START, rich, scene, told, unbounde
 from ekfsim.commands import Kidnap, Move, Say, Sense
 from ekfsim.geometry.ellipse import conditioned, radius_factor
 from ekfsim.localization import play
-from ekfsim.views.picture import limits
+from ekfsim.views.picture import frames, limits, panels
 from ekfsim.views.picture.frames import Frame, Picture, draw
 from ekfsim.views.picture.look import Look
 from ekfsim.views.picture.panels import close_width
@@ -318,3 +318,27 @@ def test_names_stand_in_the_picture_where_they_fit():
     said = [name.get_text() for name in frame.picture.names if isinstance(name, Text)]
     assert "desk" in said
     assert all(re.fullmatch("desk|a{19}…", name) for name in said)
+
+
+@pytest.mark.parametrize("run", [rich(), unbounded(), scene(Move(1.0, 0.5), sigma=SIGMA)])
+def test_what_is_not_drawn_because_it_is_empty_would_not_be_seen(run, monkeypatch):
+    frame, every = Frame(run, limits.of(run, play(run))), list(views(play(run)))
+    shown = [frame.rgb(view) for view in every]
+    monkeypatch.setattr(frames, "empty", lambda artist: False)
+    for view, pixels in zip(every, shown, strict=True):
+        assert np.array_equal(frame.rgb(view), pixels)
+
+
+def test_the_frame_of_the_close_up_is_what_the_spines_would_be():
+    drawn = []
+    for by_spines in (True, False):
+        canvas = FigureCanvasAgg(Figure(figsize=(2, 2)))
+        axes = canvas.figure.add_axes((0.113, 0.127, 0.71, 0.73))
+        axes.set(xticks=[], yticks=[])
+        if not by_spines:
+            axes.spines[:].set_visible(False)
+            axes.add_collection(panels.frame(axes), autolim=False)
+        canvas.draw()
+        drawn.append(np.asarray(canvas.buffer_rgba()))
+    assert np.array_equal(*drawn)
+    assert drawn[0].min() == 0
