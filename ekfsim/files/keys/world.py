@@ -33,6 +33,7 @@ from ekfsim.files.keys.told import ToldSensorsKeys
 from ekfsim.systems import SYSTEMS
 from ekfsim.world import Faults
 
+SEE = "See noise."
 POSE = {"x": 1.0, "y": 1.0, "theta": 90}
 SIGMA = {"x": 0.1, "y": 0.1, "theta": 5}
 DESK: JsonDict = {"name": "desk", "points": [[4, 3], [5, 3], [5, 4], [4, 4]]}
@@ -140,19 +141,11 @@ class ToldNoiseKeys(Strict):
     where they differ from the true ones; any of the five.
     """
 
-    execution_distance: Ratio | None = Field(
-        None, alias="executionDstSigmaRatio", description="See noise."
-    )
-    execution_angle: Ratio | None = Field(
-        None, alias="executionAngSigmaRatio", description="See noise."
-    )
-    odometry_distance: Ratio | None = Field(
-        None, alias="odometryDstSigmaRatio", description="See noise."
-    )
-    odometry_angle: Ratio | None = Field(
-        None, alias="odometryAngSigmaRatio", description="See noise."
-    )
-    range: Ratio | None = Field(None, alias="rangeSigmaRatio", description="See noise.")
+    execution_distance: Ratio | None = Field(None, alias="executionDstSigmaRatio", description=SEE)
+    execution_angle: Ratio | None = Field(None, alias="executionAngSigmaRatio", description=SEE)
+    odometry_distance: Ratio | None = Field(None, alias="odometryDstSigmaRatio", description=SEE)
+    odometry_angle: Ratio | None = Field(None, alias="odometryAngSigmaRatio", description=SEE)
+    range: Ratio | None = Field(None, alias="rangeSigmaRatio", description=SEE)
 
 
 class ObstacleKeys(Strict):

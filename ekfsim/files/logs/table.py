@@ -124,10 +124,8 @@ def _whole(lines: Lines, separator: str | None, warnings: list[str]) -> Lines:
     """The lines without a last one that was cut short."""
     if not len(lines):
         return lines
-    last, above = (
-        lines.texts[-1].split(separator),
-        [text.split(separator) for text in lines.texts[-20:-1]],
-    )
+    last = lines.texts[-1].split(separator)
+    above = [text.split(separator) for text in lines.texts[-20:-1]]
     place = f"{lines.file}:{lines.numbers[-1]}"
     if above and len(last) < len(above[-1]):
         why = "in the middle of a row"
@@ -221,10 +219,8 @@ def _row_mistakes(
     for place, field in enumerate(fields):
         column = text.index(field, column) if field else column
         if place in wanted.places and not is_number(field):
-            start, name = (
-                column + len(field) - len(field.lstrip()),
-                wanted.names[wanted.places.index(place)],
-            )
+            start = column + len(field) - len(field.lstrip())
+            name = wanted.names[wanted.places.index(place)]
             wrong = (
                 f"{quoted(field)} is not a number"
                 if field.strip()
