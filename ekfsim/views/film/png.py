@@ -48,10 +48,10 @@ class Encoder:
         """A file with text chunks. rgba : (h, w, 4), without any transparency"""
         pixels = rgba.view(np.uint32)[..., 0]
         changed = (pixels != self._shown).any(axis=1)
-        np.copyto(self._shown, pixels)
         changed[1:] |= changed[:-1]  # a row is told as its difference to the one above
         for first, end in self.bands:
             if changed[first:end].any():
+                self._shown[first:end] = pixels[first:end]
                 self.bands[first, end] = self._band(_filtered(rgba, first, end))
         height, width = pixels.shape
         header = width.to_bytes(4) + height.to_bytes(4) + RGB_8_BIT
