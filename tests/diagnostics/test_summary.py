@@ -12,7 +12,7 @@ from scipy.stats import chi2
 
 from ekfsim.commands import Kidnap, Move, Say, Sense
 from ekfsim.diagnostics.summary import Errors, Summary
-from ekfsim.files.results.outputs import Outputs
+from ekfsim.files.results.outputs import SUMMARY_FORMAT, Outputs
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.geometry.outline import path_error
 from ekfsim.localization import play
@@ -107,6 +107,7 @@ def test_the_keys_are_those_of_the_format(tmp_path):
             for sink in sinks:
                 sink.write(step)
     written = json.loads(path.read_text(), parse_constant=pytest.fail)
+    assert written.pop("format") == SUMMARY_FORMAT
     made_by = {"ekfsim", "world", "commands", "filter", "gate", "guard", "seed", "run"}
     assert set(written) >= made_by
     assert {key: written[key] for key in set(written) - made_by} == summary.table()
