@@ -73,11 +73,8 @@ class Outcome:
 
 def outcomes(scene: Scene, asked: Iterable[Way], runs: int) -> dict[Way, Outcome]:
     """Runs 0 … N − 1 of a simulated scene, filtered by an EKF in each of the ways at once."""
-    numbers, ekf, layout = (
-        np.arange(runs),
-        EKF(scene.gate, scene.world.layout.headings),
-        scene.world.layout,
-    )
+    layout = scene.world.layout
+    ekf = EKF(scene.gate, layout.headings)
     ways = list(asked)
     many = len(ways)
     x, P = first_belief(scene, (many * runs,))
@@ -89,15 +86,10 @@ def outcomes(scene: Scene, asked: Iterable[Way], runs: int) -> dict[Way, Outcome
     def judge() -> None:
         everywhere = np.tile(truth, (many, 1))
         e = x - everywhere
-        judged.append(
-            (
-                np.hypot(e[:, 0], e[:, 1]),
-                wrap(e[:, 2]),
-                nees(Gaussian(x, P), everywhere, layout).value,
-            )
-        )
+        square = nees(Gaussian(x, P), everywhere, layout).value
+        judged.append((np.hypot(e[:, 0], e[:, 1]), wrap(e[:, 2]), square))
 
-    for entry in simulate(scene, numbers):
+    for entry in simulate(scene, np.arange(runs)):
         match entry.given:
             case Control(motion, u):
                 if ticks and ticks % EVERY == 0:
@@ -112,11 +104,9 @@ def outcomes(scene: Scene, asked: Iterable[Way], runs: int) -> dict[Way, Outcome
                     assert entry.truth is not None
                     given = as_told_by(way.reading, entry.given)
                     given = with_angles_of(entry.truth, given) if way.ideal else given
-                    sensor = (
-                        Frozen(given.sensor, before[here])
-                        if way.reading == "coded"
-                        else given.sensor
-                    )
+                    sensor = given.sensor
+                    if way.reading == "coded":
+                        sensor = Frozen(sensor, before[here])
                     (x[here], P[here]), correction = ekf.update(
                         Gaussian(x[here], P[here]), sensor, given.z
                     )

@@ -1,8 +1,10 @@
 """Document 001, figure 5: the echo, its Hilbert envelope and the UKF's fit of it."""
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from ekfsim.figures.album import BLACK, BLUE, GREEN, GREY, ORANGE, SKY, VERMILLION, Album, labelled
+from ekfsim.geometry import Array
 from ekfsim.models.sensors.echo import envelope, printed_envelope
 from ekfsim.scene import Scene
 from ekfsim.simulation.bench import heard, sigma_of
@@ -47,52 +49,25 @@ def draw_echo(scene: Scene, album: Album) -> None:
     samples = heard(pair, echo, sigma_of(SHOWN), np.random.default_rng([scene.seed, 5, 1]))
     measured, noise = hilbert_envelope(samples), noise_of(samples, pair)
     x, P = estimate_echo(measured, noise, pair)
-    σ, crossing, t = (
-        float(np.sqrt(P[1, 1])),
-        float(threshold_crossing(measured, noise, pair)),
-        pair.times * 1e3,
-    )
+    σ, crossing = float(np.sqrt(P[1, 1])), float(threshold_crossing(measured, noise, pair))
+    t, arrival, error = pair.times * 1e3, x[1] * 1e3, x[1] - echo[1]
     figure = album.figure(9.0, 6.4)
     whole, close = figure.subplots(2, 1)
-    for axes in (whole, close):
-        axes.plot(
-            t,
-            samples,
-            color=SKY if axes is whole else BLUE,
-            lw=0.6 if axes is whole else 0.9,
-            label="signal",
-        )
+    for axes, color, width in ((whole, SKY, 0.6), (close, BLUE, 0.9)):
+        axes.plot(t, samples, color=color, lw=width, label="signal")
         axes.plot(t, measured, color=VERMILLION, lw=1.1, label="Hilbert envelope")
-        axes.plot(t, envelope(pair.times, *x), color=BLACK, lw=1.8, label="the UKF's eq. 38")
-        if scene.reading == "printed":
-            grown = printed_envelope(pair.times, *x)
-            axes.plot(
-                t,
-                np.where(grown < 1.6, grown, np.nan),
-                color=GREEN,
-                ls="--",
-                lw=1.5,
-                label="eq. 38 as printed",
-            )
+        _envelopes(axes, pair, x, scene.reading == "printed")
         labelled(axes, "time since the emission (ms)", "received (V)").set(ylim=(-1.65, 1.65))
     whole.set_xlim(0, t[-1])
-    arrival = x[1] * 1e3
     close.set_xlim(arrival - 0.35, arrival + 1.25)
-    close.axvspan(
-        arrival - 2e3 * σ,
-        arrival + 2e3 * σ,
-        color=GREY,
-        alpha=0.35,
-        lw=0,
-        label="τ ± 2σ by the UKF",
-    )
+    near = (arrival - 2e3 * σ, arrival + 2e3 * σ)
+    close.axvspan(*near, color=GREY, alpha=0.35, lw=0, label="τ ± 2σ by the UKF")
     close.axvline(echo[1] * 1e3, color=GREEN, lw=1.6, label="true τ")
     close.axvline(
         crossing * 1e3, color=ORANGE, ls="--", lw=1.6, label=f"{100 * SHARE:.0f} % of the peak"
     )
     whole.legend(loc="upper right", fontsize=8, ncols=2)
     close.legend(loc="lower right", fontsize=8, ncols=3)
-    error = x[1] - echo[1]
     album.add(
         figure, "fig5-echo", "Figure 5: the echo, its Hilbert envelope and the UKF's fit",
         ECHO.format(
@@ -106,3 +81,13 @@ def draw_echo(scene: Scene, album: Album) -> None:
             drawn=" (green, cut off)" if scene.reading == "printed" else "",
         ),
     )  # fmt: skip
+
+
+def _envelopes(axes: Axes, pair: Pair, x: Array, as_printed: bool) -> None:
+    """Eq. 38 with the UKF's parameters, and without its minus where the print is followed."""
+    t = pair.times * 1e3
+    axes.plot(t, envelope(pair.times, *x), color=BLACK, lw=1.8, label="the UKF's eq. 38")
+    if as_printed:
+        grown = printed_envelope(pair.times, *x)
+        shown = np.where(grown < 1.6, grown, np.nan)
+        axes.plot(t, shown, color=GREEN, ls="--", lw=1.5, label="eq. 38 as printed")
