@@ -92,6 +92,7 @@ TWINS: tuple[Twin, ...] = (
     ),
     # simulation/
     Twin(f"{CLASSROOM}:until_wall", f"{ONE}.classroom:until_wall", ALONE),
+    Twin(f"{CLASSROOM}:paired", f"{ONE}.classroom:paired", ALONE),
     Twin(f"{CLASSROOM}:until_wall", f"{MANY}.classroom:until_wall", "pose : (N, 3)"),
     # diagnostics/
     Twin(f"{AMBIGUITY}:sighting", f"{ONE}.ambiguity:sighting", ALONE),

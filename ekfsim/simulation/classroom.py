@@ -60,7 +60,7 @@ def _drive(
         + noise.odometry_distance * abs(turned) * odometry_distance
     )
     a = faults.odometry_angle_scale * turn + noise.odometry_angle * abs(turn) * odometry_angle
-    return MoveTurn(0, 0).f(pose, _paired(way, turn)), _paired(d, a), bump
+    return MoveTurn(0, 0).f(pose, paired(way, turn)), paired(d, a), bump
 
 
 @twinned
@@ -87,7 +87,8 @@ def _measure(world: World, pose: Array, bearing: float, draws: Draws, i: int) ->
     return np.maximum(z, 0.0)[..., None]
 
 
-def _paired(d: Array, a: Array) -> Array:
+@twinned
+def paired(d: Array, a: Array) -> Array:
     """(d, a) as a motion input : (…, 2)"""
     u = soa_zeros(np.broadcast_shapes(np.shape(d), np.shape(a)), 2)
     u[..., 0], u[..., 1] = d, a

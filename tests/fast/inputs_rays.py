@@ -73,3 +73,10 @@ def drives(random, runs):
         square = random.choice(PLACES, (*axes, 2)), random.choice(TURNS, (*axes, 1))
         yield walls, np.concatenate(square, axis=-1), np.rint(way)
         yield walls, np.where(random.random(pose.shape) < 0.1, np.nan, pose), way
+
+
+@inputs("ekfsim.simulation.classroom:paired")
+def measured(random, runs):
+    d, a = random.normal(size=(2, *axes_of(runs)))
+    yield d, a
+    yield d, 0.5

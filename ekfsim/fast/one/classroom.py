@@ -19,3 +19,8 @@ def until_wall(walls: Walls, pose: Array, way: Array | float) -> tuple[Array, In
     free = max(r - CLEARANCE, 0.0)
     bumped = wall >= 0 and abs(way) > free
     return np.array(math.copysign(free, way) if bumped else way), np.array(wall if bumped else -1)
+
+
+def paired(d: Array | float, a: Array | float) -> Array | None:
+    """(d, a) as one motion input."""
+    return None if np.ndim(d) or np.ndim(a) else np.array([d, a])
