@@ -74,6 +74,13 @@ def row(rows, start):
     return next(numbers for name, numbers in rows.items() if name.startswith(start))
 
 
+def test_a_variance_that_is_constant_is_no_noise_of_the_last_digit(twin):
+    for name in ("fig6-variances", "fig7-variances"):
+        for axes in twin.drawn[name].axes:
+            low, high = axes.get_ylim()
+            assert high >= 3.9 * low
+
+
 def test_every_figure_has_its_units_and_its_caption(twin):
     assert list(twin.drawn) == NAMES
     for name, label in (

@@ -24,6 +24,7 @@ LARGER = 100.0  # how many times figure 5 enlarges the authors' covariances
 PROBABILITY = 0.954  # of its ellipses
 INSIDE, OUTSIDE = 2.0, 0.7  # m, how far figure 5 reaches from the corner
 MEETING = 1.2  # times as large is nearly the same
+LEAST = 4.0  # how many times its lowest variance a panel of figures 6 and 7 reaches at least
 FIRST = 40  # how many steps figures 6 and 7 show
 CLAIMS: tuple[tuple[DocumentReading, float, str], ...] = (
     ("coded", LARGER, "R without the yaw error: covariances drawn 100 times larger"),
@@ -137,6 +138,10 @@ def _variance(axes: Axes, all_: Track, half: Track, name: str, unit: str) -> Non
         label="every correction",
     )
     axes.set_yscale("log")
+    low, high = axes.get_ylim()
+    middle = np.sqrt(low * high)
+    if high < LEAST * low:  # constant but for the last digit: there is nothing to magnify
+        axes.set_ylim(middle / np.sqrt(LEAST), middle * np.sqrt(LEAST))
 
 
 def _told_of_variances(number: int, all_: Track, half: Track) -> str:
