@@ -8,4 +8,6 @@ table.py says which function each is the twin of and when it may stand in for it
     chi_square.py  quantiles without SciPy
     stretches.py   motion inputs that follow one another, by many_steps.py
     records.py     many records at once
+    written.py     a driven robot's log, and
+    summary.py     the summary of its run, many ticks at once
 """

@@ -26,8 +26,8 @@ class Belief(Protocol):
 class Gaussian(NamedTuple):
     """A belief with a mean and a covariance: `x, P = belief`."""
 
-    mean: Array  # (…, n)
-    covariance: Array  # (…, n, n)
+    mean: Array  # x : (…, n)
+    covariance: Array  # P : (…, n, n)          eq. 2
 
 
 @dataclass(frozen=True, slots=True)

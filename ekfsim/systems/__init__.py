@@ -19,8 +19,8 @@ is where their equations stand:
          38 models/sensors/echo.py, and its estimate systems/echo.py
          fig. 4 models/sensors/infrared.py · fig. 6 models/sensors/ultrasonic.py
     002  classroom: Localization and the extended Kalman filter, an assignment
-         1, 3, 6 models/motions/move_turn.py · 8, and the Jacobian J_H models/sensors/laser.py
-         4, 9 filters/ekf.py · 7, 10 to 12 filters/kalman.py
+         1, 3, 6 models/motions/move_turn.py · 8, and J_H, C_v of 11 models/sensors/laser.py
+         2 filters/belief.py · 4, 5, 9 filters/ekf.py · 7, 10 to 12 filters/kalman.py
     003  gnss: Sahni, Assignment 3: Sensor fusion for lawn mower
          2 models/sensors/position.py · 3, 4 and the integrals models/motions/wheel_speeds.py
          5 to 7 filters/ekf.py

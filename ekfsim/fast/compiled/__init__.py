@@ -5,6 +5,7 @@
     steps.py    how the true robots move, and how the EKF predicts and updates
     carlson.py  an update by the square root of P, where a sensor is far sharper than the belief
     models.py, kalman.py, nees.py  a text each, of runs side by side, (3, 3, N)
+    angles.py   wrapping, and the directions of many headings
     judging.py  NEES of many beliefs, singular ones too, and what is counted of a step
 
 Numba keeps what it has compiled as long as the file of a function does not change, whatever that

@@ -1,4 +1,5 @@
-"""What a sharp sensor leaves of one covariance, compiled by Numba: the twin of conditioning.py.
+"""What a sharp sensor leaves of one covariance, compiled by Numba: as
+filters/arithmetic/square_root.py has it.
 
 P : (6, N) is the upper half of each run's covariance, row after row.
 """

@@ -48,7 +48,7 @@ class Laser(Sensor):
         return np.where(known[..., None], -rows / n_d[..., None], 0.0)[..., None, :]
 
     def R(self, x: Array) -> Array:
-        """C_v = (ratio · r)² : (…, 1, 1)
+        """C_v = (ratio · r)² : (…, 1, 1)          eq. 11
 
         From the prediction: taken from the reading, short echoes are believed too much
         (laser_by_reading.py).

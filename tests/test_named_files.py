@@ -1,0 +1,55 @@
+"""Files that README, docs and docstrings of modules name are there."""
+
+import ast
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+NAMED = re.compile(r"(?<![\w./-])(?:[\w.-]+/)*\w[\w-]*\.(?:py|md|cff)\b")
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+MODULES = [
+    path for path in sorted((ROOT / "ekfsim").rglob("*.py")) if "_packaged" not in path.parts
+]
+FILES = [
+    path.relative_to(ROOT).as_posix()
+    for suffix in ("py", "md", "cff")
+    for room in (".", "ekfsim", "tests", "docs", "benchmarks", "findings")
+    for path in (ROOT / room).glob(f"*.{suffix}" if room == "." else f"**/*.{suffix}")
+]
+OTHERS = {
+    "ekfsim/figures/writing.py": {"captions.md"},  # written by `ekfsim figures`
+    "docs/systems.md": {"captions.md"},
+}
+
+
+def text_of(path):
+    text = path.read_text(encoding="utf-8")
+    return text if path.suffix == ".md" else ast.get_docstring(ast.parse(text)) or ""
+
+
+def there(name, beside):
+    """Whether some file's path ends so, or leads there from the folder that names it."""
+    near = os.path.normpath(beside / name)
+    return os.path.exists(near) or any(f"/{file}".endswith(f"/{name}") for file in FILES)
+
+
+@pytest.mark.parametrize("path", [*PAGES, *MODULES], ids=lambda path: str(path.relative_to(ROOT)))
+def test_every_file_that_is_named_is_there(path):
+    others = OTHERS.get(path.relative_to(ROOT).as_posix(), set())
+    named = {name for name in NAMED.findall(text_of(path)) if "NAME" not in name}
+    assert {name for name in named - others if not there(name, path.parent)} == set()
+
+
+@pytest.mark.parametrize(
+    "path",
+    [path for path in MODULES if path.name == "__init__.py"],
+    ids=lambda path: path.parent.name,
+)
+def test_a_map_of_a_room_leaves_no_file_out(path):
+    """A room whose docstring lists files of its own lists them all."""
+    own = {other.name for other in path.parent.glob("*.py")} - {"__init__.py"}
+    named = set(NAMED.findall(text_of(path)))
+    assert len(named & own) < 2 or own <= named
