@@ -91,6 +91,7 @@ TWINS: tuple[Twin, ...] = (
         when="up to 5 000 degrees of freedom, and a probability that is neither 0 nor 1",
     ),
     # simulation/
+    Twin("ekfsim.simulation.draws:draw", f"{ONE}.draws:draw", "draws after the first few"),
     Twin(f"{CLASSROOM}:until_wall", f"{ONE}.classroom:until_wall", ALONE),
     Twin(f"{CLASSROOM}:paired", f"{ONE}.classroom:paired", ALONE),
     Twin(f"{CLASSROOM}:until_wall", f"{MANY}.classroom:until_wall", "pose : (N, 3)"),

@@ -3,6 +3,7 @@ alone.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from ekfsim.errors import UsageError
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.seeds import MOST_SEED, REPEATS
+from ekfsim.twins import twinned
 from ekfsim.world import World
 
 BLOCK = 1024  # runs that share a generator
@@ -48,7 +50,7 @@ class Draws:
 
     def _draw(self, i: int, uniforms: bool) -> tuple[Sequence[Array], Sequence[Array]]:
         if self._runs.ndim == 0:
-            return self._draw_one(i, *divmod(int(self._runs), BLOCK), uniforms)
+            return draw(self._seed, i, int(self._runs), uniforms)
         if self._neighbours is not None:
             return self._draw_neighbours(i, *self._neighbours, uniforms)
         normals_of, uniforms_of = np.empty((4, *self._runs.shape)), np.empty((2, *self._runs.shape))
@@ -56,7 +58,7 @@ class Draws:
         for b in np.unique(blocks).tolist():
             here = blocks == b
             rows = self._runs[here] % BLOCK
-            generator = self._generator(i, b)
+            generator = _generator(self._seed, i, b)
             normals_of[:, here] = generator.standard_normal((BLOCK, 4))[rows].T
             if uniforms:
                 uniforms_of[:, here] = generator.random((BLOCK, 2))[rows].T
@@ -66,22 +68,24 @@ class Draws:
         self, i: int, b: int, rows: slice, uniforms: bool
     ) -> tuple[Sequence[Array], Sequence[Array]]:
         """The same for runs that follow one another in one block, as those of a study do."""
-        generator = self._generator(i, b)
+        generator = _generator(self._seed, i, b)
         normals = generator.standard_normal((BLOCK if uniforms else rows.stop, 4))[rows]
         return tuple(normals.T), tuple(generator.random((BLOCK, 2))[rows].T) if uniforms else ()
 
-    def _draw_one(
-        self, i: int, b: int, row: int, uniforms: bool
-    ) -> tuple[Sequence[Array], Sequence[Array]]:
-        """The same for one run: of the normals no more than is needed, for the uniforms stand
-        behind all of them.
-        """
-        generator = self._generator(i, b)
-        normals = generator.standard_normal((BLOCK if uniforms else row + 1, 4))[row].tolist()
-        return normals, generator.random((BLOCK, 2))[row].tolist() if uniforms else ()
 
-    def _generator(self, i: int, b: int) -> np.random.Generator:
-        return np.random.Generator(np.random.PCG64(np.random.SeedSequence([self._seed, i, b])))
+@twinned
+def draw(seed: int, i: int, run: int, uniforms: bool) -> tuple[Sequence[Any], Sequence[Any]]:
+    """Draw i of one run, in plain floats: of the normals no more than is needed, for the uniforms
+    stand behind all of them.
+    """
+    b, row = divmod(run, BLOCK)
+    generator = _generator(seed, i, b)
+    normals = generator.standard_normal((BLOCK if uniforms else row + 1, 4))[row].tolist()
+    return normals, generator.random((BLOCK, 2))[row].tolist() if uniforms else ()
+
+
+def _generator(seed: int, i: int, b: int) -> np.random.Generator:
+    return np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, i, b])))
 
 
 class Stream:
