@@ -173,7 +173,7 @@ def test_the_printed_envelope_is_drawn_where_the_print_is_followed(scene, album)
 
 
 def test_the_ukf_is_better_than_the_threshold_at_20_dB_and_best_at_30():
-    at_20, at_30 = (flight.trial(flight.Pair(), snr, 200, 1) for snr in (20.0, 30.0))
+    at_20, at_30 = (flight.trial(flight.Pair(), snr, 80, 1) for snr in (20.0, 30.0))
     for at, factor in ((at_20, 1.2), (at_30, 2.0)):
         assert flight.rmse(at.threshold) > factor * flight.rmse(at.ukf)
         assert flight.rmse(at.ukf) > at.bound
@@ -181,7 +181,7 @@ def test_the_ukf_is_better_than_the_threshold_at_20_dB_and_best_at_30():
 
 
 def test_the_flight_is_drawn_and_told_over_the_SNR(scene, album, monkeypatch):
-    monkeypatch.setattr(flight, "TRIALS", 20)
+    monkeypatch.setattr(flight, "TRIALS", 5)
     flight.draw_flight(scene, album)
     axes = album.figures["fig5b-flight"].axes[0]
     table = rows(album, "flight")
@@ -357,7 +357,7 @@ def test_a_log_without_truth_has_no_errors_and_says_so(scene, album):
 
 
 def test_what_no_log_tells_is_simulated_and_says_so(scene, album, monkeypatch):
-    for name in ("draw_infrared", "draw_echo", "draw_ultrasonic"):
+    for name in ("draw_infrared", "draw_echo", "draw_flight", "draw_ultrasonic"):
         monkeypatch.setattr(pioneer, name, lambda scene, album: None)
     pioneer.draw_pioneer(recorded(scene), album)
     assert len(album.pages) == 4  # the polar reading and its table, the square and the filters
