@@ -127,7 +127,7 @@ class BeliefArtists:
             place(edge, outline(*conditioned(x, P, sign * half), self._probability))
         if isinstance(view.belief, Particles):
             scatter(self.particles, view.layout.pose(view.belief.states), view.belief.weights)
-        else:
+        elif not empty(self.particles):
             self.particles.set_offsets(NOWHERE)
         path = view.path()
         place(self.path, path)

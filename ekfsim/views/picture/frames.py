@@ -29,6 +29,7 @@ from ekfsim.views.picture.limits import Limits, including
 from ekfsim.views.picture.look import STANDARD, Look
 from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.picture.panels import CloseUp, Main, reading
+from ekfsim.views.picture.replay import Replay
 from ekfsim.views.terminal.playback import View
 from ekfsim.views.words.captions import notes, source, spread, title, too_large
 
@@ -155,6 +156,7 @@ class Frame:
         for artist in self.picture.moving():
             artist.set_animated(True)
         self._draw_still()
+        self._replay = Replay(self._canvas)
         width, height = self._canvas.get_width_height()
         self._encoder = Encoder(height, width)
 
@@ -175,10 +177,7 @@ class Frame:
         if self.picture.show(view):
             self._draw_still()
         self._canvas.restore_region(self._still)
-        renderer = self._canvas.get_renderer()
-        for artist in self.picture.moving():
-            if not empty(artist):
-                artist.draw(renderer)
+        self._replay.draw(artist for artist in self.picture.moving() if not empty(artist))
         return np.asarray(self._canvas.buffer_rgba())
 
     def _draw_still(self) -> None:

@@ -34,6 +34,7 @@ ROOM = 2.6  # major radii across the close-up
 REACH = 3.0  # major radii from the estimate up to which the close-up widens to hold the truth
 CERTAIN = 0.1  # of the picture's longer side: the close-up's width where nothing is uncertain
 NARROWEST = 1e-4  # m
+CORNERS = np.array([[-0.5, -0.5], [0.5, 0.5]])  # of a square about the origin, opposite ones
 
 
 def reading(view: View, scene: Scene) -> Beam | Sight | None:
@@ -146,8 +147,8 @@ class CloseUp:
         """Move there, and show it."""
         x, truth = view.pose.mean, view.step.entry.truth
         width = close_width(view, self._probability, CERTAIN * world.size)
-        self.axes.set_xlim(x[0] - width / 2, x[0] + width / 2)
-        self.axes.set_ylim(x[1] - width / 2, x[1] + width / 2)
+        # set_xlim and set_ylim would do no more, and look for ticks, units and other Axes first
+        self.axes.viewLim.set_points(x[:2] + width * CORNERS)
         self.belief.show(view, CLOSE_BODY * width)
         for artists, other in zip(self.others, view.others, strict=False):
             artists.show(other, CLOSE_BODY * width)
