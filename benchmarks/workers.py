@@ -10,9 +10,9 @@ import time
 from dataclasses import replace
 
 from ekfsim.files.scenes.load_study import read_request
-from ekfsim.study.doing import total
-from ekfsim.study.engines import Engine, pool, serial
 from ekfsim.study.plan import Plan
+from ekfsim.study.running.doing import total
+from ekfsim.study.running.engines import Engine, pool, serial
 
 ROUNDS = 3
 RUNS = 400_000

@@ -7,7 +7,7 @@ from ekfsim.errors import UsageError
 
 if TYPE_CHECKING:
     from ekfsim.scene import Scene
-    from ekfsim.study.engines import Engine
+    from ekfsim.study.running.engines import Engine
     from ekfsim.systems.document import DocumentReading
 
 
@@ -47,12 +47,12 @@ def scene_of(
 
 def engine_of(workers: int, address: str | None) -> "Engine":
     """Where the blocks of a study run. Raises UsageError where two places are named."""
-    from ekfsim.study import engines
+    from ekfsim.study.running import engines
 
     if address is not None:
         if workers > 1:
             raise UsageError("--workers: a cluster has its own; leave this out, or --cluster")
-        from ekfsim.study.cluster import cluster
+        from ekfsim.study.running.cluster import cluster
 
         return cluster(address, say)
     return engines.serial if workers == 1 else engines.pool(workers)

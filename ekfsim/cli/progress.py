@@ -12,10 +12,10 @@ from ekfsim.cli.process import heed, part_with, say
 from ekfsim.errors import EkfsimError
 
 if TYPE_CHECKING:
-    from ekfsim.study.engines import Engine
-    from ekfsim.study.journal import Journal
     from ekfsim.study.plan import Plan, Task
     from ekfsim.study.results import Result
+    from ekfsim.study.running.engines import Engine
+    from ekfsim.study.running.journal import Journal
     from ekfsim.study.tally import Tally
 
 
@@ -90,8 +90,8 @@ def study_into(
 
     get_ready()
     from ekfsim.files.results.writing import refuse_existing_folder
-    from ekfsim.study.doing import do, results_of
-    from ekfsim.study.journal import journal_in, remove
+    from ekfsim.study.running.doing import do, results_of
+    from ekfsim.study.running.journal import journal_in, remove
     from ekfsim.views.study.folder import FILES, write_study
 
     refuse_existing_folder(out, *FILES, force=force)

@@ -29,10 +29,10 @@ def study(
     part_with()
     from ekfsim.files.scenes import load_study
     from ekfsim.files.scenes.filter_checks import refuse_unread
-    from ekfsim.study.doing import unkept
-    from ekfsim.study.engines import Paced
     from ekfsim.study.expectation import promised, verified
     from ekfsim.study.plan import Plan
+    from ekfsim.study.running.doing import unkept
+    from ekfsim.study.running.engines import Paced
     from ekfsim.views.study.promises import broken, verify
     from ekfsim.views.study.words import conclude
 
@@ -79,7 +79,7 @@ def compare(
     from ekfsim.files.results.writing import refuse_existing_folder
     from ekfsim.files.scenes import load_study
     from ekfsim.study.comparison import Comparison, with_sides
-    from ekfsim.study.doing import total
+    from ekfsim.study.running.doing import total
     from ekfsim.views.study.compare_words import conclude
 
     comparison = Comparison.of(with_sides(load_study.asked(**asked, sweeps=()), a, b))

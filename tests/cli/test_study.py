@@ -29,8 +29,8 @@ from program import (
 from ekfsim.errors import RunError, UsageError
 from ekfsim.files.scenes.load_study import read_request
 from ekfsim.filters import FILTERS
-from ekfsim.study import engines, journal
 from ekfsim.study.plan import Plan
+from ekfsim.study.running import engines, journal
 from ekfsim.views.study import folder as study_folder
 
 FOLDER = ["commands.yaml", "coverage.png", "divergence.png", "nees.png", "steps.csv", "study.yaml",

@@ -2,8 +2,8 @@ import itertools
 
 import pytest
 
-from ekfsim.study.doing import in_order, total
 from ekfsim.study.plan import Task
+from ekfsim.study.running.doing import in_order, total
 
 TASKS = [Task(case, block, 1024 * block, 1024) for case in range(2) for block in range(2)]
 

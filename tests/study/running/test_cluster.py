@@ -17,7 +17,7 @@ PATIENCE = 60  # s
 PROGRAM = [sys.executable, "-c", "from ekfsim.cli import main; main()"]
 BLOCKS = 12
 TABLES = ("summary.csv", "steps.csv", "nees.png", "coverage.png", "divergence.png", "study.yaml")
-WORLD = Path(__file__).resolve().parents[2] / "worlds" / "furnished-room.yaml"
+WORLD = Path(__file__).resolve().parents[3] / "worlds" / "furnished-room.yaml"
 COMMANDS = f"""\
 world: {WORLD}
 commands:
@@ -211,7 +211,7 @@ def test_what_answers_and_is_no_scheduler_is_told_in_a_line(place):
 
 
 def test_a_worker_of_another_version_is_told_in_a_line(place):
-    told = "from ekfsim.study.engines import do_packed; do_packed(b'', 0, 1, '0.0.1')"
+    told = "from ekfsim.study.running.engines import do_packed; do_packed(b'', 0, 1, '0.0.1')"
     failed = subprocess.run(
         [sys.executable, "-c", told], capture_output=True, text=True, check=False
     )

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from ekfsim.errors import RunError, UsageError
-from ekfsim.study.engines import Engine, Parcels, T, Work, do_packed
 from ekfsim.study.plan import Task
+from ekfsim.study.running.engines import Engine, Parcels, T, Work, do_packed
 
 SECONDS = 10  # for a scheduler that does not answer
 GREETING = 1_000_000  # bytes; a scheduler speaks first, and begins by saying how many

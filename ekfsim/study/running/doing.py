@@ -8,10 +8,10 @@ import operator
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Protocol, Self, TypeVar
 
-from ekfsim.study.engines import Engine, Work
-from ekfsim.study.journal import Journal
 from ekfsim.study.plan import Plan, Task
 from ekfsim.study.results import Result
+from ekfsim.study.running.engines import Engine, Work
+from ekfsim.study.running.journal import Journal
 from ekfsim.study.tally import Tally
 
 
