@@ -3,10 +3,9 @@
 Of many runs more can be said: `ekfsim.study.verdict`.
 """
 
+import math
 from dataclasses import dataclass
 from enum import Enum
-
-import numpy as np
 
 from ekfsim.filters.belief import Refused
 from ekfsim.filters.chi_square import band, quantile
@@ -46,11 +45,12 @@ class Evidence:
 
     def add(self, step: Step) -> None:
         """Take one more step into account."""
-        if step.correction is not None and not np.isnan(step.correction.nis):
-            self.nis_sum += float(step.correction.nis)
-            self.nis_dof += step.correction.innovation.shape[-1]
+        correction = step.correction
+        if correction is not None and not math.isnan(nis := float(correction.nis)):
+            self.nis_sum += nis
+            self.nis_dof += correction.innovation.shape[-1]
             self.nis_readings += 1
-            self.nis_refused += int(step.correction.refused != Refused.NOT)
+            self.nis_refused += int(correction.refused) != Refused.NOT
         if step.nees is not None:
             self.last_nees = step.nees
             if not lost(step.nees):

@@ -104,10 +104,15 @@ class Ground:
 
     def near(self, low: Array, high: Array) -> list[int]:
         """The polygons whose boxes touch the box from its corner `low` (2,) to `high` (2,)."""
-        touching: list[int] = np.flatnonzero(
-            (self._boxes <= np.concatenate([high, -low])).all(axis=-1)
-        ).tolist()
-        return touching
+        return self.touching(np.concatenate([high, -low]))
+
+    def touching(self, box: Array) -> list[int]:
+        """The same. box : (4,) m, its corner in the north-east, then the other with its sign
+        turned.
+        """
+        touch: Booleans = np.logical_and.reduce(self._boxes <= box, axis=-1)
+        numbers: list[int] = touch.nonzero()[0].tolist()
+        return numbers
 
     @cached_property
     def _boxes(self) -> Array:

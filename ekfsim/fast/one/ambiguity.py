@@ -7,7 +7,7 @@ import numpy as np
 from ekfsim.diagnostics.ambiguity import FLAT, REACH, BeamSensor, Sighting
 from ekfsim.fast.one.ground import reach_of_each
 from ekfsim.geometry import Array
-from ekfsim.raycast.searches.single_beam import first
+from ekfsim.raycast.searches.single_beam import first, found
 
 
 def sighting(beam: BeamSensor, x: Array, P: Array) -> Sighting | None:
@@ -28,8 +28,9 @@ def sighting(beam: BeamSensor, x: Array, P: Array) -> Sighting | None:
         (px + t * dx, py + t * dy, θ + t * dθ) for t, (dx, dy, dθ) in zip(shares, arms, strict=True)
     ]
     wall = (here := first(walls, px, py, θ + bearing))[1]
+    grid = walls.grid
     hits = [
-        first(walls, x_i, y_i, θ_i + bearing) if any(arm) else here
+        found(grid, x_i, y_i, θ_i + bearing) if grid is not None and any(arm) else here
         for (x_i, y_i, θ_i), arm in zip(probes, arms, strict=True)
     ]
     ranges, met = zip(*hits, strict=True)

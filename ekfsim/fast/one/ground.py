@@ -23,7 +23,7 @@ def reach_of_each(
 ) -> list[float]:
     """The same, all in plain floats: of ways (dx, dy, …) m from (x, y) m."""
     xs, ys = [x + way[0] for way in ways], [y + way[1] for way in ways]
-    near = ground.near(np.array([min(xs), min(ys)]), np.array([max(xs), max(ys)]))
+    near = ground.touching(np.array([max(xs), max(ys), -min(xs), -min(ys)]))
     stuck = [not _free(ground, near, *end) for end in zip(xs, ys, strict=True)]
     if not any(stuck):
         return [1.0] * len(ways)

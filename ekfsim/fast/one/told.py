@@ -49,11 +49,7 @@ def cleared(A: Array, rounding: float) -> list[list[float]] | None:
     n, beside = len(rows), None
     if A.shape == (n, n) and all(rows[i][i] >= 0 for i in range(n)):
         σ = [math.sqrt(rows[i][i]) for i in range(n)]
-        if all(
-            abs(rows[i][j] - rows[j][i]) <= rounding * (σ[i] * σ[j])
-            for i in range(n)
-            for j in range(n)
-        ):
+        if _symmetric(rows, σ, rounding):
             beside = [[σ_i * σ_j for σ_j in σ] for σ_i in σ]
     if beside is None:
         size = [[_sized(a) for a in row] for row in rows]
@@ -63,6 +59,17 @@ def cleared(A: Array, rounding: float) -> list[list[float]] | None:
         [0.0 if abs(a) < rounding * least else a for a, least in zip(row, near, strict=True)]
         for row, near in zip(rows, beside, strict=True)
     ]
+
+
+def _symmetric(rows: list[list[float]], σ: list[float], rounding: float) -> bool:
+    """Whether a matrix is symmetric, but for what is rounding beside σᵢ σⱼ."""
+    if rows == [list(column) for column in zip(*rows, strict=True)]:
+        return math.inf not in σ
+    return all(
+        abs(a - b) <= rounding * (σ_i * σ_j)
+        for row, column, σ_i in zip(rows, zip(*rows, strict=True), σ, strict=True)
+        for a, b, σ_j in zip(row, column, σ, strict=True)
+    )
 
 
 def _sized(a: float) -> float:

@@ -25,10 +25,15 @@ def first(walls: Walls, x: float, y: float, heading: float) -> tuple[float, int]
     if hit is None:
         if len(grid.recent) >= RECENT:
             grid.recent.clear()
-        finite = isfinite(x + y + heading)
-        hit = follow(grid, x, y, cos(heading), sin(heading)) if finite else (nan, -1)
-        grid.recent[beam] = hit
+        hit = grid.recent[beam] = found(grid, x, y, heading)
     return hit
+
+
+def found(grid: Grid, x: float, y: float, heading: float) -> tuple[float, int]:
+    """The same of a beam that nobody will ask for again."""
+    if not isfinite(x + y + heading):
+        return nan, -1
+    return follow(grid, x, y, cos(heading), sin(heading))
 
 
 def follow(grid: Grid, x: float, y: float, dx: float, dy: float) -> tuple[float, int]:

@@ -122,12 +122,13 @@ def _update(view: View, probability: float, form: Form) -> str:
     step = view.step
     c, (x, P) = step.correction, step.posterior
     assert c is not None
-    used = c.refused == Refused.NOT
+    refused = Refused(int(c.refused))
+    used = refused is Refused.NOT
     by = (form if used else SHORT).by
     return (
         _expected(step, c, form)
         + _innovation(c, form)
-        + REFUSED[Refused(int(c.refused))]
+        + REFUSED[refused]
         + (
             crowd(step.posterior) or f"{fill_vector(GAIN, *c.K[:, 0].tolist())}{by('gain')}\n"
             if used

@@ -4,6 +4,7 @@ last bit.
 
 import math
 from collections.abc import Iterable, Sequence
+from functools import cache
 
 import numpy as np
 
@@ -176,11 +177,15 @@ def matrix(A: Array) -> str:
     [0 1e-06]]
     """
     rows, columns = A.shape
-    lines = [
-        f"[{' '.join([*map(number, row[:MANY]), *(['…'] if columns > MANY else [])])}]"
-        for row in cleared(A, ROUNDING)[:MANY]
-    ]
-    told = "\n".join([*lines, "…"] if rows > MANY else lines)
+    numbers = [value for row in cleared(A, ROUNDING)[:MANY] for value in row[:MANY]]
+    return fill(_layout(rows, columns), *numbers)
+
+
+@cache
+def _layout(rows: int, columns: int) -> str:
+    """The template of a matrix."""
+    row = " ".join(["%.6g"] * min(columns, MANY) + ["…"] * (columns > MANY))
+    told = "\n".join([f"[{row}]"] * min(rows, MANY) + ["…"] * (rows > MANY))
     return f"[{told}]\n"
 
 
