@@ -38,6 +38,7 @@ ANY = "whatever the leading axes"
 OF_MANY = "64 runs or more"
 ALIKE = f"{OF_MANY}, a state of three, a motion that is the same everywhere, of independent noises"
 ONE_NUMBER = f"{OF_MANY}, a state of three, one of it a heading, and a reading of one number"
+SURE_OF_YAW = "a yaw that turned the reading without noise"
 SOUND = "a covariance that needs no force but to be symmetric, as mostly"
 
 # The quickest of one function first. How to add a row is told in tests/fast/test_table.py.
@@ -71,6 +72,12 @@ TWINS: tuple[Twin, ...] = (
     Twin(SENSOR, f"{ONE}.sensors:range_bearing", ALONE, "RangeBearing"),
     Twin(SENSOR, f"{ONE}.sensors:range_only", ALONE, "RangeOnly"),
     Twin(SENSOR, f"{ONE}.sensors:bearing_only", ALONE, "BearingOnly"),
+    Twin(SENSOR, f"{MANY}.landmarks:marker_angles", ANY, "MarkerAngles"),
+    Twin(SENSOR, f"{MANY}.landmarks:range_bearing", ANY, "RangeBearing"),
+    Twin(SENSOR, f"{MANY}.landmarks:range_only", ANY, "RangeOnly"),
+    Twin(SENSOR, f"{MANY}.landmarks:bearing_only", ANY, "BearingOnly"),
+    Twin(SENSOR, f"{MANY}.landmarks:lidar_offset", ANY, "LidarOffset"),
+    Twin(SENSOR, f"{MANY}.landmarks:landmark_offset", SURE_OF_YAW, "LandmarkOffset"),
     Twin(f"{MARKER}.residual", f"{ONE}.sensors:marker_residual", ALONE),
     # filters/
     Twin(f"{KALMAN}:predict", f"{COMPILED}.kalman:predict", ALIKE, compiled=True),

@@ -16,6 +16,8 @@ from ekfsim.models.sensors.infrared import InfraredBeam
 from ekfsim.models.sensors.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.laser_by_reading import LaserByReading
+from ekfsim.models.sensors.lidar import LidarOffset
+from ekfsim.models.sensors.offset import LandmarkOffset
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
 from ekfsim.raycast.walls import BOUNDARY, Walls
 
@@ -118,6 +120,11 @@ LANDMARKS = {
     "RangeBearing": lambda: around(RangeBearing, 0.1, 0.02),
     "RangeOnly": lambda: around(RangeOnly, 0.1),
     "BearingOnly": lambda: around(BearingOnly, 0.02),
+    "LidarOffset": lambda: around(LidarOffset, 0.1),
+    "LandmarkOffset": lambda: [
+        *around(LandmarkOffset, 0.1, 0.2),
+        (LandmarkOffset(2.0, 3.0, 0.1, 0.2, yaw_sigma=0.05), 3),
+    ],
 }
 
 
