@@ -16,7 +16,9 @@ import numpy as np
 from ekfsim.geometry import Array, Integers
 from ekfsim.raycast.searches.candidates import first_of, measure
 
-ROUGH = 3 << 12  # beams × walls that are held in memory at a time: what a processor has at hand
+# beams × walls that are held in memory at a time: what a processor has at hand, in arrays small
+# enough that none is asked of the operating system and given back to it each time
+ROUGH = 1 << 13
 # of the coordinates' size: a wall that looks this short to a beam is not judged in broad strokes
 FINE = 1e-6
 # of the coordinates' size: what a range in broad strokes may be off, and to spare; rounding / FINE
