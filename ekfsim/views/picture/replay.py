@@ -1,26 +1,21 @@
-"""Lines and patches drawn again and again, as matplotlib draws them.
+"""Lines, patches and collections drawn again and again, as matplotlib draws them.
 
 matplotlib asks an artist for its whole style each time, which takes longer than to draw it. Here
 the style is asked for once, and again when it changes; what moves is asked for each time.
 """
 
-from collections.abc import Iterable
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.path import Path
-from matplotlib.transforms import Transform
 
-
-class Stroke(NamedTuple):
-    """One call of a renderer, without the path and where it lies."""
-
-    context: Any  # width, dashes, clipping, …
-    face: Any
-    marker: tuple[Any, ...] = ()  # path and transform of what is drawn at each corner
+# what draws a path, or the paths of a collection, through a matrix, in a style of its own
+Stroke = Callable[[Any, Any], None]
 
 
 class Recorder:
@@ -34,29 +29,45 @@ class Recorder:
         """Whatever else a renderer can do."""
         return getattr(self._renderer, name)
 
-    def draw_path(self, context: Any, path: Path, transform: Transform, face: Any = None) -> None:
+    def draw_path(self, context: Any, path: Path, place: Any, face: Any = None) -> None:
         """Draw a path, and remember how."""
-        self.strokes.append(Stroke(context, face))
-        self._renderer.draw_path(context, path, transform, face)
+
+        def stroke(path: Any, place: Any) -> None:
+            self._renderer.draw_path(context, path, place, face)
+
+        self._draw(stroke, path, place)
 
     def draw_markers(
-        self,
-        context: Any,
-        marker: Path,
-        marker_transform: Transform,
-        path: Path,
-        transform: Transform,
-        face: Any = None,
+        self, context: Any, marker: Path, size: Any, path: Path, place: Any, face: Any = None
     ) -> None:
         """Draw a marker at each corner of a path, and remember how."""
-        self.strokes.append(Stroke(context, face, (marker, marker_transform.frozen())))
-        self._renderer.draw_markers(context, marker, marker_transform, path, transform, face)
+        kept = size.frozen()
+
+        def stroke(path: Any, place: Any) -> None:
+            self._renderer.draw_markers(context, marker, kept, path, place, face)
+
+        self._draw(stroke, path, place)
+
+    def draw_path_collection(
+        self, context: Any, place: Any, paths: list[Path], *style: Any, **more: Any
+    ) -> None:
+        """Draw many paths, and remember how. matplotlib asks with none what a renderer can do."""
+
+        def stroke(paths: Any, place: Any) -> None:
+            self._renderer.draw_path_collection(context, place, paths, *style, **more)
+
+        if paths:
+            self._draw(stroke, paths, place)
+
+    def _draw(self, stroke: Stroke, path: Any, place: Any) -> None:
+        self.strokes.append(stroke)
+        stroke(path, place)
 
 
 class Replay:
     """Draws artists on one canvas, with the strokes that each was drawn with the last time.
 
-    Patches are taken to keep their style, and all coordinate systems to be linear.
+    Patches and collections are taken to keep their style, and all coordinate systems to be linear.
     """
 
     def __init__(self, canvas: Any) -> None:
@@ -80,21 +91,21 @@ class Replay:
             system = artist.get_transform()
             if id(system) not in places:
                 places[id(system)] = system.get_affine().frozen()
-            self._repeat(strokes, _path(artist), places[id(system)])
-
-    def _repeat(self, strokes: Iterable[Stroke], path: Path, place: Any) -> None:
-        for context, face, marker in strokes:
-            if marker:
-                self._renderer.draw_markers(context, *marker, path, place, face)
-            else:
-                self._renderer.draw_path(context, path, place, face)
+            path, place = _path(artist), places[id(system)]
+            for stroke in strokes:
+                stroke(path, place)
 
 
 def _repeatable(artist: Artist) -> bool:
-    """Whether an artist's strokes follow its whole path, one after another."""
-    return not artist.get_path_effects() and (
-        isinstance(artist, Patch) or (isinstance(artist, Line2D) and artist.get_markevery() is None)
-    )
+    """Whether an artist's strokes follow all of its path, one after another."""
+    if artist.get_path_effects():
+        return False
+    match artist:
+        case Line2D():
+            return artist.get_markevery() is None
+        case PolyCollection():  # a single one is drawn as a marker where it is small
+            return len(artist.get_paths()) > 1
+    return isinstance(artist, Patch | LineCollection)
 
 
 def _style(artist: Artist) -> object:
@@ -111,8 +122,12 @@ def _style(artist: Artist) -> object:
     )
 
 
-def _path(artist: Artist) -> Path:
-    if isinstance(artist, Patch):
-        return artist.get_path()
-    assert isinstance(artist, Line2D)
-    return Path(np.column_stack(artist.get_data(orig=True)))
+def _path(artist: Artist) -> Any:
+    """The path as it is now; of a collection, all of its paths."""
+    match artist:
+        case Line2D():
+            return Path(np.column_stack(artist.get_data(orig=True)))
+        case Patch():
+            return artist.get_path()
+        case _:
+            return artist.get_paths()  # type: ignore[attr-defined]  # a collection's
