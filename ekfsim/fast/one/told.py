@@ -46,15 +46,20 @@ def cleared(A: Array, rounding: float) -> list[list[float]] | None:
     if A.size > SMALL:
         return None
     rows = A.tolist()
-    n, beside = len(rows), None
+    n = len(rows)
     if A.shape == (n, n) and all(rows[i][i] >= 0 for i in range(n)):
         σ = [math.sqrt(rows[i][i]) for i in range(n)]
         if _symmetric(rows, σ, rounding):
-            beside = [[σ_i * σ_j for σ_j in σ] for σ_i in σ]
-    if beside is None:
-        size = [[_sized(a) for a in row] for row in rows]
-        columns = [max(column) for column in zip(*size, strict=True)]
-        beside = [[max(max(row), column) for column in columns] for row in size]
+            return [
+                [
+                    0.0 if abs(a) < rounding * (σ_i * σ_j) else a
+                    for a, σ_j in zip(row, σ, strict=True)
+                ]
+                for row, σ_i in zip(rows, σ, strict=True)
+            ]
+    size = [[_sized(a) for a in row] for row in rows]
+    columns = [max(column) for column in zip(*size, strict=True)]
+    beside = [[max(max(row), column) for column in columns] for row in size]
     return [
         [0.0 if abs(a) < rounding * least else a for a, least in zip(row, near, strict=True)]
         for row, near in zip(rows, beside, strict=True)
