@@ -140,8 +140,15 @@ class World:
 
     @property
     def told_robot(self) -> Robot | None:
-        """The robot as the filter is told."""
+        """The robot as the filter is told; None in the classroom."""
         return self.told.robot or self.robot
+
+    @property
+    def believed_robot(self) -> Robot:
+        """The same where there is one, as wherever robots drive. Raises ValueError elsewhere."""
+        if (robot := self.told_robot) is None:
+            raise ValueError(f"{self.name}: this robot obeys commands, and does not drive")
+        return robot
 
     @property
     def told_instruments(self) -> tuple[Instrument, ...]:

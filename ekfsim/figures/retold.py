@@ -16,8 +16,7 @@ def retold(scene: Scene, reading: DocumentReading) -> Scene:
     """
     if scene.log is None or reading == scene.reading:
         return replace(scene, reading=reading)
-    world, robot = scene.world, scene.world.told_robot
-    assert robot is not None
+    world, robot = scene.world, scene.world.believed_robot
     motion = robot.motion(reading)
     sensors = {target.name: target.sensor for _, target in world.targets(reading)}
 

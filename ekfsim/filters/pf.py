@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 import numpy as np
 
 from ekfsim.filters.arithmetic.algebra import (
-    gain,
+    gain_of_moments,
     inverse,
     normalized_square,
     symmetric,
@@ -128,7 +128,8 @@ class PF:
         nis = normalized_square(innovation, S)
         refused = refusal(z, predicted, nis, Rule(self.gate, skip, self.headings))
         H = np.nan_to_num(cross).mT @ inverse(crowd.covariance)
-        return Correction(predicted, innovation, noise, S, H, gain(cross, S), nis, refused), spread
+        K = gain_of_moments(cross, S)
+        return Correction(predicted, innovation, noise, S, H, K, nis, refused), spread
 
     def _crowd(self, belief: Belief) -> Particles:
         """The belief as particles; those of a Gaussian are drawn from it, and stand for its own

@@ -39,9 +39,8 @@ def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
     on whether a target is seen or not, so no noise, range, field of view or fault changes the
     numbers of another.
     """
-    world, robot, believed = scene.world, scene.world.robot, scene.world.told_robot
+    world, robot, believed = scene.world, scene.world.robot, scene.world.believed_robot
     assert robot is not None
-    assert believed is not None
     told, motion, course = (
         believed.motion(scene.reading),
         robot.motion("corrected"),

@@ -3,8 +3,8 @@
 To add a twin:
 
 1. mark the function of the text `@twinned`;
-2. write the twin, of the same arguments, somewhere in ekfsim/fast/: one_robot/, many_runs/,
-   compiled/. It returns None where it sees that it does not suit, and it sees that cheaply;
+2. write the twin, of the same arguments, somewhere in ekfsim/fast/: one/, many/ or compiled/.
+   It returns None where it sees that it does not suit, and it sees that cheaply;
 3. put a row into `TWINS` in ekfsim/fast/table.py, the quickest of one text first;
 4. give it something to chew on: a function marked `@inputs("module:function")` in one of the files
    tests/fast/inputs_*.py (see twin_inputs.py). Let there be among it whatever may come: singular P,

@@ -19,6 +19,8 @@ from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.twins import compiled
 
 DOUBT = -2  # in place of a wall
+# SPREAD, APART and SAFE as in nearby_beams.py: written again, since what Numba has kept is made
+# anew when this file changes, and not when that one does
 SPREAD = 0.35  # rad; a beam that parts more from the others is followed by itself
 APART = 0.05  # of the walls' extent: and so is one that begins farther from them
 SAFE = 1e-6  # of the coordinates' size: by so much the wedge is wider than it need be

@@ -131,4 +131,4 @@ def _rows(ways: int, runs: int) -> list[slice]:
 def as_shaken_as_told(scene: Scene) -> Scene:
     """The same scene with a robot that is what the filter is told."""
     world = scene.world
-    return replace(scene, world=replace(world, robot=world.told_robot))
+    return replace(scene, world=replace(world, robot=world.believed_robot))

@@ -145,9 +145,8 @@ def beginning(world: World, reading: DocumentReading, pose: Array | None) -> Gau
     """The first belief: at the true pose,
     or where the world file says, as uncertain as the robot's document has it.
     """
-    assert world.told_robot is not None
     pose = world.told.start if pose is None else pose
-    return Gaussian(world.layout.state(pose), world.told_robot.first_covariance(reading))
+    return Gaussian(world.layout.state(pose), world.believed_robot.first_covariance(reading))
 
 
 # t, what the filter is given, whether errors are counted

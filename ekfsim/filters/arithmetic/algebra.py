@@ -25,11 +25,11 @@ def inverse(S: Array) -> Array:
     return inverted
 
 
-def gain(cross: Array, S: Array) -> Array:
-    """K = P_xz S⁻¹ : (…, n, k), zero where nothing is uncertain (S = 0) or nothing was predicted (S
-    is nan).
+def gain_of_moments(cross: Array, S: Array) -> Array:
+    """K = P_xz S⁻¹ : (…, n, k), told of a crowd, which itself needs none; that of the Kalman
+    filters stands in kalman.py. Zero where nothing is uncertain (S = 0) or predicted (S is nan).
 
-    cross : (…, n, k) is P_xz, the covariance of state and reading: P Hᵀ where h is linearised.
+    cross : (…, n, k) is P_xz, the covariance of state and reading
     """
     if S.shape[-1] == 1:
         return np.divide(

@@ -46,9 +46,8 @@ def read_gnss(path: Path, world: World, reading: DocumentReading, warnings: list
     # of two rows of one time the second tells nothing, but moves the recipe
     moved = (dt > 0) | (reading == "coded")
     u = np.column_stack([wheels.values[1:, 1:], dt])[moved]
-    assert world.told_robot is not None
     motions = Motions(
-        world.told_robot.motion(reading),
+        world.believed_robot.motion(reading),
         wheels.t[:-1][moved],
         wheels.t[1:][moved],
         u,

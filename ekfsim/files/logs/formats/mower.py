@@ -52,8 +52,7 @@ def read_mower(path: Path, world: World, reading: DocumentReading, warnings: lis
     tell_gaps(poses, warnings)
     angles = bare_table(files[1], ANGLES, warnings, mixed=True)
     landmarks = _landmarks(bare_table(files[2], MAP, warnings, mixed=True), warnings)
-    assert world.told_robot is not None
-    dT = 1 / world.told_robot.rate
+    dT = 1 / world.believed_robot.rate
     tell_back(angles, warnings)
     rows_of = _rows_of_listing if reading == "coded" else _rows_of_text
     rows = rows_of(poses, angles, dT, warnings)
@@ -61,7 +60,7 @@ def read_mower(path: Path, world: World, reading: DocumentReading, warnings: lis
     u = np.column_stack([poses.values[:, 1:4], np.full(len(poses), dT)])
     truth = poses.values[:, 4:7].copy()
     truth[:, 2] = wrap(truth[:, 2])
-    motion = world.told_robot.motion(reading)
+    motion = world.believed_robot.motion(reading)
     # the listing begins before its first time update
     entries = [Entry(0, None, truth[0], t=float(poses.t[0]) - dT)]
     for row, t in enumerate(poses.t.tolist()):

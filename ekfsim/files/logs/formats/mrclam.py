@@ -54,11 +54,10 @@ def read_mrclam(
     seen = in_order(bare_table(seen_file, MEASUREMENT, warnings), warnings)
     truth = _truth(folder, robot, warnings)
     samples = _samples(seen, _subjects(barcodes), landmarks, world, reading, warnings)
-    assert world.told_robot is not None
     u = np.column_stack([odometry.values[:-1, 1:], np.diff(odometry.t)])
     held = u[:, 2] > 0  # of several rows of one time the last
     motions = Motions(
-        world.told_robot.motion(reading),
+        world.believed_robot.motion(reading),
         odometry.t[:-1][held],
         odometry.t[1:][held],
         u[held],

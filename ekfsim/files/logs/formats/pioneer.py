@@ -51,8 +51,7 @@ def read_pioneer(
     tell_gaps(odometry, warnings)
     truth = read_truth(folder, warnings)
     samples = _samples(folder, world, reading, warnings)
-    assert world.told_robot is not None
-    motion = world.told_robot.motion(reading)
+    motion = world.believed_robot.motion(reading)
     u = _inputs(motion, odometry.values[1:, 1:], np.diff(odometry.t))
     motions = Motions(motion, odometry.t[:-1], odometry.t[1:], u, _amounts(motion))
     return Timeline(str(path), float(odometry.t[0]), motions, samples, truth).recorded(

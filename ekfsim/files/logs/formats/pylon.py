@@ -39,8 +39,7 @@ def read_pylon(path: Path, world: World, reading: DocumentReading, warnings: lis
     lines = lines_of(table_file(path, "the CSV file of the lidar and the inertial unit", ".csv"))
     wanted = Wanted(COLUMNS, PLACES, range(12, 13), frozenset({"X", "Y", "Latitude", "Longitude"}))
     rows = some(numbers_of(lines, wanted, ",", warnings), "lidar and accelerations")
-    assert world.told_robot is not None
-    step = 1 / world.told_robot.rate
+    step = 1 / world.believed_robot.rate
     rows = _timed(rows, lines, step, warnings)
     θ = heading_of(rows.values[:, 5])
     # As in the authors' code the time between two rows is taken for constant; only the corrected
@@ -54,7 +53,7 @@ def read_pylon(path: Path, world: World, reading: DocumentReading, warnings: lis
     # no pylon stands within the lidar
     beam = np.where((beam == 0).all(axis=1, keepdims=True), np.nan, beam)
     fixes = metres(rows.values[:, 3:5])
-    motion, pylon = world.told_robot.motion(reading), only(world, reading, Pylon, Lidar)
+    motion, pylon = world.believed_robot.motion(reading), only(world, reading, Pylon, Lidar)
     z = beam if isinstance(pylon.sensor, LidarOffset) else to_global(beam, θ)
     entries = [Entry(0, None, t=0.0)]
     for t, given, offset, fix in zip(rows.t.tolist(), u, z, fixes, strict=True):

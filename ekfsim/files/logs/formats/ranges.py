@@ -55,9 +55,8 @@ def read_ranges(
     start = _start(odometry, truth)
     begin = np.concatenate([[start], odometry.t[:-1]])
     u = np.column_stack([odometry.values[:, 1:], odometry.t - begin])
-    assert world.told_robot is not None
     motions = Motions(
-        world.told_robot.motion(reading), begin, odometry.t, u, np.array([True, True, True])
+        world.believed_robot.motion(reading), begin, odometry.t, u, np.array([True, True, True])
     )
     samples = _samples(ranges, landmarks, world, reading, warnings)
     return Timeline(str(path), start, motions, samples, truth, landmarks, between=False).recorded(
