@@ -1,6 +1,7 @@
 """--filter ekf,ukf: several filters watch the same run, side by side."""
 
 import json
+from pathlib import Path
 
 import pytest
 from program import ekfsim, lay_out, left_in
@@ -153,10 +154,12 @@ def test_pictures_tell_which_filters_they_show(place):
     assert b"filter ekf,ukf" in (place / "out/frame-0004.png").read_bytes()
 
 
-def test_driven_and_recorded_robots_have_several_filters_too():
-    lines = told("run", "gnss", "-q", "--filter", "ekf,ukf").splitlines()
+def test_driven_and_recorded_robots_have_several_filters_too(place):
+    world = Path(__file__).resolve().parents[2] / "worlds/gnss.yaml"
+    (place / "drive.yaml").write_text(f"world: {world}\ndrive: [{{v: 1, omega: 30, for: 3}}]\n")
+    lines = told("run", "drive.yaml", "-q", "--filter", "ekf,ukf").splitlines()
     assert [line.split()[0] for line in lines[1:]] == ["filter", "ekf", "ukf", "odometry"]
-    assert ekfsim("record", "gnss", "--filter", "ekf,ukf", "-o", "log").status == 0
+    assert ekfsim("record", "drive.yaml", "--filter", "ekf,ukf", "-o", "log").status == 0
     assert (
         told("run", "gnss_log", "-q", "--filter", "ekf,ukf", "--log", "log").splitlines()[2:4]
         == lines[2:4]

@@ -609,17 +609,27 @@ def test_two_at_one_place_are_one_too_many(place):
     assert done.read_bytes().startswith(b'{"journal":')  # not even --force touched it
 
 
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory):
+    """A study of two blocks, and one of very many that was killed after some."""
+    folder = lay_out(tmp_path_factory.mktemp("begun"))
+    with pytest.MonkeyPatch.context() as there:
+        there.chdir(folder)
+        assert ekfsim("study", "short.yaml", "--runs", 2000, "-o", "whole").status == 0
+        running = started("study", "short.yaml", "--runs", 10**8, "-o", "out")
+        wait_for(journal_holds(folder, 1), running)
+        kill(running)
+    return folder
+
+
 @pytest.mark.parametrize("line", [b"{}\n", b"7\n", b"null\n", b'{"case":0}\n', b"\xff\n"])
-def test_what_is_damaged_in_a_journal_is_done_again(place, line):
-    assert ekfsim("study", "short.yaml", "--runs", 2000, "-o", "whole").status == 0
-    running = started("study", "short.yaml", "--runs", 10**8, "-o", "out")
-    wait_for(journal_holds(place, 1), running)
-    kill(running)
+def test_what_is_damaged_in_a_journal_is_done_again(place, begun, line):
+    shutil.copytree(begun / "out.partial", "out.partial")
     journal = place / "out.partial/journal.jsonl"
     head, first, *_ = journal.read_bytes().splitlines(keepends=True)
     journal.write_bytes(head.replace(b'"runs":100000000', b'"runs":2000') + first + line + first)
     assert ekfsim("study", "short.yaml", "--runs", 2000, "-o", "out", "--resume").status == 0
-    assert tables("out") == tables("whole")
+    assert tables("out") == tables(begun / "whole")
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="there are no terminals to be had")

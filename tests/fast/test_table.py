@@ -31,7 +31,7 @@ from ekfsim.fast.table import TWINS, function
 for file in sorted(glob.glob(str(Path(__file__).parent / "inputs_*.py"))):
     importlib.import_module(Path(file).stem)
 
-SEEDS = range(3)
+SEEDS = range(3)  # of a thousand runs one: they are cases enough
 ROWS = [
     pytest.param(
         twin,
@@ -50,7 +50,7 @@ def test_a_twin_is_its_text(twin):
     source, form, text = INPUTS[twin.of, twin.given], function(twin.form), function(twin.of).text
     answers = 0
     for runs in RUNS:
-        for seed in SEEDS:
+        for seed in SEEDS[:1] if runs == max(RUNS[1:]) else SEEDS:
             for n, args in enumerate(source.make(np.random.default_rng(seed), runs)):
                 at = f"{runs} runs, seed {seed}, input {n}"
                 before = copy.deepcopy(args)

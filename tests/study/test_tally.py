@@ -23,7 +23,7 @@ from ekfsim.study.tally import Tally
 from ekfsim.systems.drives import Stretch, Stretches
 
 RUNS = 24
-SHORT = Stretches((Stretch(1.0, 0.2, 2.0),))
+SHORT = Stretches((Stretch(1.0, 0.2, 1.0),))
 SCENES = {
     "rich": rich(),
     "certain": scene(Move(1.0, 0.5), Sense(0.3), Move(2.0, 0.0), sigma=(0.1, 0.1, 0)),
