@@ -107,10 +107,10 @@ class Stream:
 
     def normals(self, rows: int, columns: int) -> Array:
         """The next ones : (rows, …, columns)"""
-        drawn = np.stack(
-            [generator.standard_normal((rows, columns)) for generator in self._generators], axis=1
-        )
-        return drawn.reshape(rows, *self._axes, columns)
+        drawn = np.empty((len(self._generators), rows, columns))
+        for generator, of_run in zip(self._generators, drawn, strict=True):
+            generator.standard_normal(out=of_run)
+        return drawn.swapaxes(0, 1).reshape(rows, *self._axes, columns)
 
     def uniforms(self, rows: int) -> Array:
         """In place of normals, the next numbers in [0, 1) : (rows, …)"""

@@ -105,13 +105,14 @@ class GyroWheels(Motion):
         """[B | ∂f/∂ω | ∂f/∂dt] : (…, 3, 4)          B: eq. 22 at the gyro's mid heading"""
         (ΔD, ΔΦ), ω, dt = self._way(u), u[..., 2], u[..., 3]
         middle = x[..., 2] + ΔΦ / 2
+        east, north = ΔD * np.cos(middle), ΔD * np.sin(middle)
         G = np.empty((*middle.shape, 3, 4))
         G[..., :2] = _B(middle, ΔD, self.width)
-        G[..., 0, 2] = -ΔD * np.sin(middle) * dt / 2
-        G[..., 1, 2] = ΔD * np.cos(middle) * dt / 2
+        G[..., 0, 2] = -north * dt / 2
+        G[..., 1, 2] = east * dt / 2
         G[..., 2, 2] = dt
-        G[..., 0, 3] = -ΔD * np.sin(middle) * ω / 2
-        G[..., 1, 3] = ΔD * np.cos(middle) * ω / 2
+        G[..., 0, 3] = -north * ω / 2
+        G[..., 1, 3] = east * ω / 2
         G[..., 2, 3] = ω
         return G
 
