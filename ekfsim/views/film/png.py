@@ -73,11 +73,10 @@ class Encoder:
 
 def _filtered(rgba: Pixels, first: int, end: int) -> bytes:
     """Rows `first` to `end`, without the last, each as its difference to the one above."""
-    differences = rgba[first:end].copy()
     if first == 0:  # above it is nothing
-        differences[1:] -= rgba[: end - 1]
+        differences = np.diff(rgba[:end], axis=0, prepend=np.uint8(0))
     else:
-        differences -= rgba[first - 1 : end - 1]
+        differences = rgba[first:end] - rgba[first - 1 : end - 1]
     height, width, _ = differences.shape
     rows = np.empty((height, 1 + 3 * width), np.uint8)
     rows[:, 0] = UP

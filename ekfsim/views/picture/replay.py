@@ -67,7 +67,8 @@ class Recorder:
 class Replay:
     """Draws artists on one canvas, with the strokes that each was drawn with the last time.
 
-    Patches and collections are taken to keep their style, and all coordinate systems to be linear.
+    Patches and collections are taken to keep their style, path effects to move nothing (a rim does
+    not), and all coordinate systems to be linear.
     """
 
     def __init__(self, canvas: Any) -> None:
@@ -98,8 +99,6 @@ class Replay:
 
 def _repeatable(artist: Artist) -> bool:
     """Whether an artist's strokes follow all of its path, one after another."""
-    if artist.get_path_effects():
-        return False
     match artist:
         case Line2D():
             return artist.get_markevery() is None
