@@ -1,7 +1,8 @@
 """Motion inputs that follow one another, with no reading between, taken a stretch at a time."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import repeat
+from itertools import islice, repeat
+from typing import TypeVar
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from ekfsim.models.protocols import Motion
 from ekfsim.records import Control, Entry, Nees, Step
 from ekfsim.scene import Guard
 
+T = TypeVar("T")
+
+AHEAD = 64  # entries, and steps, of one run that are made before they are used
 FEW = 8  # inputs that are sooner taken one by one
 MOST = 256  # inputs at once, of one run
 AT_ONCE = 8192  # inputs times runs that stay in the processor's cache
@@ -35,7 +39,30 @@ def localize(
     """The steps of an EKF that watches a driven robot. None where it is another filter or state."""
     if type(filter) is not EKF or not layout.is_pose:
         return None
-    return _localized(entries, filter, belief, guard, layout)
+    if belief.mean.ndim > 1:
+        return _localized(entries, filter, belief, guard, layout)
+    return ahead(_localized(ahead(entries), filter, belief, guard, layout))
+
+
+def ahead(coming: Iterable[T]) -> Iterator[T]:
+    """The same, some made before the first of them is given away: simulating, filtering and telling
+    in turns, each drives the other's code and data out of the processor's cache.
+
+    What fails in making one is raised when those before it are given away, as without.
+    """
+    coming, failed = iter(coming), None
+    while True:
+        made: list[T] = []
+        try:
+            for each in islice(coming, AHEAD):
+                made.append(each)
+        except Exception as error:
+            failed = error
+        yield from made
+        if failed is not None:
+            raise failed
+        if len(made) < AHEAD:
+            return
 
 
 def _localized(
