@@ -16,7 +16,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ekfsim.version import VERSION
 from ekfsim.views.picture.lettering import drawable
-from ekfsim.views.picture.map_axes import in_metres
+from ekfsim.views.picture.panels import in_metres
 
 PATTERNS = ("*.png", "*.svg", "*.pdf", "*.csv", "captions.md")  # what an album consists of
 BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = (

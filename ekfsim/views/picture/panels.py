@@ -8,6 +8,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from ekfsim.commands import Command, Repeat, Sense
 from ekfsim.geometry.ellipse import ellipse
@@ -18,7 +19,6 @@ from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
 from ekfsim.scene import Scene
 from ekfsim.views.picture.artists import BeliefArtists, WorldArtists
 from ekfsim.views.picture.limits import Limits
-from ekfsim.views.picture.map_axes import in_metres
 from ekfsim.views.picture.other_artists import OtherArtists
 from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.picture.sight_artists import BeamArtists, FixArtists, SightArtists
@@ -35,6 +35,8 @@ REACH = 3.0  # major radii from the estimate up to which the close-up widens to 
 CERTAIN = 0.1  # of the picture's longer side: the close-up's width where nothing is uncertain
 NARROWEST = 1e-4  # m
 CORNERS = np.array([[-0.5, -0.5], [0.5, 0.5]])  # of a square about the origin, opposite ones
+FAR = 1e5  # m; from there on a number is so long that few of them stand side by side
+FEW = 4
 
 
 def reading(view: View, scene: Scene) -> Beam | Sight | None:
@@ -229,3 +231,16 @@ def senses(commands: Iterable[Command]) -> bool:
     return any(
         senses(c.commands) if isinstance(c, Repeat) else isinstance(c, Sense) for c in commands
     )
+
+
+def in_metres(axes: Axes) -> None:
+    """Label both axes of a map, whose limits are set; each number is told whole, however far from
+    the origin of its grid.
+    """
+    axes.set(xlabel="x (m)", ylabel="y (m)")
+    if max(map(abs, axes.get_xlim())) >= FAR:
+        axes.xaxis.set_major_locator(MaxNLocator(FEW))
+    if max(map(abs, axes.get_ylim())) >= FAR:
+        axes.tick_params(axis="y", labelrotation=90)
+        axes.yaxis.set_major_locator(MaxNLocator(FEW))
+    axes.ticklabel_format(useOffset=False, style="plain")
