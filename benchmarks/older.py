@@ -56,7 +56,10 @@ def main() -> None:
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         older = Build(given.older.resolve()) if given.older else Build.of(COMMIT, Path(folder))
-        scenes = {name.upper(): promising(name, Path(folder)) for name in ("tour", "mower")}
+        scenes = {
+            name.upper(): promising(older.folder / "commands" / f"{name}.yaml", Path(folder))
+            for name in ("tour", "mower")
+        }
         print(HEAD)
         for row in (*ROWS, WALL, *([MILLION] if given.million else [])):
             if given.only not in row.what:
@@ -71,11 +74,11 @@ def main() -> None:
                 print(line, flush=True)
 
 
-def promising(name: str, folder: Path) -> str:
-    """A commands file that comes along, with a promise that is always kept."""
-    text = (HERE / "commands" / f"{name}.yaml").read_text(encoding="utf-8")
-    path = folder / f"{name}-promising.yaml"
-    text = text.replace("../worlds", str(HERE / "worlds"))
+def promising(commands: Path, folder: Path) -> str:
+    """The older build's commands file, which both can read, with a promise that is always kept."""
+    text = commands.read_text(encoding="utf-8")
+    text = text.replace("../worlds", str(commands.parent.parent / "worlds"))
+    path = folder / f"{commands.stem}-promising.yaml"
     path.write_text(text + "expect: {lost: [0, 1]}\n", encoding="utf-8")
     return str(path)
 
