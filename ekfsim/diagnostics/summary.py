@@ -10,7 +10,7 @@ from typing import Any, Self
 from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap_one
+from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.outline import path_error
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Control, Entry, Step
@@ -204,6 +204,6 @@ class Summary:
 
 
 def _compare(pose: Array, truth: Array, t: float | None, position: Errors, heading: Errors) -> None:
-    ex, ey, eθ = (pose - truth).tolist()
-    position.add(math.hypot(ex, ey), t)
-    heading.add(wrap_one(eθ), t)
+    e = pose - truth
+    position.add(math.hypot(*e[:2].tolist()), t)
+    heading.add(float(wrap(e[2])), t)

@@ -1,7 +1,5 @@
 """Angles on the circle."""
 
-import math
-
 import numpy as np
 
 from ekfsim.geometry import Array
@@ -23,17 +21,3 @@ def wrap(angle: Array) -> Array:
     return np.where(
         rest > np.pi, rest - 2 * np.pi, np.where(rest <= -np.pi, rest + 2 * np.pi, rest)
     )
-
-
-def wrap_one(angle: float) -> float:
-    """The same for a single number, without the cost of an array.
-
-    >>> wrap_one(-math.pi) == math.pi
-    True
-    """
-    if -math.pi < angle <= math.pi:
-        return angle
-    rest = math.fmod(angle, 2 * math.pi)
-    if rest > math.pi:
-        return rest - 2 * math.pi
-    return rest + 2 * math.pi if rest <= -math.pi else rest

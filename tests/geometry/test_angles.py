@@ -5,14 +5,12 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from ekfsim.geometry import angles
+from ekfsim.fast.one.angles import wrap_one
 from ekfsim.geometry.angles import wrap
 
 angle = st.floats(-1e6, 1e6)
 inside = st.floats(-math.pi, math.pi, exclude_min=True)
-WAYS = [lambda a: float(wrap(np.array(a)))] + (
-    [angles.wrap_one] if hasattr(angles, "wrap_one") else []
-)
+WAYS = [lambda a: float(wrap(np.array(a))), wrap_one]
 
 
 @pytest.mark.parametrize("wrapped", WAYS)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ekfsim.fast.one.angles import wrap_one
 from ekfsim.fast.one.square_root import (
     conditioned_one,
     nis_one,
@@ -16,7 +17,6 @@ from ekfsim.filters.belief import Correction, Gaussian, Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.kalman import Linearized, Rule
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap_one
 
 
 def update(prior: Gaussian, reading: Linearized, rule: Rule) -> tuple[Gaussian, Correction] | None:

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from ekfsim.fast.one.angles import wrap_one
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap_one
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.motions.unicycle import Unicycle
 from ekfsim.models.motions.wheel_speeds import WheelSpeeds

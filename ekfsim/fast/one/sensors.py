@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from ekfsim.fast.one.angles import wrap_one
 from ekfsim.geometry import Array
-from ekfsim.geometry.angles import wrap_one
 from ekfsim.models.noise import independent
 from ekfsim.models.sensors.landmarks import (
     AT_IT,
