@@ -34,6 +34,7 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"localization"},
     {"study"},
     {"fast"},
+    {"student"},
     {"views"},
     {"figures"},
     {"cli", "ekfsim"},

@@ -1,0 +1,7 @@
+"""A filter of one's own: plugged in, held against the reference step by step, and graded.
+
+    asked.py     one call of a filter, and who answers it
+    fault.py     what is wrong with a student's code, in a line
+
+What its code is given are copies, and what comes back of it is looked at before it is used.
+"""

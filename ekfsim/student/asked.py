@@ -1,0 +1,41 @@
+"""One call of a filter: what it is asked, from which belief; and who answers."""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+from ekfsim.commands import Plain
+from ekfsim.geometry import Array
+from ekfsim.records import Control, Reading
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What one robot's filter is asked at one entry, and the belief that it is asked from."""
+
+    x: Array  # (n,) the belief's mean, headings in (−π, π]
+    P: Array  # (n, n)
+    given: Control | Reading  # the motion with its input u, or the sensor with its reading z
+    headings: tuple[int, ...] = (2,)  # which entries of the state are headings
+    command: Plain | None = None  # what was asked of the robot; a filter is never told
+    index: int = 0  # of the entry, from 1
+    earlier: "Asked | None" = None  # the call before, of the same run
+
+
+class Answer(NamedTuple):
+    """What came back of one call, as it came: of the right shapes and finite, not yet judged."""
+
+    x: Array  # (n,) headings not yet wrapped
+    P: Array  # (n, n) perhaps not symmetric
+
+
+class Caller(Protocol):
+    """Calls the code of one student for one run after another, here or in a process of its own.
+
+    Raises fault.FaultError where no `Answer` comes of it.
+    """
+
+    def begin(self, x: Array, P: Array) -> None:
+        """A run begins with this belief; whatever the code kept of an earlier run is forgotten."""
+
+    def call(self, asked: Asked) -> Answer:
+        """What the code makes of a motion input or a reading."""
