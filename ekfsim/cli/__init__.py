@@ -32,7 +32,7 @@ def ekfsim() -> None:
 
 for command in (
     *(runs.play, runs.render, runs.run, runs.record),
-    *(files.check, files.schema, files.list_packaged, files.new, files.figures),
+    *(files.check, files.schema, files.list_packaged, files.show, files.new, files.figures),
     *(studies.study, studies.compare),
 ):
     ekfsim.add_command(command)

@@ -1,4 +1,6 @@
-"""The commands that look at files and make them: check, schema, list, new, figures."""
+"""The commands that look at files and make them: check, schema, list, show, new,
+figures.
+"""
 
 import sys
 from pathlib import Path
@@ -73,11 +75,10 @@ def schema(kind: str) -> None:
 @click.option("--worlds", is_flag=True, help="The worlds in place of the commands.")
 def list_packaged(name: str | None, worlds: bool) -> None:
     """List the commands that come along, or the worlds; with NAME, all that is said of that one."""
-    from ekfsim.files.packaged import described, description_of, grouped, packaged, resolve
+    from ekfsim.files.packaged import described, description_of, grouped, kind_of, packaged, resolve
 
     if name is not None:
-        is_world = worlds or (name in packaged("worlds") and name not in packaged("commands"))
-        kind: Folder = "worlds" if is_world else "commands"
+        kind: Folder = "worlds" if worlds else kind_of(name)
         click.echo(
             shown(described(resolve(name, kind)) or in_a_line(f"{name}: has no description"))
         )
@@ -88,17 +89,56 @@ def list_packaged(name: str | None, worlds: bool) -> None:
             click.echo(f"  {one:{max(map(len, files))}}  {description_of(path)}")
 
 
-@click.command()
+@click.command(short_help="Print a file that comes along, or copy it.")
+@click.argument("name")
+@click.option("--world", is_flag=True, help="The world that NAME names, if it is a commands file.")
+@click.option("--out", "-o", type=Result(), metavar="FILE", help="Copy it to FILE.")
+@FORCE
+def show(name: str, world: bool, out: Path | None, force: bool) -> None:
+    """Print the file NAME, commands or a world that come along, as it stands; or copy it.
+
+    A copy is the same to the last character. `ekfsim new FILE --from NAME` makes one of a commands
+    file that plays from where it lies.
+    """
+    from ekfsim.files.packaged import kind_of, resolve, source_name, world_of
+    from ekfsim.files.results.writing import whole_text
+    from ekfsim.files.source import as_written
+
+    kind = kind_of(name)
+    path = resolve(name, kind)
+    if world and kind == "commands":
+        path = world_of(path)
+    text = as_written(path, source_name(path))
+    if out is None:
+        click.echo(shown(text), nl=False)
+        return
+    with whole_text(out, force) as file:
+        file.write(text)
+    click.echo(in_a_line(f"{out}: a copy of {source_name(path)}"))
+
+
+@click.command(short_help="Write a commented file to start from, or a copy of one.")
 @click.argument("file", type=Result())
 @click.option(
     "--kind", type=click.Choice(["world", "commands"]), help="Where the name of FILE does not tell."
 )
+@click.option("--from", "model", metavar="NAME", help="A copy of commands that come along.")
 @FORCE
-def new(file: Path, kind: str | None, force: bool) -> None:
-    """Write a commented world or commands FILE to start from."""
+def new(file: Path, kind: str | None, model: str | None, force: bool) -> None:
+    """Write a commented world or commands FILE to start from; or, with --from, a copy of a commands
+    file that comes along, which plays from where it lies.
+    """
     from ekfsim.files.results.writing import whole_text
-    from ekfsim.files.template import template
+    from ekfsim.files.template import starting_from, template
 
+    if model is not None:
+        if kind is not None:
+            raise UsageError("--kind and --from: a copy is of the kind that it is copied from")
+        text = starting_from(model, file)
+        with whole_text(file, force) as out:
+            out.write(text)
+        click.echo(in_a_line(f"{file}: a copy of {model}; ekfsim play {file} steps through it"))
+        return
     name = file.stem.lower()
     if kind is None and ("world" in name) == ("command" in name):
         raise UsageError(f"{file}: a world or commands? say --kind world or --kind commands")

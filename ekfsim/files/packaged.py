@@ -27,6 +27,11 @@ def packaged(kind: Folder) -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder(kind).glob("*.yaml"))}
 
 
+def kind_of(name: str) -> Folder:
+    """What a name stands for where nobody says it: a world if only a world is called so."""
+    return "worlds" if name in packaged("worlds").keys() - packaged("commands") else "commands"
+
+
 def resolve(name_or_path: str | Path, kind: Folder) -> Path:
     """The file that a path, or the bare name of a packaged file, stands for. A file that exists
     wins over a name.
@@ -87,6 +92,16 @@ def world_beside(path: Path, named: str) -> Path:
     return near if is_there else known[named]
 
 
+def world_of(path: Path) -> Path:
+    """The world that a commands file names, whatever else may be wrong with it.
+
+    Raises UsageError where there is no such file to read, or where it names no world.
+    """
+    if not (named := said_first(path, "world")):
+        raise UsageError(f"{path}: names no world; see `ekfsim new` for a file that does")
+    return world_beside(path, named)
+
+
 def source_name(path: str | Path) -> str:
     """How outputs name a file, in a line:
     a packaged one alike on every machine, any other as it was given.
@@ -108,7 +123,15 @@ def description_of(path: Path) -> str:
 
 
 def described(path: Path) -> str:
-    """A file's description, "" where it has none. Reads no further than that.
+    """A file's description, "" where it has none.
+
+    Raises UsageError where there is no such file to read.
+    """
+    return said_first(path, "description").strip()
+
+
+def said_first(path: Path, key: str) -> str:
+    """The text of a key at the head of a file, "" where it has none. Reads no further than that.
 
     Raises UsageError where there is no such file to read.
     """
@@ -121,9 +144,9 @@ def described(path: Path) -> str:
     try:
         for event in yaml.parse(as_written(path, str(path)), Loader=LOADER):
             tree.take(event)
-            if tree.open and (description := tree.open[0].node.get("description")):
-                text = description.value
+            if tree.open and (told := tree.open[0].node.get(key)):
+                text = told.value
                 break
     except yaml.YAMLError:
         return ""
-    return text.strip() if isinstance(text, str) else ""
+    return text if isinstance(text, str) else ""
