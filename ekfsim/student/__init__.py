@@ -2,6 +2,7 @@
 
     asked.py     one call of a filter, and who answers it
     fault.py     what is wrong with a student's code, in a line
+    mistakes/    the known mistakes, and which of them its numbers are those of
 
 What its code is given are copies, and what comes back of it is looked at before it is used.
 """

@@ -1,0 +1,48 @@
+"""A mistake: what is told of it, what to read again, and what it changes in a step."""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ekfsim.filters.belief import Gaussian
+from ekfsim.student.asked import Asked
+from ekfsim.student.mistakes.working import Pieces, Working
+
+Where = Callable[[Asked], bool]
+
+
+@dataclass(frozen=True, eq=False)
+class Mistake:
+    """A mistake as students make it; there may be several ways of writing it down."""
+
+    name: str
+    told: str  # a sentence to the student, in the assignment's names
+    read: str  # the equation to read again
+    where: Where  # the steps in which it can be made
+    ways: tuple[Pieces, ...]  # what it puts in the place of which symbols; the usual way first
+
+    def applied(self, asked: Asked) -> Gaussian | None:
+        """What a filter with this mistake alone makes of the step; None where it cannot be made."""
+        return outcome(asked, self.ways[0]) if self.where(asked) else None
+
+
+def outcome(asked: Asked, *changes: Pieces) -> Gaussian | None:
+    """The belief after a step with these changes; None where no number comes of it."""
+    with np.errstate(all="ignore"):
+        x, P = Working(asked, *changes).result
+    return Gaussian(x, P) if np.isfinite(x).all() and np.isfinite(P).all() else None
+
+
+ELSEWHERE = {"J_x": "F", "J_u": "G", "P_u": "M", "J_H": "H", "C_v": "R"}
+
+
+def elsewhere(text: str) -> str:
+    """`told` or `read` where the assignment's names and equations are not known.
+
+    >>> elsewhere("eqs 6, 7: J_x is taken at the estimate before the move")
+    'F is taken at the estimate before the move'
+    """
+    text = re.sub(r"^eqs? [\d, ]+: ", "", text)
+    return re.sub(r"J_x|J_u|P_u|J_H|C_v", lambda name: ELSEWHERE[name[0]], text)

@@ -1,0 +1,28 @@
+"""A filter with one of the known mistakes, and no other."""
+
+from dataclasses import dataclass
+
+from ekfsim.geometry import Array
+from ekfsim.student.asked import Answer, Asked
+from ekfsim.student.mistakes.mistake import Mistake
+from ekfsim.student.mistakes.working import right
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """Answers as a student's code with this mistake would; a `Caller`."""
+
+    mistake: Mistake
+
+    def begin(self, x: Array, P: Array) -> None:
+        """It keeps nothing."""
+
+    def call(self, asked: Asked) -> Answer:
+        """The EKF's step with the mistake, where it can be made."""
+        belief = self.mistake.applied(asked)
+        return Answer(*(right(asked) if belief is None else belief))
+
+
+def mutant(mistake: Mistake) -> Mutant:
+    """The filter with that mistake alone."""
+    return Mutant(mistake)
