@@ -4,7 +4,7 @@ figures.
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import click
 
@@ -17,6 +17,9 @@ from ekfsim.printable import in_a_line
 
 if TYPE_CHECKING:
     from ekfsim.files.packaged import Folder
+
+KINDS = ("world", "commands", "filter")  # of files to start from
+WORDS = {"world": "world", "command": "commands"}  # in the name of a file, and what it then is
 
 
 @click.command(short_help="Validate FILES: every mistake with its place, or ok.")
@@ -119,35 +122,51 @@ def show(name: str, world: bool, out: Path | None, force: bool) -> None:
 
 @click.command(short_help="Write a commented file to start from, or a copy of one.")
 @click.argument("file", type=Result())
+@click.option("--kind", type=click.Choice(KINDS), help="Where the name of FILE does not tell.")
 @click.option(
-    "--kind", type=click.Choice(["world", "commands"]), help="Where the name of FILE does not tell."
+    "--complete", is_flag=True, help="Of a filter: with its equations, in place of what is open."
 )
 @click.option("--from", "model", metavar="NAME", help="A copy of commands that come along.")
 @FORCE
-def new(file: Path, kind: str | None, model: str | None, force: bool) -> None:
-    """Write a commented world or commands FILE to start from; or, with --from, a copy of a commands
-    file that comes along, which plays from where it lies.
+def new(file: Path, kind: str | None, complete: bool, model: str | None, force: bool) -> None:
+    """Write a commented world, commands or filter FILE to start from; or, with --from, a copy of a
+    commands file that comes along, which plays from where it lies.
     """
+    from typing import cast
+
     from ekfsim.files.results.writing import whole_text
-    from ekfsim.files.template import starting_from, template
+    from ekfsim.files.template import Kind, starting_from, template
 
     if model is not None:
-        if kind is not None:
-            raise UsageError("--kind and --from: a copy is of the kind that it is copied from")
+        if kind is not None or complete:
+            other = "--complete" if complete else "--kind"
+            raise UsageError(f"{other} and --from: a copy is of the kind that it is copied from")
         text = starting_from(model, file)
         with whole_text(file, force) as out:
             out.write(text)
         click.echo(in_a_line(f"{file}: a copy of {model}; ekfsim play {file} steps through it"))
         return
-    name = file.stem.lower()
-    if kind is None and ("world" in name) == ("command" in name):
-        raise UsageError(f"{file}: a world or commands? say --kind world or --kind commands")
-    told: Literal["world", "commands"] = (
-        "world" if kind == "world" or (kind is None and "world" in name) else "commands"
-    )
+    told = kind or kind_told(file)
+    if complete and told != "filter":
+        raise UsageError(f"{file}: --complete is of a filter; leave it out, or say --kind filter")
     with whole_text(file, force) as out:
-        out.write(template(told))
-    click.echo(in_a_line(f"{file}: a {told} file to start from; ekfsim check {file} validates it"))
+        out.write(template(cast("Kind", f"{told}-complete" if complete else told)))
+    way = (
+        f"ekfsim play tour --filter {file} plays it"
+        if told == "filter"
+        else f"ekfsim check {file} validates it"
+    )
+    click.echo(in_a_line(f"{file}: a {told} file to start from; {way}"))
+
+
+def kind_told(file: Path) -> str:
+    """What a file is to be, by its name. Raises UsageError where that does not tell."""
+    if file.suffix.lower() == ".py":
+        return "filter"
+    told = [kind for word, kind in WORDS.items() if word in file.stem.lower()]
+    if len(told) != 1:
+        raise UsageError(f"{file}: a world or commands? say --kind world or --kind commands")
+    return told[0]
 
 
 @click.command(epilog=DOCUMENTS, short_help="Draw the figures and tables of a document.")

@@ -48,9 +48,8 @@ def progress(plan: "Plan", journal: "Journal") -> Iterator[Callable[["Task", "Ta
         try:
             yield done
         except EkfsimError as failure:
-            raise type(failure)(
-                "; ".join(filter(None, (str(failure), kept(journal, total))))
-            ) from None
+            failure.args = ("; ".join(filter(None, (str(failure), kept(journal, total)))),)
+            raise
         except (KeyboardInterrupt, SystemExit):
             part_with(kept(journal, total))
             raise

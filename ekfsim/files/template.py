@@ -1,5 +1,5 @@
-"""Files to start from: templates that tell every key with its unit and its default, and the files
-that come along.
+"""Files to start from: templates that tell every key with its unit and its default, or every
+equation with its place; and the files that come along.
 """
 
 import re
@@ -15,14 +15,22 @@ from ekfsim.files.source import as_written
 # how every packaged commands file says it
 WORLD = re.compile(r"^world: *\S*/([\w-]+)\.yaml\b.*$", re.MULTILINE)
 
+Kind = Literal["world", "commands", "filter", "filter-complete"]
+TEXTS: dict[Kind, str] = {
+    "world": "world.yaml",
+    "commands": "commands.yaml",
+    "filter": "filter.py.txt",  # no .py: this program itself does not begin so
+    "filter-complete": "filter-complete.py.txt",
+}
 
-def template(kind: Literal["world", "commands"]) -> str:
+
+def template(kind: Kind) -> str:
     """The text of a small file of a kind, explained in comments.
 
     >>> template("commands").splitlines()[-1].strip().startswith("- sense:")
     True
     """
-    return files("ekfsim.files").joinpath("templates", f"{kind}.yaml").read_text(encoding="utf-8")
+    return files("ekfsim.files").joinpath("templates", TEXTS[kind]).read_text(encoding="utf-8")
 
 
 def starting_from(name: str, copy: Path) -> str:

@@ -15,6 +15,10 @@ class FaultError(RunError):
         super().__init__(f"{place}: {step}: {wrong}" if step else f"{place}: {wrong}")
         self.place, self.wrong, self.step = place, wrong, step
 
+    def __reduce__(self) -> tuple[type[Self], tuple[str, str, str]]:
+        """Packed by its own words alone: what it came of may be of a student's class."""
+        return type(self), (self.place, self.wrong, self.step)
+
     def at(self, step: str) -> Self:
         """The same fault, where the step is known at which it came."""
         return type(self)(self.place, self.wrong, step)

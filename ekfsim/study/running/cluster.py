@@ -8,7 +8,7 @@ from typing import Any
 
 from ekfsim.errors import RunError, UsageError
 from ekfsim.study.plan import Task
-from ekfsim.study.running.engines import Engine, Parcels, T, Work, do_packed
+from ekfsim.study.running.engines import Engine, Parcels, T, Work, do_packed, unfailed
 
 SECONDS = 10  # for a scheduler that does not answer
 GREETING = 1_000_000  # bytes; a scheduler speaks first, and begins by saying how many
@@ -105,5 +105,5 @@ def _done(
 
     hand_out(AHEAD * max(workers, 8))
     for future in ready:
-        yield running.pop(future.key), future.result()
+        yield running.pop(future.key), unfailed(future.result())
         hand_out(1)

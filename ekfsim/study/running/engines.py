@@ -14,9 +14,9 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import active_children, connection, get_context, parent_process
-from typing import Any, Protocol, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
-from ekfsim.errors import RunError
+from ekfsim.errors import EkfsimError, RunError, UsageError
 from ekfsim.study.plan import Task
 from ekfsim.version import VERSION
 
@@ -72,9 +72,17 @@ class Paced:
         return self._runs / (self._last - self._began) if self._runs else 0.0
 
 
+class Failed(NamedTuple):
+    """Why a block failed, in words. They alone are sent: an exception brings others along, whose
+    classes may be those of a filter's file, and no program unpacks what it does not know.
+    """
+
+    told: str
+
+
 def do_packed(packed: bytes, first: int, runs: int, version: str) -> Any:
-    """A block, wherever this is called. Raises RunError where another version of ekfsim is
-    installed.
+    """A block, or how it `Failed`, wherever this is called. Raises RunError where another version
+    of ekfsim is installed.
     """
     if version != VERSION:
         raise RunError(
@@ -82,8 +90,19 @@ def do_packed(packed: bytes, first: int, runs: int, version: str) -> Any:
         )
     try:
         return _unpacked(packed)(first, runs)
+    except UsageError as lack:
+        return Failed(f"a worker cannot do this: {lack}")
+    except EkfsimError as failure:
+        return Failed(str(failure))
     except ModuleNotFoundError as missing:
         raise RunError(f"a worker cannot do this: {missing}") from missing
+
+
+def unfailed(made: T | Failed) -> T:
+    """What a worker sent, where it is a block. Raises RunError where that failed."""
+    if isinstance(made, Failed):
+        raise RunError(*made.told.split("\n"))
+    return made
 
 
 @functools.lru_cache(maxsize=8)
@@ -114,7 +133,7 @@ def pool(workers: int) -> Engine:
         waiting, parcels = iter(tasks), Parcels(work)
         with _one_thread_each():
             executor = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_begin_worker)
-        running: dict[Future[T], Task] = {}
+        running: dict[Future[T | Failed], Task] = {}
 
         def hand_out(many: int) -> None:
             for task in itertools.islice(waiting, many):
@@ -126,7 +145,7 @@ def pool(workers: int) -> Engine:
             hand_out(AHEAD * workers)
             while running:
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
-                    yield running.pop(future), future.result()
+                    yield running.pop(future), unfailed(future.result())
                     hand_out(1)
         except BrokenProcessPool:
             raise RunError(

@@ -1,0 +1,73 @@
+"""`new filter.py`: two functions to start from, open or complete."""
+
+import io
+import tokenize
+from pathlib import Path
+
+import numpy as np
+import pytest
+from program import ekfsim
+
+OPEN = {"predict": ["6", "1", "4", "7"], "update": ["8 and 9", "11", "10", "12"]}
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def functions_of(text):
+    names = {}
+    exec(text, names)
+    return names
+
+
+def test_a_filter_to_start_from_says_which_equation_is_open():
+    told = ekfsim("new", "filter.py")
+    assert (told.status, told.err) == (0, "")
+    assert told.out == (
+        "filter.py: a filter file to start from; ekfsim play tour --filter filter.py plays it\n"
+    )
+    lines = Path("filter.py").read_text().splitlines(keepends=True)
+    for function, equations in OPEN.items():
+        for number in equations:
+            with pytest.raises(NotImplementedError, match=rf"^eqs?\.? {number} (is|are) open: "):
+                functions_of("".join(lines))[function](np.zeros(3), np.zeros((3, 3)), None, None)
+            done = next(
+                i for i, line in enumerate(lines) if f" {number} " in line and "Not" in line
+            )
+            lines[done] = ""  # as if its equation stood there
+        x, P = functions_of("".join(lines))[function](np.zeros(3), np.zeros((3, 3)), None, None)
+        assert (x.shape, P.shape) == ((3,), (3, 3))
+
+
+def test_the_complete_one_has_few_lines_and_needs_no_ekfsim():
+    assert ekfsim("new", "mine.py", "--complete").status == 0
+    text = Path("mine.py").read_text()
+    assert "import ekfsim" not in text
+    words = [
+        token
+        for token in tokenize.generate_tokens(io.StringIO(text).readline)
+        if token.type in (tokenize.NAME, tokenize.OP, tokenize.NUMBER)
+    ]
+    assert len({token.start[0] for token in words}) <= 12
+
+
+def test_a_filter_overwrites_nothing_and_its_kind_may_be_told():
+    Path("mine.py").write_text("x = 1\n")
+    assert ekfsim("new", "mine.py").status == 2
+    assert Path("mine.py").read_text() == "x = 1\n"
+    assert ekfsim("new", "mine.py", "--force").status == 0
+    assert ekfsim("new", "sub/my-ekf", "--kind", "filter").status == 0
+    assert Path("sub/my-ekf").read_text() == Path("mine.py").read_text()
+
+
+@pytest.mark.parametrize("args", [["world.yaml"], ["mine.py", "--kind", "commands"]])
+def test_only_a_filter_can_be_complete(args):
+    told = ekfsim("new", *args, "--complete")
+    assert (told.status, told.out) == (2, "")
+    assert told.err == (
+        f"ekfsim: {args[0]}: --complete is of a filter; leave it out, or say --kind filter\n"
+    )
+    assert not Path(args[0]).exists()

@@ -1,0 +1,58 @@
+"""What a worker sends of a block that failed."""
+
+import functools
+import pickle
+
+import pytest
+
+from ekfsim.errors import RunError, UsageError
+from ekfsim.student.fault import FaultError
+from ekfsim.study.running.engines import Failed, do_packed, unfailed
+from ekfsim.version import VERSION
+
+
+class StrangeError(Exception):
+    """Of a filter's file: no other process could unpack it."""
+
+    def __reduce__(self):
+        raise AssertionError("packed")
+
+
+def fails(failure, first, runs):
+    try:
+        raise StrangeError
+    except StrangeError as strange:
+        raise failure from strange
+
+
+def sent(failure):
+    block = pickle.dumps(functools.partial(fails, failure))
+    return pickle.loads(pickle.dumps(do_packed(block, 0, 1, VERSION)))
+
+
+def test_a_fault_is_sent_in_words_alone():
+    fault = FaultError("mine.py:12", "nan in P; divide by no zero", "run 3, step 7 (sense 90°)")
+    made = sent(fault)
+    assert made == Failed("mine.py:12: run 3, step 7 (sense 90°): nan in P; divide by no zero")
+    with pytest.raises(RunError) as told:
+        unfailed(made)
+    assert (str(told.value), told.value.status) == (str(fault), 1)
+
+
+def test_what_a_worker_lacks_is_told_of_the_worker():
+    assert sent(UsageError("/home/anna/mine.py: no such file")) == Failed(
+        "a worker cannot do this: /home/anna/mine.py: no such file"
+    )
+
+
+def test_a_mistake_of_our_own_keeps_its_traceback():
+    with pytest.raises(ZeroDivisionError):
+        sent(ZeroDivisionError())
+
+
+def test_a_fault_is_packed_by_its_words():
+    fault = FaultError("mine.py:12", "nan in P").at("step 7")
+    fault.__cause__ = StrangeError()
+    again = pickle.loads(pickle.dumps(fault))
+    assert (type(again), str(again)) == (FaultError, "mine.py:12: step 7: nan in P")
+    assert (again.place, again.wrong, again.step) == ("mine.py:12", "nan in P", "step 7")
