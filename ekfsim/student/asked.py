@@ -1,9 +1,10 @@
 """One call of a filter: what it is asked, from which belief; and who answers."""
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from ekfsim.commands import Plain
+from ekfsim.commands import Move, Plain, Sense
 from ekfsim.geometry import Array
 from ekfsim.records import Control, Reading
 
@@ -20,6 +21,18 @@ class Asked:
     index: int = 0  # of the entry, from 1
     earlier: "Asked | None" = None  # the call before, of the same run
 
+    @property
+    def step(self) -> str:
+        """At which step it is, as people are told: step 7 (sense 90°)."""
+        match self.command:
+            case Move(distance, angle):
+                what = f"move {distance:.6g} m, {math.degrees(angle):.6g}°"
+            case Sense(angle):
+                what = f"sense {math.degrees(angle):.6g}°"
+            case _:
+                what = self.given.name if isinstance(self.given, Reading) else "predict"
+        return f"step {self.index} ({what})"
+
 
 class Answer(NamedTuple):
     """What came back of one call, as it came: of the right shapes and finite, not yet judged."""
@@ -34,8 +47,11 @@ class Caller(Protocol):
     Raises fault.FaultError where no `Answer` comes of it.
     """
 
-    def begin(self, x: Array, P: Array) -> None:
-        """A run begins with this belief; whatever the code kept of an earlier run is forgotten."""
+    def begin(self, x: Array, P: Array) -> Answer | None:
+        """A run begins with this belief; whatever the code kept of an earlier run is forgotten.
+
+        What it believes then, where it keeps a belief of its own.
+        """
 
     def call(self, asked: Asked) -> Answer:
         """What the code makes of a motion input or a reading."""
