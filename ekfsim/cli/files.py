@@ -18,8 +18,9 @@ from ekfsim.printable import in_a_line
 if TYPE_CHECKING:
     from ekfsim.files.packaged import Folder
 
-KINDS = ("world", "commands", "filter")  # of files to start from
-WORDS = {"world": "world", "command": "commands"}  # in the name of a file, and what it then is
+KINDS = ("world", "commands", "homework", "filter")  # of files to start from
+# in the name of a file, and what it then is
+WORDS = {"world": "world", "command": "commands", "homework": "homework"}
 
 
 @click.command(short_help="Validate FILES: every mistake with its place, or ok.")
@@ -60,10 +61,10 @@ def check(files: tuple[str, ...]) -> None:
 
 
 @click.command(short_help="Print the JSON Schema by which editors check a file.")
-@click.argument("kind", type=click.Choice(["world", "commands", "study"]))
+@click.argument("kind", type=click.Choice(["world", "commands", "study", "homework"]))
 def schema(kind: str) -> None:
     """Print the JSON Schema from which editors complete and check a world,
-    commands or study file.
+    commands, study or homework file.
     """
     import json
     from typing import cast
@@ -129,8 +130,8 @@ def show(name: str, world: bool, out: Path | None, force: bool) -> None:
 @click.option("--from", "model", metavar="NAME", help="A copy of commands that come along.")
 @FORCE
 def new(file: Path, kind: str | None, complete: bool, model: str | None, force: bool) -> None:
-    """Write a commented world, commands or filter FILE to start from; or, with --from, a copy of a
-    commands file that comes along, which plays from where it lies.
+    """Write a commented world, commands, filter or homework FILE to start from; or, with --from, a
+    copy of a commands file that comes along, which plays from where it lies.
     """
     from typing import cast
 
@@ -165,7 +166,10 @@ def kind_told(file: Path) -> str:
         return "filter"
     told = [kind for word, kind in WORDS.items() if word in file.stem.lower()]
     if len(told) != 1:
-        raise UsageError(f"{file}: a world or commands? say --kind world or --kind commands")
+        raise UsageError(
+            f"{file}: a world, commands or a homework? say --kind world, --kind commands or "
+            "--kind homework"
+        )
     return told[0]
 
 

@@ -4,5 +4,5 @@ source.py   bytes → text                     keys/     what each kind of file 
 yaml/       text → data, with its places     scenes/   data → World, Scene, study
 logs/       recorded logs → entries          results/  steps → trace, tables, trajectories
 packaged.py, looking.py   which files there are
-template.py  files to start from
+template.py  files to start from      homework.py  what is graded
 """

@@ -15,10 +15,11 @@ from ekfsim.files.source import as_written
 # how every packaged commands file says it
 WORLD = re.compile(r"^world: *\S*/([\w-]+)\.yaml\b.*$", re.MULTILINE)
 
-Kind = Literal["world", "commands", "filter", "filter-complete"]
+Kind = Literal["world", "commands", "homework", "filter", "filter-complete"]
 TEXTS: dict[Kind, str] = {
     "world": "world.yaml",
     "commands": "commands.yaml",
+    "homework": "homework.yaml",
     "filter": "filter.py.txt",  # no .py: this program itself does not begin so
     "filter-complete": "filter-complete.py.txt",
 }

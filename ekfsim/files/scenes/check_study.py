@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ekfsim.errors import MOST_TOLD, InputError, Mistake
+from ekfsim.files.homework import Homework, check_homework
 from ekfsim.files.scenes import load
 from ekfsim.files.scenes.load import Loaded
 from ekfsim.files.scenes.load_study import FILTER, SWEEP, read_request
@@ -11,8 +12,8 @@ from ekfsim.scene import Scene
 from ekfsim.world import World
 
 
-def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
-    """All mistakes and warnings of a world, commands or study file and of the files that it names.
+def check(path: str | Path) -> Loaded[World] | Loaded[Scene] | Loaded[Homework]:
+    """All mistakes and warnings of a file of any kind and of the files that it names.
 
     Raises UsageError where there is no such file.
     """
@@ -20,6 +21,8 @@ def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
         kind = kind_of(path)
     except InputError as error:
         return Loaded[World](mistakes=error.mistakes)
+    if kind == "homework":
+        return check_homework(Path(path))
     return check_study(path) if kind == "study" else load.check(path)
 
 

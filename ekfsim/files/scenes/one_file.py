@@ -75,6 +75,12 @@ def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
     if not isinstance(root.value, dict):
         held = "a list" if isinstance(root.value, list) else "no 'key: value'"
         return root.mark, (), f"the file holds {held}", "see `ekfsim new` for one to start from"
+    if kind != "homework" and kind_of_tree(root) == "homework":
+        right = "run it with `ekfsim grade`, or name another file here"
+        return root.mark, (), "this is a homework file", right
+    if kind == "homework" and kind_of_tree(root) != "homework":
+        right = "its first key is homework: TITLE; see `ekfsim new homework.yaml`"
+        return root.mark, (), "this is no homework file", right
     if kind != "study" and kind_of_tree(root) == "study":
         right = "run it with `ekfsim study`, or name another file here"
         return root.mark, (), "this is a study file", right
@@ -89,6 +95,8 @@ def other_kind(root: Node, kind: Kind) -> tuple[Mark, Route, str, str] | None:
 def kind_of_tree(root: Node) -> Kind:
     """The kind of a file, by its keys; what names its world is none, even with nothing to do."""
     keys = root.keys.keys()
+    if "homework" in keys:
+        return "homework"
     if "study" in keys:
         return "study"
     is_world = keys.isdisjoint(WAYS) and ("world" not in keys or keys & ONLY_IN_WORLDS)

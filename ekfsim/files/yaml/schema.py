@@ -9,10 +9,11 @@ from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
 from ekfsim.files.keys.commands import CommandsKeys
+from ekfsim.files.keys.homework import HomeworkKeys
 from ekfsim.files.keys.study import StudyKeys
 from ekfsim.files.keys.world import WorldKeys
 
-Kind = Literal["world", "commands", "study"]
+Kind = Literal["world", "commands", "study", "homework"]
 Schema = dict[str, Any]
 CANNOT = (  # say of any file
     "numbers that are none (.nan)",
@@ -39,11 +40,18 @@ CANNOT_OF: dict[Kind, tuple[str, ...]] = {
         "which filters a side names",
         "values that stand twice",
     ),
+    "homework": (
+        "whether the files that are named are there",
+        "parts and scenes that stand twice",
+        "points that do not add up",
+        "what is asked for and handed out",
+    ),
 }
 MODELS: dict[Kind, type[BaseModel]] = {
     "world": WorldKeys,
     "commands": CommandsKeys,
     "study": StudyKeys,
+    "homework": HomeworkKeys,
 }
 
 

@@ -10,12 +10,13 @@ import yaml
 import ekfsim.files
 from ekfsim.files import packaged as packaged_files
 from ekfsim.files.packaged import description_of, packaged, resolve, source_name
-from ekfsim.files.scenes.load import check, load_scene, load_world
+from ekfsim.files.scenes.check_study import check
+from ekfsim.files.scenes.load import load_scene, load_world
 from ekfsim.files.template import template
 from ekfsim.files.yaml.schema import json_schema, schema_at
 from ekfsim.filters import FILTERS
 
-KINDS = ["world", "commands"]
+KINDS = ["world", "commands", "homework"]
 
 
 def parts(schema, path=""):
@@ -51,7 +52,7 @@ def test_every_key_is_told_with_its_bounds_and_an_example(kind):
         if (
             "type" in part
             and part is not schema
-            and (part["type"] != "object" or part["title"] == "a command")
+            and (part["type"] != "object" or part["title"] in ("a command", "a part"))
         ):
             assert part["examples"], path
 

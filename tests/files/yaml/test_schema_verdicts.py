@@ -177,7 +177,7 @@ def passes(kind, written):
     return Draft202012Validator(json_schema(kind)).is_valid(root.plain())
 
 
-@pytest.mark.parametrize("kind", ["world", "commands", "study"])
+@pytest.mark.parametrize("kind", ["world", "commands", "study", "homework"])
 def test_the_schema_is_one(kind):
     Draft202012Validator.check_schema(json_schema(kind))
 
