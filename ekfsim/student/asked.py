@@ -18,12 +18,14 @@ class Asked:
     given: Control | Reading  # the motion with its input u, or the sensor with its reading z
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings
     command: Plain | None = None  # what was asked of the robot; a filter is never told
-    index: int = 0  # of the entry, from 1
-    earlier: "Asked | None" = None  # the call before, of the same run
+    index: int = 0  # of the entry, from 1; 0 at the start, where only the belief is asked for
+    earlier: "Asked | None" = None  # the call before, of the same run, without its own earlier one
 
     @property
     def step(self) -> str:
         """At which step it is, as people are told: step 7 (sense 90°)."""
+        if self.index == 0:
+            return "the start"
         match self.command:
             case Move(distance, angle):
                 what = f"move {distance:.6g} m, {math.degrees(angle):.6g}°"
@@ -55,6 +57,3 @@ class Caller(Protocol):
 
     def call(self, asked: Asked) -> Answer:
         """What the code makes of a motion input or a reading."""
-
-    def place_of(self, given: Control | Reading) -> str:
-        """file:line of the code that answers to it, where what came back of it is wrong."""

@@ -3,4 +3,6 @@
 compare.py       the steps of a run, one after another
 difference.py    two answers to one question → which entries differ, in σ
 rounding.py      how far right forms of the same equations may be apart
+found.py         what is found in a run, or in N: the first wrong number, and all after it
+naming.py        by which known mistakes it is explained
 """

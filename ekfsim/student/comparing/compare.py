@@ -1,7 +1,7 @@
 """A run under two filters, each step from the belief that the student's code held before it."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,8 +13,18 @@ from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Control, Entry, Reading
 from ekfsim.scene import Guard
 from ekfsim.student.asked import Answer, Asked, Caller
-from ekfsim.student.comparing.difference import DIFFERENT, Difference, differences, sizes
-from ekfsim.student.comparing.rounding import rounding
+from ekfsim.student.comparing.difference import (
+    DIFFERENT,
+    Difference,
+    differences,
+    sizes,
+    symbols,
+    unit,
+)
+from ekfsim.student.comparing.rounding import NONE, deviations, rounding
+from ekfsim.student.fault import FaultError
+
+NEGATIVE = 1e-9  # σ²; so much below 0 an eigenvalue of P may be by rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +36,7 @@ class Compared:
     right: Gaussian
     size: float  # the largest difference, in σ
     differences: tuple[Difference, ...]  # none where both are equal but for rounding
+    unusable: str = ""  # why no belief is left to go on from, where that is so
 
     @property
     def most(self) -> Difference:
@@ -43,40 +54,72 @@ def compare(
 ) -> Iterator[Compared]:
     """Each step of a run that is handed to the student's code: one error does not hide the next.
 
-    Raises FaultError where the code fails, or where no belief is left to go on from.
+    Before them comes the start, where the code has begun with another belief than it was given. It
+    ends early where no belief is left to go on from. Raises FaultError where the code fails.
     """
-    caller.begin(*first)
-    belief, earlier = first, None
+    begun, belief = caller.begin(first.mean.copy(), first.covariance.copy()), first
+    earlier: Asked | None = None
     for entry in entries:
         if entry.given is None:
             continue
         asked = Asked(*belief, entry.given, layout.headings, entry.command, entry.index, earlier)
+        if begun is not None:
+            start, begun = _started(replace(asked, command=None, index=0), begun, layout), None
+            if start.differences:
+                yield start
+                belief = believed(start.theirs, layout)
+                asked = replace(asked, x=belief.mean, P=belief.covariance)
         found = answered(asked, caller, reference, layout, guard)
         if found is None:
             continue
         yield found
-        belief, earlier = _believed(found.theirs, layout), asked
+        if found.unusable:
+            return
+        belief, earlier = believed(found.theirs, layout), replace(asked, earlier=None)
 
 
 def answered(
     asked: Asked, caller: Caller, reference: Filter, layout: Layout, guard: Guard
 ) -> Compared | None:
     """What both make of one entry; None for a reading that is not handed over."""
+    prior = Gaussian(asked.x, asked.P)
     made: Prediction | Correction
     match asked.given:
         case Control(motion, u):
-            right, made = reference.predict(Gaussian(asked.x, asked.P), motion, u)
+            right, made = reference.predict(prior, motion, u)
         case Reading(sensor, z):
-            right, made = reference.update(Gaussian(asked.x, asked.P), sensor, z)
+            right, made = reference.update(prior, sensor, z)
             if not _handed_over(asked, made, guard):
                 return None
-    theirs, right = caller.call(asked), Gaussian(*right)
+    try:
+        theirs = caller.call(asked)
+    except FaultError as fault:
+        raise (fault if fault.step else fault.at(asked.step)) from None
+    return compared(asked, theirs, Gaussian(*right), made, layout)
+
+
+def compared(
+    asked: Asked, theirs: Answer, right: Gaussian, made: Prediction | Correction | None,
+    layout: Layout,
+) -> Compared:  # fmt: skip
+    """Two answers to what was asked. made : what the reference did to come to its own"""
     in_x, in_P = sizes(theirs, right, layout)
     size = float(max(in_x.max(), in_P.max()))
     apart: tuple[Difference, ...] = ()
     if size > DIFFERENT:
-        apart = differences(theirs, right, rounding(asked, made), layout)
-    return Compared(asked, theirs, right, size, apart)
+        allowed = NONE if made is None else rounding(asked, made)
+        apart = differences(theirs, right, allowed, layout)
+    return Compared(asked, theirs, right, size, apart, _unusable(theirs, asked, right, layout))
+
+
+def believed(theirs: Answer, layout: Layout) -> Gaussian:
+    """The belief that goes on: headings in (−π, π], P symmetric."""
+    return Gaussian(wrapped(theirs.x.copy(), layout.headings), symmetric(theirs.P))
+
+
+def _started(asked: Asked, begun: Answer, layout: Layout) -> Compared:
+    """The belief that the code begins with beside the one that it was given."""
+    return compared(asked, begun, Gaussian(asked.x, asked.P), None, layout)
 
 
 def _handed_over(asked: Asked, made: Correction, guard: Guard) -> bool:
@@ -92,6 +135,12 @@ def _handed_over(asked: Asked, made: Correction, guard: Guard) -> bool:
     return told is None or not told.ambiguous
 
 
-def _believed(theirs: Answer, layout: Layout) -> Gaussian:
-    """The belief that goes on: headings in (−π, π], P symmetric."""
-    return Gaussian(wrapped(theirs.x.copy(), layout.headings), symmetric(theirs.P))
+def _unusable(theirs: Answer, asked: Asked, right: Gaussian, layout: Layout) -> str:
+    """Why an answer cannot be a belief, "" where it can."""
+    σ = np.maximum(deviations(asked.P), unit(right))
+    if float(np.linalg.eigvalsh(symmetric(theirs.P) / np.outer(σ, σ))[0]) >= -NEGATIVE:
+        return ""
+    for name, variance, s in zip(symbols(layout), theirs.P.diagonal().tolist(), σ, strict=True):
+        if variance < -NEGATIVE * s * s:
+            return f"its variance of {name} is {variance:.6g}, and no variance is negative"
+    return "its P has a negative eigenvalue, and is no covariance"

@@ -21,8 +21,11 @@ DIGIT = 64 * float(np.finfo(float).eps)  # what the sums of a step may lose of t
 class Rounding(NamedTuple):
     """What is no difference."""
 
-    x: Array  # (n,)
-    P: Array  # (n, n)
+    x: Array | float  # (n,)
+    P: Array | float  # (n, n)
+
+
+NONE = Rounding(0.0, 0.0)
 
 
 def rounding(asked: Asked, made: Prediction | Correction) -> Rounding:

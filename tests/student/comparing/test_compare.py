@@ -7,54 +7,21 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scenes import scene, unbounded
+from two_functions import Functions, compared, predict, update
 
 from ekfsim.commands import Move, Say, Sense
 from ekfsim.localization import filter_of, first_belief, play
-from ekfsim.records import Control
 from ekfsim.simulation import simulate
 from ekfsim.student.asked import Answer
 from ekfsim.student.comparing.compare import compare
+from ekfsim.student.fault import FaultError
 
 RIGHT = math.radians(90)
 WAY = (Move(2.0, RIGHT), Sense(0.0), Say("On."), Move(1.5, -RIGHT), Sense(-RIGHT), Sense(0.3))
 
 
-class Functions:
-    """Calls two functions, as a student writes them."""
-
-    def __init__(self, predict, update):
-        self.predict, self.update, self.asked = predict, update, []
-
-    def begin(self, x, P):
-        self.asked.clear()
-
-    def call(self, asked):
-        self.asked.append(asked)
-        given = asked.given
-        if isinstance(given, Control):
-            return Answer(*self.predict(asked.x, asked.P, given.u, given.motion))
-        return Answer(*self.update(asked.x, asked.P, given.z, given.sensor))
-
-
-def predict(x, P, u, motion):
-    F, G = motion.F(x, u), motion.G(x, u)
-    return motion.f(x, u), F @ P @ F.T + G @ motion.M(u) @ G.T
-
-
-def update(x, P, z, sensor):
-    H = sensor.H(x)
-    K = P @ H.T / (H @ P @ H.T + sensor.R(x))
-    return x + K @ (z - sensor.h(x)), P - K @ H @ P
-
-
-def compared(made, predict=predict, update=update, against="ekf"):
-    reference = filter_of(replace(made, filter=against))
-    caller = Functions(predict, update)
-    return list(compare(simulate(made), first_belief(made), caller, reference, guard=made.guard))
-
-
 def test_right_equations_agree_at_every_step():
-    steps = compared(scene(*WAY))
+    steps = list(compared(scene(*WAY)))
     assert [one.asked.index for one in steps] == [1, 2, 4, 5, 6]
     assert [one.asked.command for one in steps] == [c for c in WAY if not isinstance(c, Say)]
     assert all(one.differences == () for one in steps)
@@ -125,21 +92,21 @@ def test_each_step_begins_with_what_the_student_believed():
         x, P = update(x, P, z, sensor)
         return (x + 0.01, P) if len(told) == 1 else (x, P)
 
-    steps = compared(scene(*WAY), update=once)
+    steps = list(compared(scene(*WAY), update=once))
     assert [bool(one.differences) for one in steps] == [False, True, False, False, False]
     for before, after in pairwise(steps):
         assert (after.asked.x == before.theirs.x).all()
-        assert after.asked.earlier is before.asked
+        assert after.asked.earlier.index == before.asked.index
     assert steps[0].asked.earlier is None
 
 
 def test_the_belief_that_goes_on_is_wrapped_and_symmetric():
     def rough(x, P, u, motion):
         x, P = predict(x, P, u, motion)
-        P[0, 1] += 1e-3
+        P[0, 1] += 1e-4
         return x + np.array([0, 0, 4 * math.pi]), P
 
-    _, second, *_ = compared(scene(*WAY), rough)
+    _, second, *_ = compared(scene(*WAY, sigma=(0.1, 0.1, 0.1)), rough)
     assert -math.pi < second.asked.x[2] <= math.pi
     assert (second.asked.P == second.asked.P.T).all()
 
@@ -170,3 +137,48 @@ def test_another_filter_may_be_the_reference():
     )
     assert first.right.mean == pytest.approx(x)
     np.testing.assert_allclose(first.right.covariance, P)
+
+
+def test_a_belief_that_can_be_none_ends_the_comparison():
+    def overdone(x, P, z, sensor):
+        x, _ = update(x, P, z, sensor)
+        return x, P - np.diag([0, 0, 2 * P[2, 2]])
+
+    *_, last = compared(scene(*WAY), update=overdone)
+    assert last.asked.index == 2
+    assert last.differences
+    variance = -last.asked.P[2, 2]
+    assert last.unusable == f"its variance of θ is {variance:.6g}, and no variance is negative"
+
+    def crossed(x, P, z, sensor):
+        x, P = update(x, P, z, sensor)
+        P[0, 1] = P[1, 0] = 1.01 * math.sqrt(P[0, 0] * P[1, 1])
+        return x, P
+
+    *_, last = compared(scene(*WAY), update=crossed)
+    assert (last.asked.index, last.unusable) == (
+        2, "its P has a negative eigenvalue, and is no covariance"
+    )  # fmt: skip
+
+
+def test_a_belief_of_its_own_to_begin_with_is_seen_at_the_start():
+    class Identity(Functions):
+        def begin(self, x, P):
+            return Answer(x, np.eye(3))
+
+    made = scene(*WAY)
+    caller = Identity(predict, update)
+    start, *steps = compare(simulate(made), first_belief(made), caller, filter_of(made))
+    assert (start.asked.index, start.asked.step) == (0, "the start")
+    assert [one.entry for one in start.differences] == ["P_xx", "P_yy", "P_θθ"]
+    assert (np.eye(3) == steps[0].asked.P).all()
+    assert not any(one.differences for one in steps)
+
+
+def test_code_that_fails_is_told_with_the_step():
+    def fails(x, P, z, sensor):
+        raise FaultError("mine.py:12", "ValueError: no")
+
+    with pytest.raises(FaultError) as told:
+        list(compared(scene(*WAY), update=fails))
+    assert str(told.value) == "mine.py:12: step 2 (sense 0°): ValueError: no"

@@ -1,0 +1,132 @@
+"""By which known mistakes a student's numbers are explained, over many steps."""
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from ekfsim.student.comparing.compare import Compared
+from ekfsim.student.comparing.difference import unit
+from ekfsim.student.mistakes.guessing import Guess, fits, guesses
+from ekfsim.student.mistakes.known import KNOWN
+from ekfsim.student.mistakes.mistake import Mistake
+
+# a search goes through the whole table; what it has found is looked for at every other step, too
+SEARCHED = 6  # differing steps at which all single mistakes are looked for, whatever is known
+IN_VAIN = 20  # searches without a find, after which no more are made
+IN_PAIRS = 3  # searches among all pairs, which take long
+WITNESSES = 24  # steps without a difference, at which a mistake that is there must not show
+CLEAN = 1e-10  # σ; a witness is nearer to the reference than this
+
+
+@dataclass(frozen=True, slots=True)
+class At:
+    """A step of a run."""
+
+    run: int
+    step: Compared
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """Steps that are alike in what explains them."""
+
+    steps: int
+    first: At
+
+
+@dataclass
+class Naming:
+    """The steps of one kind, moves or readings, as they come; and what explains those that differ.
+
+    One step seldom tells two mistakes apart. Of those that explain a step that one is believed
+    which explains the most steps, and which would show at none that is right.
+    """
+
+    _alike: dict[frozenset[Guess], Seen] = field(default_factory=dict)
+    _candidates: dict[Guess, None] = field(default_factory=dict)  # in the order of their finds
+    _witnesses: list[Compared] = field(default_factory=list)
+    _searches: Counter[str] = field(default_factory=Counter)
+
+    def add(self, at: At) -> None:
+        """One more step of this kind."""
+        if at.step.differences:
+            explained = frozenset(self._explaining(at.step))
+            before = self._alike.get(explained)
+            self._alike[explained] = Seen(1, at) if before is None else Seen(
+                before.steps + 1, before.first
+            )  # fmt: skip
+        elif len(self._witnesses) < WITNESSES and at.step.size < CLEAN:
+            self._witnesses.append(at.step)
+
+    def explanations(self, at: At) -> list[Guess]:
+        """What is believed of one differing step: the best, and those that are as good."""
+        alike = next(
+            (guesses for guesses, seen in self._alike.items() if seen.first is at), frozenset()
+        )
+        return self._best(alike)
+
+    def named(self) -> dict[Mistake, Seen]:
+        """Each mistake that is believed, with the steps at which it shows."""
+        found: dict[Mistake, Seen] = {}
+        for alike, seen in self._alike.items():
+            for mistake in next(iter(self._best(alike)), ()):
+                before = found.get(mistake)
+                found[mistake] = seen if before is None else Seen(
+                    before.steps + seen.steps, before.first
+                )  # fmt: skip
+        return found
+
+    def unnamed(self) -> Seen | None:
+        """The steps that nothing explains."""
+        return self._alike.get(frozenset())
+
+    def _explaining(self, step: Compared) -> list[Guess]:
+        """The candidates that explain a step; the whole table is searched for more while few steps
+        were, and where none does.
+        """
+        σ = unit(step.right)
+        if step.asked.index == 0 or fits((), step.asked, step.theirs, σ):
+            return []  # the start; or right equations, beside a reference that has others
+        found = [one for one in self._candidates if fits(one, step.asked, step.theirs, σ)]
+        searches = self._searches
+        if searches["all"] < SEARCHED or (not found and searches["in vain"] < IN_VAIN):
+            searches["all"] += 1
+            more = self._searched(step)
+            searches["in vain"] += not more
+            found += [one for one in more if one not in found]
+            self._candidates.update(dict.fromkeys(found))
+        return found
+
+    def _searched(self, step: Compared) -> list[Guess]:
+        σ = unit(step.right)
+        alone = [(one,) for one in KNOWN if fits((one,), step.asked, step.theirs, σ)]
+        if alone or self._searches["pairs"] >= IN_PAIRS:
+            return list(alone)
+        self._searches["pairs"] += 1
+        return guesses(step.asked, step.theirs, σ)
+
+    def _best(self, alike: Iterable[Guess]) -> list[Guess]:
+        """The guesses that are believed most, in the order of the table."""
+        worth = {guess: self._worth(guess) for guess in alike}
+        order = {mistake: place for place, mistake in enumerate(KNOWN)}
+        return sorted(
+            (guess for guess in worth if worth[guess] == max(worth.values())),
+            key=lambda guess: [order[mistake] for mistake in guess],
+        )
+
+    def _worth(self, guess: Guess) -> tuple[bool, int]:
+        """Whether nothing speaks against a guess, and how many steps speak for it."""
+        silent = all(
+            fits((mistake,), one.asked, one.theirs, unit(one.right))
+            for mistake in guess
+            for one in self._witnesses
+            if mistake.where(one.asked)
+        )
+        return silent, min(self._support(mistake) for mistake in guess)
+
+    def _support(self, mistake: Mistake) -> int:
+        return sum(
+            seen.steps
+            for alike, seen in self._alike.items()
+            if any(mistake in guess for guess in alike)
+        )
