@@ -47,11 +47,16 @@ class Repeat:
     commands: tuple["Command", ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Untold:
+    """A move of a recorded log, which does not tell what was commanded. None is in any file."""
+
+
 Command = Move | Sense | Kidnap | Say | Repeat
-Plain = Move | Sense | Kidnap | Say  # what is left when every Repeat is expanded
+Plain = Move | Sense | Kidnap | Say | Untold  # what is left when every Repeat is expanded
 
 
-def expand(commands: Iterable[Command]) -> Iterator[Plain]:
+def expand(commands: Iterable[Command]) -> Iterator[Move | Sense | Kidnap | Say]:
     """Every command in the order of its execution, with the repetitions written out.
 
     >>> [c.angle for c in expand([Sense(0.0), Repeat(2, (Sense(1.0),))])]

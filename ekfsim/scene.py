@@ -56,7 +56,7 @@ class Scene:
     @property
     def commanded(self) -> bool:
         """Whether the robot obeys commands one by one and knows no clock, as in the classroom."""
-        return self.drive is None and self.log is None
+        return self.world.robot is None
 
     def alone(self) -> "tuple[Scene, ...]":
         """The same scene for each of the filters that watch it, by itself."""

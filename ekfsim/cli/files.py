@@ -210,6 +210,8 @@ def figures(
     from ekfsim.figures import draw_figures
 
     simulated = {"classroom": "tour", "gallery": "diverge-00-control"}.get(name)
+    if simulated and log is not None:
+        raise UsageError(f"--log: the figures of '{name}' are of simulated runs; leave this out")
     commands = simulated or (name if log is None else f"{name}_log")
     scene = scene_of(commands, log=log, reading=reading, seed=seed)
     written = draw_figures(name, scene, out, formats, force)

@@ -134,13 +134,27 @@ def run(
 @click.option(
     "--out", "-o", type=Result(), required=True, help="A folder for the files of the log."
 )
+@click.option(
+    "--truth",
+    "with_truth",
+    is_flag=True,
+    help="Of a classroom, write the true poses and what made the log, too.",
+)
 @FORCE
-def record(out: Path, force: bool, confidence: float, **chosen: Any) -> None:
-    """Write the simulated run of COMMANDS, a drive, as the files of a recorded log."""
+def record(out: Path, force: bool, with_truth: bool, confidence: float, **chosen: Any) -> None:
+    """Write the simulated run of COMMANDS as the files of a recorded log.
+
+    Of a classroom they are what a program in any language needs: the odometry and the ranges, and
+    the map and the ratios as the filter is told them. Without --truth nothing in them tells the
+    scene, the seed and the run, which would give the truth away: they are printed, and no more.
+    """
     from ekfsim.files.logs import write_log
+    from ekfsim.provenance import told_in_a_line
     from ekfsim.simulation import simulate
 
     scene = scene_of(**chosen)
-    for remark in write_log(scene, simulate(scene), out, force):
+    for remark in write_log(scene, simulate(scene), out, force, with_truth):
         say(f"{out}: {remark}")
     click.echo(f"{in_a_line(out)}: a {scene.world.system} log; run the filter on it with --log")
+    if scene.commanded and not with_truth:
+        click.echo(f"Only here it is told what made it: {told_in_a_line(scene)}")

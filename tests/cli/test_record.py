@@ -1,7 +1,7 @@
 import json
 
 import pytest
-from program import WORLD, ekfsim, left_in
+from program import ekfsim, left_in
 
 DRIVE = "world: world.yaml\nseed: 3\ndrive: {path: circle, radius: 2, speed: 1, laps: 0.5}\n"
 LOGGED = "world: world.yaml\nrecording: {format: gnss}\n"
@@ -105,24 +105,20 @@ def test_a_log_that_exists_is_refused_without_force(place):
     assert ekfsim("record", "drive.yaml", "-o", "log", "--force").status == 2
 
 
-def test_a_classroom_and_a_log_are_not_recorded(place):
+def test_a_log_is_not_recorded(place):
     ekfsim("record", "drive.yaml", "-o", "log")
-    (place / "world.yaml").write_text(WORLD)
-    (place / "drive.yaml").write_text(
-        "world: world.yaml\ncommands: [move: {distance: 1, angle: 0}]\n"
-    )
-    ended = ekfsim("record", "drive.yaml", "-o", "out")
-    assert (ended.status, ended.out) == (2, "")
-    assert ended.err.startswith(
-        "ekfsim: drive.yaml: the classroom has no clock and cannot be recorded; runs of "
-    )
-    (place / "world.yaml").write_text(LAWN)
     ended = ekfsim("record", "logged.yaml", "--log", "log", "-o", "out")
     assert ended.status == 2
-    assert ended.err.endswith(
-        "ekfsim: logged.yaml: is a recorded log already; name a simulated drive\n"
-    )
+    assert ended.err.endswith("ekfsim: logged.yaml: is a recorded log already; name a simulation\n")
     assert not (place / "out").exists()
+
+
+def test_the_truth_of_a_drive_is_in_its_log_in_any_case(place):
+    ended = ekfsim("record", "drive.yaml", "-o", "log", "--truth")
+    assert (ended.status, ended.out) == (2, "")
+    wrong = "a log of the system 'gnss' holds the truth in any case; leave this out"
+    assert ended.err == f"ekfsim: --truth: {wrong}\n"
+    assert not (place / "log").exists()
 
 
 def test_a_log_that_is_wrong_is_told_with_its_place(place):

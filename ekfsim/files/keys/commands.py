@@ -23,7 +23,7 @@ from ekfsim.filters.tuning import MOST_PARTICLES, CrossCovariances, RangeVarianc
 
 MAX_COMMANDS = 1_000_000
 MOVE: JsonDict = {"distance": 1.75, "angle": 90}
-LogFormat = Literal["pylon", "gnss", "mower", "mrclam", "ranges", "pioneer"]
+LogFormat = Literal["pylon", "gnss", "mower", "mrclam", "ranges", "pioneer", "classroom"]
 SYSTEM_OF: dict[str, SystemName] = {  # the system that each format of a log records
     "pylon": "pylon",
     "gnss": "gnss",
@@ -31,6 +31,7 @@ SYSTEM_OF: dict[str, SystemName] = {  # the system that each format of a log rec
     "mrclam": "landmarks",
     "ranges": "ranges",
     "pioneer": "pioneer",
+    "classroom": "classroom",
 }
 WITH_LANDMARKS = ("mower", "mrclam", "ranges")  # formats that tell what stands where
 WAYS = ("commands", "drive", "recording")  # exactly one of them makes a file a commands file
@@ -205,7 +206,7 @@ class RecordingKeys(Strict):
     path: Name | None = Field(
         None,
         description="The log, a file or a folder as its format has it, relative to this file; "
-        "--log wins.",
+        "--log wins. That of a classroom brings its world, where the file names none.",
         examples=["../logs/square.csv"],
     )
 
@@ -271,7 +272,7 @@ class CommandsKeys(Strict):
     )
     recording: RecordingKeys | None = Field(
         None,
-        description="A recorded log, in place of a simulation. Not in the classroom.",
+        description="A recorded log, in place of a simulation.",
         examples=[{"format": "pylon", "path": "../logs/square.csv"}],
     )
 

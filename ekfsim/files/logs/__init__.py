@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ekfsim.errors import UsageError
+from ekfsim.files.logs.formats.classroom import read_classroom
 from ekfsim.files.logs.formats.gnss import read_gnss
 from ekfsim.files.logs.formats.mower import read_mower
 from ekfsim.files.logs.formats.mrclam import read_mrclam
@@ -25,6 +26,7 @@ FORMATS: dict[str, Reader] = {
     "mrclam": read_mrclam,
     "ranges": read_ranges,
     "pioneer": read_pioneer,
+    "classroom": read_classroom,
 }
 SYSTEM_OF = {**{name: name for name in FORMATS}, "mrclam": "landmarks"}  # whose logs they are
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from ekfsim.errors import UsageError
 from ekfsim.files.logs.formats.pylon import CLOCK, EARTH_RADIUS
+from ekfsim.files.logs.handed_out import hand_out
 from ekfsim.files.logs.ticks import Run, as_written, numbered
 from ekfsim.files.results.writing import whole_folder
 from ekfsim.models.sensors.offset import from_global
@@ -27,12 +28,21 @@ Files = dict[str, str]  # the text of each file, by its name
 Writer = Callable[[Scene, Run, Path], Files]
 
 
-def write_log(scene: Scene, entries: Iterable[Entry], out: Path, force: bool) -> list[str]:
+def write_log(
+    scene: Scene, entries: Iterable[Entry], out: Path, force: bool, with_truth: bool = False
+) -> list[str]:
     """Write a simulated run into a folder, and return the sentences that its reader should know.
 
-    Raises UsageError where the scene is no simulation of a driven robot,
-    or the folder may not be written.
+    Raises UsageError where the scene is no simulation, or the folder may not be written.
     """
+    if scene.log is not None:
+        raise UsageError(f"{scene.commands_source}: is a recorded log already; name a simulation")
+    if scene.commanded:
+        hand_out(scene, entries, out, force, with_truth)
+        return []
+    if with_truth:
+        wrong = f"--truth: a log of the system '{scene.world.system}' holds the truth in any case"
+        raise UsageError(f"{wrong}; leave this out")
     writer = _writer_of(scene)
     with whole_folder(out, *ALL_FILES, force=force) as folder:
         run = Run.of(entries)
@@ -62,17 +72,10 @@ def _as_told(scene: Scene) -> Scene:
 
 def _writer_of(scene: Scene) -> Writer:
     """How the log of a scene's robot is written. Raises UsageError where it cannot be."""
-    known = ", ".join(WRITERS)
-    if scene.log is not None:
-        raise UsageError(
-            f"{scene.commands_source}: is a recorded log already; name a simulated drive"
-        )
-    if scene.world.robot is None or scene.drive is None:
-        wrong = "the classroom has no clock and cannot be recorded"
-        raise UsageError(f"{scene.commands_source}: {wrong}; runs of {known} can")
     if scene.world.system not in WRITERS:
         wrong = f"a run of the system '{scene.world.system}' cannot be recorded"
-        raise UsageError(f"{scene.commands_source}: {wrong}; runs of {known} can")
+        known = ", ".join(WRITERS)
+        raise UsageError(f"{scene.commands_source}: {wrong}; runs of {known} and classroom can")
     return WRITERS[scene.world.system]
 
 

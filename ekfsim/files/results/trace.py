@@ -8,7 +8,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from ekfsim.commands import Kidnap, Move, Say, Sense
+from ekfsim.commands import Kidnap, Move, Say, Sense, Untold
 from ekfsim.diagnostics.ambiguity import Sighting, sighting_of
 from ekfsim.filters.belief import Belief, Correction, Refused
 from ekfsim.geometry import Array
@@ -39,7 +39,7 @@ class Trace:
 def line_of(step: Step, scene: Scene, confidence: float) -> dict[str, Any]:
     """The trace's line of one step."""
     match step.entry.command, step.entry.given:
-        case Move() as move, _:
+        case Move() | Untold() as move, _:
             return _move(step, move, scene, confidence)
         case Sense(angle), _:
             return _sense(step, angle, confidence)
@@ -125,20 +125,15 @@ def _believed(step: Step, scene: Scene) -> dict[str, Any]:
     }
 
 
-def _move(step: Step, move: Move, scene: Scene, confidence: float) -> dict[str, Any]:
+def _move(step: Step, move: Move | Untold, scene: Scene, confidence: float) -> dict[str, Any]:
     assert isinstance(step.entry.given, Control)
     assert step.prediction is not None
-    assert step.entry.bump is not None
     distance, angle = step.entry.given.u.tolist()
-    bump = int(step.entry.bump)
+    bump = -1 if step.entry.bump is None else int(step.entry.bump)
     return {
         "type": "move",
         "index": step.entry.index,
-        "command": {
-            "distance": move.distance,
-            "angle": move.angle,
-            **({"slip": move.slip} if move.slip else {}),
-        },
+        "command": _commanded(move),
         "odometry": {"distance": distance, "angle": angle},
         "F": _numbers(step.prediction.F),
         "G": _numbers(step.prediction.G),
@@ -149,6 +144,13 @@ def _move(step: Step, move: Move, scene: Scene, confidence: float) -> dict[str, 
         "bump": scene.world.map.walls.name(bump)[0] if bump >= 0 else None,
         **_judged(step, confidence),
     }
+
+
+def _commanded(move: Move | Untold) -> dict[str, float] | None:
+    if isinstance(move, Untold):
+        return None
+    slip = {"slip": move.slip} if move.slip else {}
+    return {"distance": move.distance, "angle": move.angle, **slip}
 
 
 def _sense(step: Step, angle: float, confidence: float) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from typing import TextIO
 
 import numpy as np
 
+from ekfsim.commands import Untold
 from ekfsim.diagnostics.summary import Instants
 from ekfsim.files.results.trace import ODOMETRY
 from ekfsim.filters.belief import Refused, posed
@@ -129,6 +130,8 @@ class Table:
 
 def _kind(step: Step) -> str:
     command = step.entry.command
+    if isinstance(command, Untold):
+        return "move"
     return "start" if command is None else type(command).__name__.lower()
 
 

@@ -7,7 +7,13 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 from ekfsim.errors import InputError, Mistake, UsageError
-from ekfsim.files.keys.commands import WAYS, WITH_LANDMARKS, CommandsKeys, RecordingKeys
+from ekfsim.files.keys.commands import (
+    WAYS,
+    WITH_LANDMARKS,
+    CommandsKeys,
+    LogFormat,
+    RecordingKeys,
+)
 from ekfsim.files.keys.world import WorldKeys
 from ekfsim.files.packaged import resolve, source_name, world_beside
 from ekfsim.files.scenes.building import scene_of, world_of
@@ -24,6 +30,7 @@ from ekfsim.systems.document import DocumentReading
 from ekfsim.world import World
 
 T = TypeVar("T")
+CLASSROOM: LogFormat = "classroom"  # whose logs bring their world
 
 
 @dataclass
@@ -130,10 +137,15 @@ def _read_scene(
 ) -> Loaded[Scene]:
     """The same, whatever mistakes the settings make."""
     file = read(Path(path), str(path), "commands", settings)
-    loaded = scene_in(file, Path(path), world, settings)
     keys = file.keys if isinstance(file.keys, CommandsKeys) else None
+    handed_out = log is not None and keys is not None and keys.commands is not None
+    if handed_out and log is not None and world is None:
+        world = _brought(Path(log))
+    loaded = scene_in(file, Path(path), world, settings, log)
     if loaded.value is not None:
         loaded = replace(loaded, value=replace(loaded.value, reading=reading))
+    if handed_out:
+        return with_log(loaded, file, RecordingKeys(format=CLASSROOM), Path(path), log)
     if keys is not None and keys.recording is not None:
         return with_log(loaded, file, keys.recording, Path(path), log)
     if keys is not None and log is not None and file.sound is not None:
@@ -178,17 +190,23 @@ def with_log(
     world = scene.world
     if found.landmarks is not None:
         world = replace(world, landmarks=found.landmarks)
-    scene = replace(scene, world=world, log=found.log, log_source=source_name(source))
+    scene = replace(scene, commands=(), world=world, log=found.log, log_source=source_name(source))
     return replace(loaded, value=scene, warnings=warnings)
 
 
 def scene_in(
-    file: File, path: Path, world: str | Path | None = None, settings: Sequence[Setting] = ()
+    file: File,
+    path: Path,
+    world: str | Path | None = None,
+    settings: Sequence[Setting] = (),
+    log: str | Path | None = None,
 ) -> Loaded[Scene]:
     """The scene found in a file, in its own world or the one given; its log is not yet read."""
     sound, keys = file.sound, file.keys
     if sound is None:  # nothing can be read in it, not even its world
         return Loaded(mistakes=file.mistakes)
+    if world is None and sound.root.at(("world",)) is None:
+        world = _world_of_log(sound, path, log)
     if world is not None:
         source, shown, missing = Path(world), str(world), list[Mistake]()
     else:
@@ -210,6 +228,22 @@ def scene_in(
         return Loaded(None, mistakes, warnings)
     scene = scene_of(keys, found.value, source_name(source), source_name(path))
     return Loaded(scene, mistakes, warnings)
+
+
+def _world_of_log(sound: Sound, path: Path, log: str | Path | None) -> Path | None:
+    """The world that a log brings, None where it brings none, or no log is named."""
+    named = sound.value("recording", "path")
+    if sound.value("recording", "format") != CLASSROOM or (log is None and named is None):
+        return None
+    return _brought(Path(os.path.normpath(log if log is not None else path.parent / named)))
+
+
+def _brought(log: Path) -> Path:
+    """The world in a classroom's log. Raises UsageError where there is no such folder."""
+    from ekfsim.files.logs.folder import find, folder_of
+    from ekfsim.files.logs.formats.classroom import HOLDS, WORLD
+
+    return find(folder_of(log, HOLDS), "the map and the ratios", WORLD)
 
 
 def missing_world(sound: Sound, source: Path) -> Iterator[Mistake]:

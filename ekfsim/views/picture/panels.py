@@ -58,7 +58,7 @@ class Main:
             axes,
             probability,
             conditional,
-            _driven(scene),
+            not scene.commanded,
             crowd=scene.filter == "pf",
             true=_true(scene),
         )
@@ -112,7 +112,7 @@ class CloseUp:
         self._probability = probability
         self.axes = axes
         self.world = WorldArtists(axes, scene.world)
-        self.belief = BeliefArtists(axes, probability, conditional, _driven(scene), body=False)
+        self.belief = BeliefArtists(axes, probability, conditional, not scene.commanded, body=False)
         self.others = others(axes, scene, probability)
         self.beam = BeamArtists(axes)
         self.sight = SightArtists(axes)
@@ -211,7 +211,7 @@ def sensors(scene: Scene) -> set[type[Sensor]]:
     """The kinds of sensors whose readings a run may hold;
     all that the classroom has where nothing is commanded yet.
     """
-    if _driven(scene):
+    if scene.log is not None or not scene.commanded:
         return kinds(scene)
     return {Laser} if senses(scene.commands) or not scene.commands else set()
 
@@ -219,11 +219,6 @@ def sensors(scene: Scene) -> set[type[Sensor]]:
 def _true(scene: Scene) -> bool:
     """Whether the truth is known, at one instant at least."""
     return scene.log is None or any(entry.truth is not None for entry in scene.log.entries)
-
-
-def _driven(scene: Scene) -> bool:
-    """Whether the robot is driven, or was recorded, rather than commanded."""
-    return scene.drive is not None or scene.log is not None
 
 
 def senses(commands: Iterable[Command]) -> bool:

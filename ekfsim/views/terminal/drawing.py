@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ekfsim.commands import Kidnap, Move, Say, Sense
+from ekfsim.commands import Kidnap, Move, Say, Sense, Untold
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import cone_halfwidth, outline
 from ekfsim.records import Control, Reading
@@ -229,6 +229,9 @@ def _title(view: View, world: World) -> str:
             what = "the robot is carried away, and the filter is not told"
         case Say(text), _:
             what = text
+        case Untold(), Control(_, u):
+            d, a = u.tolist()
+            what = f"moved {d:.4g} m, turned {math.degrees(a):.4g}° by odometry"
         case None, Control():
             what = "a motion input" if view.inputs == 1 else f"{view.inputs} motion inputs"
         case None, Reading(name=name):

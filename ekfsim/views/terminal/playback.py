@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ekfsim.commands import Move
+from ekfsim.commands import Move, Untold
 from ekfsim.filters.belief import Belief, Gaussian, posed
 from ekfsim.geometry import Array
 from ekfsim.models.layout import Layout
@@ -78,7 +78,7 @@ def views(steps: Iterable[Step]) -> Iterator[View]:
     for first, step, inputs in _seen(steps):
         start = first.entry.t or 0.0 if start is None else start
         before = first.prior if _gathered(first) else None
-        if before is not None or isinstance(step.entry.command, Move):
+        if before is not None or isinstance(step.entry.command, Move | Untold):
             settled.append(_position(first.prior, first.layout))
         if isinstance(step.entry.given, Reading):
             yield View(next(number), step, True, settled, len(settled), start=start)

@@ -3,11 +3,11 @@
 import math
 from collections.abc import Iterable, Iterator
 
-from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense
+from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense, Untold
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse, radius_factor
 from ekfsim.models.sensors.infrared import InfraredBeam
-from ekfsim.records import Entry, Reading, Step
+from ekfsim.records import Control, Entry, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.picture.lettering import shortened
 from ekfsim.views.picture.sights import Sight, instants, told
@@ -49,6 +49,10 @@ def _asked(entry: Entry) -> str:
             return f"kidnap to ({signed(x)}, {signed(y)}), heading {degrees(theta)}"
         case Say():
             return "say"
+        case Untold():
+            assert isinstance(entry.given, Control)
+            d, a = (float(f"{value:.4g}") for value in entry.given.u.tolist())
+            return f"moved {signed(d)} m, turned {degrees(a)} by odometry"
     return "the start"
 
 

@@ -4,7 +4,7 @@ leaves out.
 
 import math
 
-from ekfsim.commands import Kidnap, Move, Say, Sense
+from ekfsim.commands import Kidnap, Move, Say, Sense, Untold
 from ekfsim.filters.belief import Correction, Refused
 from ekfsim.printable import shown
 from ekfsim.records import Control, Reading, Step
@@ -32,7 +32,7 @@ def narrate(view: View, scene: Scene, probability: float = 0.954, explain: bool 
     """
     step, form = view.step, LongForm.of(scene) if explain else SHORT
     match step.entry.command, step.entry.given:
-        case Move() as move, _:
+        case Move() | Untold() as move, _:
             text = _move(view, move, scene, probability, form)
         case Sense(angle), _:
             text = (
@@ -72,14 +72,13 @@ def _start(view: View, scene: Scene, probability: float) -> str:
     )
 
 
-def _move(view: View, move: Move, scene: Scene, probability: float, form: Form) -> str:
+def _move(view: View, move: Move | Untold, scene: Scene, probability: float, form: Form) -> str:
     step = view.step
     assert isinstance(step.entry.given, Control)
-    slip = f", slip={number(move.slip)}" if move.slip else ""
     d, a = step.entry.given.u.tolist()
     x, P = step.posterior
     return (
-        f"==>The robot moved: distance={fine(move.distance)}, angle={turn(move.angle)}{slip}\n"
+        f"==>The robot moved{_commanded(move)}\n"
         + _bump(step, scene)
         + f"The odometry measured: distance={fine(d)}, angle={turn(a)}\n"
         + form.carried(view)
@@ -90,6 +89,13 @@ def _move(view: View, move: Move, scene: Scene, probability: float, form: Form) 
         + uncertainty(view.pose, probability)
         + judged(step, view.pose, probability)
     )
+
+
+def _commanded(move: Move | Untold) -> str:
+    if isinstance(move, Untold):
+        return " (its log does not tell what was commanded)"
+    slip = f", slip={number(move.slip)}" if move.slip else ""
+    return f": distance={fine(move.distance)}, angle={turn(move.angle)}{slip}"
 
 
 def _bump(step: Step, scene: Scene) -> str:

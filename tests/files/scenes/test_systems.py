@@ -722,8 +722,6 @@ def test_a_log_for_what_was_not_recorded(worlds):
     told = "--log has nothing to replace"
     lines = told_of(worlds, "world: mower.yaml\ndrive: {path: spiral}\n", log="x")
     assert lines == [f"f.yaml:2:8: drive: the file has 'drive', not a recording; {told}"]
-    lines = told_of(worlds, "world: classroom.yaml\ncommands: []\n", log="x")
-    assert lines == [f"f.yaml:2:11: commands: the file has 'commands', not a recording; {told}"]
 
 
 def test_a_recording_without_a_path_is_right_and_wants_one(worlds):
