@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 from ekfsim.printable import in_a_line
 
@@ -34,6 +35,14 @@ class EkfsimError(Exception):
 
 class RunError(EkfsimError):
     """The run itself failed: a full disk, an expectation not kept. Exit status 1."""
+
+
+class StepError(RunError):
+    """A run that failed at one of its steps, which who raises it may not know."""
+
+    def at(self, step: str) -> Self:
+        """The same error, where the step is known at which it came."""
+        return self
 
 
 class UsageError(EkfsimError):

@@ -6,11 +6,12 @@ import numpy as np
 
 from ekfsim.diagnostics.ambiguity import remark as remarked
 from ekfsim.diagnostics.nees import nees
+from ekfsim.errors import StepError
 from ekfsim.filters.belief import Belief, Gaussian
 from ekfsim.filters.protocol import Beginning, Filter
 from ekfsim.geometry import Integers
 from ekfsim.models.layout import POSE, Layout
-from ekfsim.records import Control, Entry, Reading, Step
+from ekfsim.records import Control, Entry, Reading, Step, called
 from ekfsim.scene import Guard, Scene
 from ekfsim.simulation import simulate
 from ekfsim.simulation.draws import particle_generators
@@ -44,14 +45,17 @@ def advance(
     """
     prediction = correction = remark = None
     posterior = belief
-    match entry.given:
-        case Control(motion, u):
-            posterior, prediction = filter.predict(belief, motion, u)
-        case Reading(sensor, z):
-            if belief.mean.ndim == 1 or guard == "skip":
-                remark = remarked(sensor, *belief)
-            skip = guard == "skip" and remark is not None and remark.ambiguous
-            posterior, correction = filter.update(belief, sensor, z, skip)
+    try:
+        match entry.given:
+            case Control(motion, u):
+                posterior, prediction = filter.predict(belief, motion, u)
+            case Reading(sensor, z):
+                if belief.mean.ndim == 1 or guard == "skip":
+                    remark = remarked(sensor, *belief)
+                skip = guard == "skip" and remark is not None and remark.ambiguous
+                posterior, correction = filter.update(belief, sensor, z, skip)
+    except StepError as error:
+        raise error.at(called(entry)) from error.__cause__
     measured = None if entry.truth is None else nees(posterior, entry.truth, layout)
     return Step(entry, belief, posterior, prediction, correction, remark, measured, layout)
 

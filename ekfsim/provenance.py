@@ -10,7 +10,7 @@ def provenance(scene: Scene) -> dict[str, str | int | float | None]:
         "ekfsim": VERSION,
         "world": scene.world_source,
         "commands": scene.commands_source,
-        "filter": ",".join((scene.filter, *scene.beside)),
+        "filter": ",".join(scene.watching),
         "gate": scene.gate,
         "guard": scene.guard,
         "seed": scene.seed,

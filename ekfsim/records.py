@@ -5,10 +5,11 @@ filter can tell them apart. Every output is a function of Steps, and none touche
 records are frozen; arrays carry leading axes (…): none for one run, (N,) for a study of N runs.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
-from ekfsim.commands import Plain
+from ekfsim.commands import Move, Plain, Sense
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.layout import POSE, Layout
@@ -49,6 +50,28 @@ class Entry:
     judged: bool = True  # whether errors are counted at this instant
     # (…, 2) m, a position that was recorded and that the filter is not given
     fix: Array | None = None
+
+
+def called(entry: Entry) -> str:
+    """Which step an entry is, for a person: its number, and its command or its instant.
+
+    >>> called(Entry(7, None, command=Sense(math.pi / 2)))
+    'step 7 (sense 90°)'
+    >>> called(Entry(7, None, command=Move(1.75, math.pi / 2)))
+    'step 7 (move 1.75 m, 90°)'
+    """
+    match entry.command, entry.given:
+        case Move(distance, angle), _:
+            told = f" (move {distance:.6g} m, {math.degrees(angle):.6g}°)"
+        case Sense(angle), _:
+            told = f" (sense {math.degrees(angle):.6g}°)"
+        case _, Reading(_, _, name) if entry.t is not None:
+            told = f" ({name} at {entry.t:.6f}".rstrip("0").rstrip(".") + " s)"
+        case _, Control() if entry.t is not None:
+            told = f" (motion at {entry.t:.6f}".rstrip("0").rstrip(".") + " s)"
+        case _:
+            told = ""
+    return f"step {entry.index}{told}"
 
 
 @dataclass(frozen=True)

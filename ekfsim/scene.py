@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from ekfsim.commands import Command
+from ekfsim.filters.place import label
 from ekfsim.filters.tuning import UNTUNED, Tuning
 from ekfsim.records import Log
 from ekfsim.systems.document import DocumentReading
@@ -40,7 +41,7 @@ class Scene:
     reading: DocumentReading = "corrected"  # of the document whose system this is
     seed: int = 0
     run: int = 0  # which of the seed's runs is played
-    filter: str = "ekf"
+    filter: str = "ekf"  # a built-in one by its name, one's own by its place (filters/place.py)
     tuning: Tuning = UNTUNED  # the numbers that a filter alone may have
     gate: float | None = None  # probability in (0, 1)
     guard: Guard = "warn"
@@ -52,6 +53,11 @@ class Scene:
     settings: tuple[str, ...] = ()  # KEY=VALUE each: what overrules numbers of the two files
     # more filters that watch the same run, to be shown beside the first
     beside: tuple[str, ...] = ()
+
+    @property
+    def watching(self) -> tuple[str, ...]:
+        """What people call the filters that watch, the first of them first."""
+        return tuple(map(label, (self.filter, *self.beside)))
 
     @property
     def commanded(self) -> bool:

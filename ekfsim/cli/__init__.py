@@ -7,7 +7,7 @@ from typing import NoReturn
 
 import click
 
-from ekfsim.cli import files, process, runs, studies
+from ekfsim.cli import files, process, runs, students, studies
 from ekfsim.version import VERSION
 
 
@@ -34,5 +34,6 @@ for command in (
     *(runs.play, runs.render, runs.run, runs.record),
     *(files.check, files.schema, files.list_packaged, files.show, files.new, files.figures),
     *(studies.study, studies.compare),
+    *(students.worksheet,),
 ):
     ekfsim.add_command(command)

@@ -58,20 +58,31 @@ class Source(click.Path):
         return super().convert(value, param, ctx)
 
 
-class Probability(click.FloatRange):
+class _Number(click.FloatRange):
+    """A number of a range. nan lies in none, and outside of none."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """A float. Fails for nan, too."""
+        number = float(super().convert(value, param, ctx))
+        if math.isnan(number):
+            self.fail(f"{value} is not in the range {self._describe_range()}.", param, ctx)
+        return number
+
+
+class Probability(_Number):
     """A number between 0 and 1, and neither of them."""
 
     def __init__(self) -> None:
         super().__init__(0, 1, min_open=True, max_open=True)
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """A float. Fails for nan too, which lies in no range and outside of none."""
-        number = float(super().convert(value, param, ctx))
-        if math.isnan(number):
-            self.fail(f"{value} is not in the range {self._describe_range()}.", param, ctx)
-        return number
+
+class Share(_Number):
+    """How much of something: more than none, and at most all."""
+
+    def __init__(self) -> None:
+        super().__init__(0, 1, min_open=True)
 
 
 class Gate(Probability):

@@ -7,6 +7,7 @@
     pf.py      particles                        belief.py    Gaussian, Particles, Correction
     stretch.py many predictions in a row        tuning.py    numbers that a person may set
     choice.py  the filter that a scene names    chi_square.py  quantiles of χ²
+    place.py   where one of one's own is found
 
     variants/    about a plan; noise in the sigma points; a document's listing; counter-examples
     arithmetic/  square roots of P, sigma points, the iterated filter's search

@@ -47,3 +47,14 @@ class Filter(Protocol):
         """The belief after a reading z : (…, k). Where skip : (…) is set the reading is judged but
         not used.
         """
+
+
+class Kind(Protocol):
+    """What filters of one kind have in common: FILTERS holds the built-in ones."""
+
+    @property
+    def remark(self) -> str:
+        """Of its filters."""
+
+    def begin(self, beginning: Beginning) -> Filter:
+        """A filter of the kind for a run that begins so."""

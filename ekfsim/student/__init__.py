@@ -4,5 +4,7 @@
     fault.py     what is wrong with a student's code, in a line
     mistakes/    the known mistakes, and which of them its numbers are those of
 
+    own/         from the place of a student's code to a filter like any other
+
 What its code is given are copies, and what comes back of it is looked at before it is used.
 """

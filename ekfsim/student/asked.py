@@ -57,3 +57,6 @@ class Caller(Protocol):
 
     def call(self, asked: Asked) -> Answer:
         """What the code makes of a motion input or a reading."""
+
+    def place_of(self, given: Control | Reading) -> str:
+        """file:line of the code that answers to it, where what came back of it is wrong."""

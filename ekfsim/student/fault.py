@@ -2,10 +2,10 @@
 
 from typing import Self
 
-from ekfsim.errors import RunError
+from ekfsim.errors import StepError
 
 
-class FaultError(RunError):
+class FaultError(StepError):
     """A student's code that failed: an exception, a wrong shape, nan; status 1.
 
     One line, `mine.py:12: step 7 (sense 90°): what is wrong; what would be right`.
@@ -21,4 +21,4 @@ class FaultError(RunError):
 
     def at(self, step: str) -> Self:
         """The same fault, where the step is known at which it came."""
-        return type(self)(self.place, self.wrong, step)
+        return type(self)(self.place, self.wrong, self.step or step)

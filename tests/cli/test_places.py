@@ -18,6 +18,9 @@ WRITING = [  # {} is where a result is to go
         "study short.yaml --runs 1 -o {}",
         "compare short.yaml --runs 1 --b guard=skip -o {}",
         "new {} --kind world",
+        "new {} --from tour",
+        "show tour -o {}",
+        "worksheet short.yaml -o {}",
     ),
 ]
 READING = [  # {} is what is to be read

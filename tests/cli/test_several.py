@@ -8,6 +8,9 @@ from program import ekfsim, lay_out, left_in
 
 from ekfsim.filters import FILTERS
 
+KNOWN = f"{', '.join(FILTERS)}, or one of your own: FILE.py"
+
+
 INPUTS = ["long.yaml", "short.yaml", "world.yaml"]
 
 
@@ -102,8 +105,8 @@ def test_files_of_several_filters_appear_together_or_not_at_all(place):
 @pytest.mark.parametrize(
     ("filters", "line"),
     [
-        ("ekf,oracle", f"--filter oracle: there is no such filter; known: {', '.join(FILTERS)}"),
-        ("ekf,", f"--filter : there is no such filter; known: {', '.join(FILTERS)}"),
+        ("ekf,oracle", f"--filter oracle: there is no such filter; known: {KNOWN}"),
+        ("ekf,", f"--filter : there is no such filter; known: {KNOWN}"),
         ("ekf,ukf,ekf", "--filter ekf,ukf,ekf: 'ekf' stands twice; delete one"),
     ],
 )

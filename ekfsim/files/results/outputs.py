@@ -14,6 +14,7 @@ from ekfsim.files.looking import exists, is_folder
 from ekfsim.files.results.trace import Trace
 from ekfsim.files.results.trajectories import Table, Tum
 from ekfsim.files.results.writing import refuse_existing, special, told, whole_text
+from ekfsim.filters.place import stem
 from ekfsim.provenance import provenance
 from ekfsim.records import Step
 from ekfsim.scene import Scene
@@ -54,7 +55,7 @@ class Outputs:
         Of several the name stands before each ending: trace.ekf.jsonl.
         """
         return (
-            [self._of(filter) for filter in (scene.filter, *scene.beside)]
+            [self._of(stem(filter)) for filter in (scene.filter, *scene.beside)]
             if scene.beside
             else [self]
         )

@@ -3,13 +3,16 @@
 """
 
 import dataclasses
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ekfsim.errors import Place, UsageError
-from ekfsim.files.yaml.marked import Path, Scalar, field_of, scalar
+from ekfsim.files.yaml.marked import Path as Route
+from ekfsim.files.yaml.marked import Scalar, field_of, scalar
 from ekfsim.files.yaml.schema import Kind, keys_at, schema_at
 from ekfsim.files.yaml.telling import nearest, quoted, short
+from ekfsim.filters.place import absolute, is_place, label, stem
 
 OF_COMMANDS = ("gate", "guard")  # the rest belongs to the world
 # filter.particles=… is a commands file's filterSettings
@@ -84,20 +87,36 @@ def repeated(settings: Sequence[Setting]) -> Setting | None:
 
 
 def filters_in(text: str, option: str = "--filter") -> tuple[str, ...]:
-    """The filters that NAME,… names.
-    Raises UsageError where one of them is none, or stands twice.
-    """
-    from ekfsim.filters import FILTERS
+    """The filters that NAME,… names, each a built-in name or the absolute place of one's own.
 
-    names = tuple(name.strip() for name in text.split(","))
+    Raises UsageError where one of them is none, or stands twice; FaultError where the code of one
+    fails.
+    """
+    names = tuple(filter_in(name.strip(), option) for name in text.split(","))
     for n, name in enumerate(names):
-        if name not in FILTERS:
-            near = nearest(name, list(FILTERS))
-            right = f"did you mean '{near}'?" if near else f"known: {', '.join(FILTERS)}"
-            raise UsageError(f"{option} {short(name)}: there is no such filter; {right}")
         if name in names[:n]:
-            raise UsageError(f"{option} {text}: '{name}' stands twice; delete one")
+            raise UsageError(f"{option} {text}: '{label(name)}' stands twice; delete one")
+        if stem(name) in map(stem, names[:n]):
+            right = "give one of the files another name"
+            raise UsageError(f"{option} {text}: two filters are called {label(name)}; {right}")
     return names
+
+
+def filter_in(name: str, option: str) -> str:
+    """The filter that a name or a place means. Raises UsageError where it means none."""
+    from ekfsim.filters import FILTERS
+    from ekfsim.filters.choice import kind_of
+
+    if name in FILTERS:
+        return name
+    if is_place(name):
+        place = absolute(name)
+        kind_of(place)
+        return place
+    near = f"{name}.py" if os.path.isfile(f"{name}.py") else nearest(name, list(FILTERS))
+    known = f"known: {', '.join(FILTERS)}, or one of your own: FILE.py"
+    right = f"did you mean '{near}'?" if near else known
+    raise UsageError(f"{option} {short(name)}: there is no such filter; {right}")
 
 
 def kind_of(one: Setting) -> Kind:
@@ -105,7 +124,7 @@ def kind_of(one: Setting) -> Kind:
     return "commands" if one.key in OF_COMMANDS or one.key.split(".")[0] == OF_FILTERS else "world"
 
 
-def path_of(one: Setting) -> Path:
+def path_of(one: Setting) -> Route:
     """The path of a setting's key, its sensor by its kind.
     Raises UsageError where no file has such a key.
     """
@@ -120,7 +139,7 @@ def fault_of(one: Setting, is_told: bool = True) -> tuple[str, str] | None:
     and, where it is told, what was meant; None where a file has it.
     """
     parts, kind = one.key.split("."), kind_of(one)
-    path: Path = ()
+    path: Route = ()
     for n, part in enumerate(parts):
         known = _known(kind, path)
         if not known:
@@ -147,14 +166,14 @@ def fault_of(one: Setting, is_told: bool = True) -> tuple[str, str] | None:
     return None
 
 
-def _known(kind: Kind, path: Path) -> list[str]:
+def _known(kind: Kind, path: Route) -> list[str]:
     """The keys that stand under a path, as settings name them; of a sensor by its kind."""
     if not path:
         return [*OF_WORLDS, *OF_COMMANDS, OF_FILTERS]
     return list(keys_at(kind, ("sensors", 0) if path == ("sensors",) else indexed(path, 0)))
 
 
-def indexed(path: Path, index: int) -> Path:
+def indexed(path: Route, index: int) -> Route:
     """The path in a file: of a sensor by its number in the list,
     of a filter's settings by their own key.
     """

@@ -63,7 +63,7 @@ class Main:
             true=_true(scene),
         )
         self.others = others(axes, scene, probability)
-        self.belief.call(scene.filter if self.others else "")
+        self.belief.call(scene.watching[0] if self.others else "")
         self.beam = BeamArtists(axes)
         self._sensors = sensors(scene)
         self.sight = SightArtists(axes, self._sensors)
@@ -167,7 +167,8 @@ class CloseUp:
 def others(axes: Axes, scene: Scene, probability: float) -> list[OtherArtists]:
     """What is drawn of each filter that watches beside the first."""
     return [
-        OtherArtists(axes, name, number, probability) for number, name in enumerate(scene.beside)
+        OtherArtists(axes, name, number, probability)
+        for number, name in enumerate(scene.watching[1:])
     ]
 
 

@@ -97,7 +97,7 @@ def _draw_others(canvas: Canvas, view: View, scene: Scene, probability: float) -
     believes to be.
     """
     legend = []
-    for name, other, pen in zip(scene.beside, view.others, OTHERS, strict=False):
+    for name, other, pen in zip(scene.watching[1:], view.others, OTHERS, strict=False):
         x, P = other.pose
         if np.isfinite(x).all() and np.isfinite(P).all():
             canvas.polyline(outline(x[:2], P[:2, :2], probability), pen)

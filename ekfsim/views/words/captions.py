@@ -166,7 +166,7 @@ def source(scene: Scene) -> str:
         f"seed {scene.seed}, run {scene.run}" if scene.log is None or scene.filter == "pf" else ""
     )
     log = "recorded" if scene.log is not None else ""
-    origin = ", ".join(filter(None, (log, drawn, scene.filter, *scene.beside)))
+    origin = ", ".join(filter(None, (log, drawn, *scene.watching)))
     return f"{shortened(scene.world.name, 30)} — {origin}{gate}{guard}{reading}"
 
 

@@ -39,7 +39,7 @@ def conclude_all(scene: Scene, summaries: Sequence[Summary], quiet: bool = False
     """
     if len(summaries) == 1:
         return conclude(summaries[0])
-    names, first = (scene.filter, *scene.beside), summaries[0]
+    names, first = scene.watching, summaries[0]
     lines = [
         f"The run is over after {_done(first)}; "
         f"{len(names)} filters side by side (RMSE in m, degrees):",

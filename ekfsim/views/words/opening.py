@@ -7,6 +7,7 @@ from dataclasses import fields
 from typing import Any
 
 from ekfsim.filters.choice import kind_of
+from ekfsim.filters.place import label
 from ekfsim.filters.tuning import reads
 from ekfsim.provenance import told_in_a_line
 from ekfsim.scene import Scene
@@ -34,7 +35,7 @@ def opening(scene: Scene) -> str:
     """
     told = [told_in_a_line(scene), *filter(None, [plain(scene.description)]), "", *_numbers(scene)]
     if remark := kind_of(scene.filter).remark:
-        told.append(f"The filter {scene.filter}: {remark}")
+        told.append(f"The filter {label(scene.filter)}: {remark}")
     if reads(scene.filter, "particles"):
         told.append(f"The filter {scene.filter}: {scene.tuning.particles} particles")
     if scene.world.perfect_beam and scene.filter in LINEARISED:

@@ -1,0 +1,71 @@
+"""Where a filter of one's own is found: the text of its place, and what people see of it.
+
+A scene names its filter by a text: the name of a built-in one, or a place. In a place the path of a
+file is absolute, so that whoever calculates in another folder finds it too.
+"""
+
+import os
+import re
+
+FILE = re.compile(r"(?P<file>.*\.py)(?::(?P<name>\w*))?", re.DOTALL)
+MODULE = re.compile(r"(?P<module>[^\W\d][\w.]*):(?P<name>[^\W\d][\w.]*)")
+
+
+def is_place(text: str) -> bool:
+    """Whether a text is the place of a filter: FILE.py, FILE.py:Name or package.module:Name.
+
+    >>> [is_place(text) for text in ("mine.py", "mine.py:MyEKF", "my.filters:MyEKF", "ekf")]
+    [True, True, True, False]
+    """
+    return bool(FILE.fullmatch(text) or MODULE.fullmatch(text))
+
+
+def parts(place: str) -> tuple[str, str]:
+    """The file or the module of a place, and the name in it, "" where it tells none.
+
+    >>> parts("/tmp/mine.py:MyEKF"), parts("mine.py"), parts("my.filters:MyEKF")
+    (('/tmp/mine.py', 'MyEKF'), ('mine.py', ''), ('my.filters', 'MyEKF'))
+    """
+    found = FILE.fullmatch(place)
+    if found:
+        return found["file"], found["name"] or ""
+    module, _, name = place.partition(":")
+    return module, name
+
+
+def is_file(place: str) -> bool:
+    """Whether it is a file's place, not that of an installed module."""
+    return FILE.fullmatch(place) is not None
+
+
+def absolute(place: str) -> str:
+    """The same place, its file told from the root."""
+    if not is_file(place):
+        return place
+    file, name = parts(place)
+    path = os.path.abspath(os.path.expanduser(file))
+    return f"{path}:{name}" if name else path
+
+
+def label(filter: str) -> str:
+    """What people see of a filter, built-in or not.
+
+    >>> label("/home/anna/mine.py"), label("/home/anna/mine.py:MyEKF"), label("ekf")
+    ('mine.py', 'mine.py:MyEKF', 'ekf')
+    """
+    if not is_file(filter):
+        return filter
+    file, name = parts(filter)
+    return os.path.basename(file) + (f":{name}" if name else "")
+
+
+def stem(filter: str) -> str:
+    """The same in the name of a file.
+
+    >>> stem("/home/anna/mine.py:MyEKF"), stem("my.filters:MyEKF"), stem("ekf")
+    ('mine-MyEKF', 'my.filters-MyEKF', 'ekf')
+    """
+    if is_file(filter):
+        file, name = parts(filter)
+        filter = os.path.basename(file).removesuffix(".py") + (f":{name}" if name else "")
+    return filter.replace(":", "-")

@@ -1,0 +1,110 @@
+"""The filter around a student's calls: what it is not handed, and what is calculated beside it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Self
+
+import numpy as np
+
+from ekfsim.filters import kalman
+from ekfsim.filters.arithmetic.algebra import symmetric
+from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction, Refused
+from ekfsim.filters.protocol import Beginning
+from ekfsim.geometry import Array, Booleans
+from ekfsim.models.protocols import Motion, Sensor
+from ekfsim.models.sensors.laser_by_reading import LaserByReading
+from ekfsim.records import Control, Reading
+from ekfsim.student.asked import Answer, Asked, Caller
+from ekfsim.student.fault import FaultError
+from ekfsim.student.own.returned import WrongError, judged
+
+
+@dataclass(frozen=True)
+class OwnFilter:
+    """A filter of two functions or of a class of one's own, which knows one robot at a time.
+
+    Its beliefs are what the calls return, one call for each run. F and G, and ν, S, H, K and NIS
+    are calculated here, as an EKF has them at the same prior; by them gate and guard refuse.
+    """
+
+    remark: ClassVar[str] = "F, G, ν, S, H and K are not its own: they are told as at its estimate"
+    new_caller: Callable[[], Caller]
+    gate: float | None = None
+    headings: tuple[int, ...] = (2,)
+    callers: dict[tuple[int, ...], Caller] = field(default_factory=dict)  # one for each run
+
+    @classmethod
+    def begin(cls, beginning: Beginning) -> Self:
+        """Around no code there is no filter: see `around`."""
+        raise NotImplementedError
+
+    @classmethod
+    def around(cls, new_caller: Callable[[], Caller], beginning: Beginning) -> Self:
+        """The filter for a run that begins so."""
+        return cls(new_caller, beginning.gate, beginning.headings)
+
+    def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
+        """What predict returns of x, P and u of each run          u : (…, m)"""
+        x, P = belief
+        posterior = Gaussian(x.copy(), P.copy())
+        for run in np.ndindex(x.shape[:-1]):
+            given = Control(motion, _row(u, run))
+            posterior.mean[run], posterior.covariance[run] = self._called(run, x, P, given)
+        return posterior, Prediction(motion.F(x, u), motion.G(x, u))
+
+    def update(
+        self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
+    ) -> tuple[Gaussian, Correction]:
+        """What update returns of x, P and z of each run          z : (…, k)
+
+        A reading that is refused is not handed over, nor one where S = 0, of which nothing can be
+        learnt.
+        """
+        x, P = prior
+        told = self._beside(x, P, sensor, z, skip)
+        handed = (told.refused == Refused.NOT) & (told.S != 0).any(axis=(-2, -1))
+        posterior = Gaussian(x.copy(), P.copy())
+        for run in np.ndindex(x.shape[:-1]):
+            if handed[run]:
+                given = Reading(_of_run(sensor, run), _row(z, run))
+                posterior.mean[run], posterior.covariance[run] = self._called(run, x, P, given)
+        return posterior, told
+
+    def _beside(
+        self, x: Array, P: Array, sensor: Sensor, z: Array, skip: Booleans | bool
+    ) -> Correction:
+        """What an EKF would make of the reading at the same prior."""
+        h, H, R = sensor.linearize(x)
+        reading = kalman.Linearized(z, h, sensor.residual(z, h), H, R)
+        rule = kalman.Rule(self.gate, skip, self.headings)
+        _, told = kalman.update(Gaussian(x, symmetric(P)), reading, rule)
+        return told
+
+    def _called(
+        self, run: tuple[int, ...], x: Array, P: Array, given: Control | Reading
+    ) -> Gaussian:
+        """What one run's call makes of its belief. Raises FaultError."""
+        caller = self.callers.get(run)
+        if caller is None:
+            caller = self.callers[run] = self.new_caller()
+            caller.begin(x[run], P[run])
+        asked = Asked(x[run], P[run], given, self.headings)
+        return believed(asked, caller.call(asked), caller)
+
+
+def believed(asked: Asked, theirs: Answer, caller: Caller) -> Gaussian:
+    """The belief that an answer is. Raises FaultError where it can be none."""
+    try:
+        return judged(asked, theirs)
+    except WrongError as wrong:
+        raise FaultError(caller.place_of(asked.given), str(wrong)) from None
+
+
+def _row(values: Array, run: tuple[int, ...]) -> Array:
+    """Input or reading of one run; one that is the same for all has no axes."""
+    return values[run] if values.shape[:-1] else values
+
+
+def _of_run(sensor: Sensor, run: tuple[int, ...]) -> Sensor:
+    """The sensor of one run, where each has its own."""
+    return replace(sensor, z=sensor.z[run]) if isinstance(sensor, LaserByReading) else sensor

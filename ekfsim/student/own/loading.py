@@ -1,0 +1,96 @@
+"""FILE.py, FILE.py:Name or package.module:Name → a student's code, ready to be called."""
+
+import difflib
+import hashlib
+import importlib
+import os
+import sys
+import warnings
+from dataclasses import dataclass
+from types import ModuleType
+
+from ekfsim.errors import UsageError
+from ekfsim.filters.place import is_file, label, parts
+from ekfsim.student.own.forms import Form, form_of
+from ekfsim.student.own.home import Home, shown
+
+
+@dataclass(frozen=True)
+class Code:
+    """A student's code: what is called of it, and where it is at home."""
+
+    label: str  # what people see of it
+    form: Form
+    home: Home
+    source: str | None = None  # the text of its file
+
+
+def load(place: str) -> Code:
+    """The code at a place, as it stands there now: it is run from its first line.
+
+    Raises UsageError where there is no such place or no filter in it, FaultError where its code
+    fails.
+    """
+    file, name = parts(place)
+    return _of_file(os.path.abspath(file), name) if is_file(place) else _of_module(file, name)
+
+
+def _of_file(path: str, name: str) -> Code:
+    source, home = _read(path), Home(os.path.dirname(path))
+    # of its own, whatever another file of the same name is called
+    module = ModuleType(f"own_{hashlib.sha256(path.encode()).hexdigest()[:16]}")
+    module.__file__ = path
+    home.modules[module.__name__] = module
+    with home.entered(), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        importlib.invalidate_caches()
+        try:
+            exec(compile(source, path, "exec", dont_inherit=True), module.__dict__)
+        except BaseException as error:
+            home.blame(error, f"{shown(path)}:1")
+    told = f"{shown(path)}:{name}" if name else shown(path)
+    text = source.decode(errors="replace")
+    return Code(label(f"{path}:{name}" if name else path), form_of(module, name, told), home, text)
+
+
+def _of_module(module_name: str, name: str) -> Code:
+    """The code of an installed module, which is imported as ever."""
+    home = Home()
+    with home.entered():
+        try:
+            module = importlib.import_module(module_name)
+        except ModuleNotFoundError as error:
+            if not f"{module_name}.".startswith(f"{error.name}."):
+                home.blame(error, module_name)
+            right = "it must be installed; a file is named FILE.py or FILE.py:Name"
+            raise UsageError(f"{module_name}:{name}: there is no such module; {right}") from None
+        except BaseException as error:
+            home.blame(error, module_name)
+    place = f"{module_name}:{name}"
+    top = getattr(sys.modules[module_name.partition(".")[0]], "__file__", None) or ""
+    home.root = os.path.join(os.path.dirname(top), "") if "__init__" in top else top
+    return Code(place, form_of(module, name, place), home)
+
+
+def _read(path: str) -> bytes:
+    """The text of a file. Raises UsageError where there is none."""
+    if os.path.isdir(path):
+        raise UsageError(f"{shown(path)}: is a folder; name a file in it")
+    try:
+        with open(path, "rb") as file:
+            return file.read()
+    except FileNotFoundError:
+        raise UsageError(f"{shown(path)}: there is no such file{_near(path)}") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise UsageError(f"{shown(path)}: cannot be read: {reason}") from None
+
+
+def _near(path: str) -> str:
+    """Which file beside it may be meant."""
+    try:
+        beside = [name for name in os.listdir(os.path.dirname(path)) if name.endswith(".py")]
+    except OSError:
+        return ""
+    near = difflib.get_close_matches(os.path.basename(path), beside, 1)
+    return f"; did you mean '{near[0]}'?" if near else ""

@@ -1,0 +1,95 @@
+"""A class of one's own of the full protocol of filters: called as it is, and looked after."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
+from ekfsim.filters.protocol import Beginning
+from ekfsim.geometry import Array, Booleans
+from ekfsim.models.protocols import Motion, Sensor
+from ekfsim.records import Control, Reading
+from ekfsim.student.asked import Asked
+from ekfsim.student.fault import FaultError
+from ekfsim.student.own.forms import where
+from ekfsim.student.own.loading import Code
+from ekfsim.student.own.returned import WrongError, judged, looked_at
+
+FIELDS = ("predicted", "innovation", "R", "S", "H", "K", "nis", "refused")
+
+
+@dataclass(frozen=True)
+class WholeFilter:
+    """The student's filter; what it believes and what it tells are held against the protocol."""
+
+    remark: ClassVar[str] = ""
+    code: Code
+    filter: Any
+    headings: tuple[int, ...]
+
+    @classmethod
+    def begin(cls, beginning: Beginning) -> Self:
+        """Around no code there is no filter: see `around`."""
+        raise NotImplementedError
+
+    @classmethod
+    def around(cls, code: Code, beginning: Beginning) -> Self:
+        """The filter for a run that begins so. Raises FaultError."""
+        whole = cls(code, None, beginning.headings)
+        return cls(code, whole._run("begin", code.form.kind.begin, beginning), beginning.headings)  # type: ignore[union-attr]
+
+    def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Belief, Prediction]:
+        """As the student's filter."""
+        returned = self._run("predict", self.filter.predict, belief, motion, u)
+        after, told = self._two("predict", returned, Prediction, "Prediction(F, G)")
+        return self._believed("predict", belief, after, Control(motion, u)), told
+
+    def update(
+        self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
+    ) -> tuple[Belief, Correction]:
+        """As the student's filter."""
+        returned = self._run("update", self.filter.update, prior, sensor, z, skip)
+        fields = ", ".join(FIELDS)
+        after, told = self._two("update", returned, Correction, f"Correction({fields})")
+        return self._believed("update", prior, after, Reading(sensor, z)), told
+
+    def _run(self, step: str, function: Any, *args: Any) -> Any:
+        with self.code.home.entered():
+            try:
+                return function(*args)
+            except BaseException as error:
+                self.code.home.blame(error, self._place(step))
+
+    def _two(self, step: str, returned: Any, kind: type, right: str) -> Any:
+        """A belief and what is told of it. Raises FaultError where it is something else."""
+        if isinstance(returned, tuple) and len(returned) == 2 and isinstance(returned[1], kind):
+            return returned
+        wrong = (
+            f"{step} returns no belief and {kind.__name__}; write `return Gaussian(x, P), {right}`"
+        )
+        raise FaultError(self._place(step), wrong)
+
+    def _believed(self, step: str, before: Belief, after: Any, given: Control | Reading) -> Belief:
+        """The same belief. Raises FaultError where it can be none."""
+        n = before.mean.shape[-1]
+        try:
+            x, P = after
+            if np.shape(x) != before.mean.shape or np.shape(P) != before.covariance.shape:
+                raise WrongError(
+                    f"x and P have the shapes {np.shape(x)} and {np.shape(P)}, not "
+                    f"{before.mean.shape} and {before.covariance.shape}"
+                )
+            for run in np.ndindex(before.mean.shape[:-1]):
+                asked = Asked(before.mean[run], before.covariance[run], given, ())
+                judged(asked, looked_at(x[run], P[run], n))
+        except WrongError as wrong:
+            raise FaultError(self._place(step), str(wrong)) from None
+        except (TypeError, ValueError):
+            wrong_kind = f"{type(after).__name__} is no belief; write Gaussian(x, P)"
+            raise FaultError(self._place(step), wrong_kind) from None
+        return after if hasattr(after, "mean") else Gaussian(*after)
+
+    def _place(self, step: str) -> str:
+        kind = self.code.form.kind  # type: ignore[union-attr]
+        return where(getattr(kind, step), self.code.source) or self.code.label
