@@ -1,0 +1,13 @@
+"""A student's code in a process of its own, which answers in plain numbers and can be killed.
+
+    sandboxed.py   the caller whose code runs over there
+    limits.py      what it may take
+    folder.py      the folder that it runs in: a copy of what was handed in
+    process.py     the process: begun, asked by a deadline, ended
+    exchange.py    what goes over, to the byte
+    told.py        motions, sensors and walls in plain numbers
+    keeper.py      over there: who kills whatever the code started
+    answering.py   over there: who calls the code
+
+What this protects from, and what it does not: docs/safety.md.
+"""

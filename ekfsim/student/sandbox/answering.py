@@ -1,0 +1,89 @@
+"""Over there: the process that calls the student's code, and says what came of it.
+
+Whatever the code raises, exits with or breaks is told, if it can be; what cannot be told is seen by
+the parent, which believes nothing that comes from here.
+"""
+
+import json
+import os
+import signal
+import sys
+from collections.abc import Callable, Mapping
+from types import FrameType
+from typing import Any
+
+from ekfsim.student.fault import FaultError
+from ekfsim.student.sandbox.exchange import ANSWER, FAULT, HEAD, Message, fault, packed
+from ekfsim.student.sandbox.limits import ALONE, Limits, keep_to
+
+Handler = Callable[[list[Any]], bytes]
+
+
+def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits) -> None:
+    """Answer one request after another, until the other end closes."""
+    _prepare(asked, limits)
+    from ekfsim.student.sandbox.code import Code  # NumPy comes after the limits
+
+    code = Code(asked["place"], asked["provided"], limits)
+    signal.signal(signal.SIGALRM, _too_long(limits))
+    read, write, loads, alarm = os.read, os.write, json.loads, signal.setitimer
+    while True:
+        length, _, mark = HEAD.unpack(_read(read, requests, HEAD.size))
+        seconds, what, told = loads(_read(read, requests, length))
+        try:
+            alarm(signal.ITIMER_REAL, seconds)
+            kind, content = ANSWER, getattr(code, what)(*told)
+            alarm(signal.ITIMER_REAL, 0)
+        except FaultError as error:
+            kind, content = FAULT, fault(error.place, error.wrong)
+        except BaseException as error:  # sys.exit among them
+            kind, content = FAULT, fault(code.label, f"{type(error).__name__}: {error}")
+        finally:
+            alarm(signal.ITIMER_REAL, 0)
+        _flush()
+        _write(write, answers, packed(Message(kind, mark, content)))
+
+
+def _prepare(asked: Mapping[str, Any], limits: Limits) -> None:
+    """Nothing of whoever started this but the folder, and no more than the limits."""
+    nowhere = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nowhere, 0)
+    os.dup2(2, 1)  # what is printed does not go where answers go
+    os.environ.clear()
+    os.environ.update({name: "1" for name in ALONE})
+    os.chdir(asked["folder"])
+    os.environ["HOME"] = os.environ["TMPDIR"] = asked["folder"]
+    sys.argv[:] = [asked["place"]]
+    keep_to(limits)
+
+
+def _too_long(limits: Limits) -> Callable[[int, FrameType | None], None]:
+    def handler(number: int, frame: FrameType | None) -> None:
+        raise TimeoutError(f"took longer than {limits.seconds:g} s")
+
+    return handler
+
+
+def _flush() -> None:
+    """Let out what the code has printed, if it has left something to print with."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except BaseException:
+            continue
+
+
+def _read(read: Callable[[int, int], bytes], descriptor: int, length: int) -> bytes:
+    parts = []
+    while length:
+        part = read(descriptor, length)
+        if not part:
+            os._exit(0)
+        parts.append(part)
+        length -= len(part)
+    return b"".join(parts)
+
+
+def _write(write: Callable[[int, bytes], int], descriptor: int, message: bytes) -> None:
+    while message:
+        message = message[write(descriptor, message) :]

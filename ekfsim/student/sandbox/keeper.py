@@ -1,0 +1,111 @@
+"""Over there: who starts the process with the student's code, and ends whatever that started.
+
+It holds no number of a student's and calls nothing of his. On Linux all that loses its parent below
+it becomes its child (PR_SET_CHILD_SUBREAPER), whatever session it has gone to: when it has no child
+left, nothing is left. It ends when the code's process does, or when the other end of the exchange
+is closed, be it because the parent was killed.
+"""
+
+import os
+import select
+import signal
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from typing import Any
+
+from ekfsim.student.sandbox.limits import Limits
+
+SET_PDEATHSIG, SET_CHILD_SUBREAPER = 1, 36  # of prctl(2)
+TICK = 0.2  # s between two looks at how many processes there are
+KILLING = 5.0  # s; by then whoever can be killed is dead
+TOO_MANY = 255  # the status that tells of too many processes
+
+
+def main(asked: Mapping[str, Any]) -> None:
+    """Start the process that answers; see it to its end, and its children's.
+
+    Ends with its status, 128 + n where signal n ended it, or TOO_MANY.
+    """
+    requests, answers, limits = os.dup(0), os.dup(1), Limits(**asked["limits"])
+    _prctl(SET_CHILD_SUBREAPER, 1)
+    keeper = os.getpid()
+    student = os.fork()
+    if student == 0:
+        try:
+            os.setsid()
+            _prctl(SET_PDEATHSIG, signal.SIGKILL)
+            if os.getppid() == keeper:
+                from ekfsim.student.sandbox.answering import serve
+
+                serve(requests, answers, asked, limits)
+        finally:
+            os._exit(1)
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for descriptor in (0, 1, 2, answers):  # or nobody would see the other end close
+        os.dup2(nowhere, descriptor)
+    status = _seen_to_its_end(student, requests, limits)
+    _end_all(student)
+    os._exit(status)
+
+
+def _seen_to_its_end(student: int, requests: int, limits: Limits) -> int:
+    """Wait until the process ends, or should: the status to end with."""
+    waited = select.poll()
+    waited.register(requests, 0)  # nothing but the other end's closing
+    if hasattr(os, "pidfd_open"):
+        with suppress(OSError):
+            waited.register(os.pidfd_open(student), select.POLLIN)
+    counted = os.getuid() == 0 and sys.platform == "linux"  # for others, the kernel counts
+    while True:
+        closed = any(descriptor == requests for descriptor, _ in waited.poll(TICK * 1000))
+        done, status = os.waitpid(student, os.WNOHANG)
+        if done:
+            code = os.waitstatus_to_exitcode(status)
+            return code if code >= 0 else 128 - code
+        if closed:
+            return 0
+        if counted and sum(1 for _ in descendants(os.getpid())) > limits.processes:
+            return TOO_MANY
+
+
+def _end_all(student: int) -> None:
+    """Kill all that is left, until nothing is."""
+    until = time.monotonic() + KILLING
+    while time.monotonic() < until:
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(student, signal.SIGKILL)
+        for process in list(descendants(os.getpid())):
+            with suppress(ProcessLookupError, PermissionError):
+                os.kill(process, signal.SIGKILL)
+        try:
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
+        except ChildProcessError:
+            return
+        time.sleep(0.002)
+
+
+def descendants(ancestor: int) -> Iterator[int]:
+    """The processes below one, by /proc; none where there is no /proc."""
+    children: dict[int, list[int]] = {}
+    for name in os.listdir("/proc") if sys.platform == "linux" else ():
+        if name.isdigit():
+            with suppress(OSError, ValueError, IndexError), open(f"/proc/{name}/stat", "rb") as file:
+                # pid (name) state parent …: a name may hold anything
+                parent = int(file.read().rpartition(b")")[2].split()[1])
+                children.setdefault(parent, []).append(int(name))
+    waiting = [ancestor]
+    while waiting:
+        below = children.get(waiting.pop(), [])
+        yield from below
+        waiting.extend(below)
+
+
+def _prctl(option: int, value: int) -> None:
+    """Ask the kernel for what Python has no function for; elsewhere than on Linux there is none."""
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(option, value, 0, 0, 0)

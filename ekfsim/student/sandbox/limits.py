@@ -1,0 +1,66 @@
+"""What a student's code may take, and how a process is kept to it."""
+
+import sys
+from dataclasses import dataclass
+
+LEAST_MEMORY = 512  # MiB; with less NumPy itself does not start everywhere
+OPEN_FILES = 128
+MEBI = 2**20
+# One thread: each of OpenBLAS's takes its share of the memory, and waits for the others. To be set
+# before NumPy is imported.
+ALONE = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What one process with a student's code may take, from its start to its end.
+
+    The defaults leave a parent 200 MB in a container of 768 MB.
+    """
+
+    seconds: float = 60.0  # on the wall, while it is waited for; its start is among them
+    cpu_seconds: int = 60  # of each process
+    memory_mb: int = LEAST_MEMORY  # MiB of address space, of each process
+    file_mb: int = 16  # MiB, of each file that it writes
+    processes: int = 16  # and threads, itself among them
+    printed: int = 2000  # characters that are kept of what it prints
+
+    def __post_init__(self) -> None:
+        if self.memory_mb < LEAST_MEMORY:
+            raise ValueError(f"memory_mb is {self.memory_mb}; {LEAST_MEMORY} is the least")
+
+
+def keep_to(limits: Limits) -> None:
+    """Keep this process, and what it starts, to the limits. Nobody can raise them again."""
+    import resource
+
+    def keep(what: int, soft: int, hard: int) -> None:
+        _, most = resource.getrlimit(what)
+        if most != resource.RLIM_INFINITY:  # only the superuser can raise what is set already
+            soft, hard = min(soft, most), min(hard, most)
+        resource.setrlimit(what, (soft, hard))
+
+    cpu = max(1, round(limits.cpu_seconds))
+    keep(resource.RLIMIT_CPU, cpu, cpu + 1)  # SIGXCPU, and SIGKILL for who ignores it
+    keep(resource.RLIMIT_AS, *(limits.memory_mb * MEBI,) * 2)
+    keep(resource.RLIMIT_FSIZE, *(limits.file_mb * MEBI,) * 2)
+    keep(resource.RLIMIT_NOFILE, OPEN_FILES, OPEN_FILES)
+    keep(resource.RLIMIT_CORE, 0, 0)
+    if hasattr(resource, "RLIMIT_NPROC"):
+        keep(resource.RLIMIT_NPROC, *(_tasks() + limits.processes,) * 2)
+
+
+def _tasks() -> int:
+    """Processes and threads that this user has already: they are counted in the limit, too."""
+    import os
+
+    tasks, user = 0, os.getuid()
+    for name in os.listdir("/proc") if sys.platform == "linux" else ():
+        if name.isdigit():
+            try:
+                told = os.stat(f"/proc/{name}/task")
+            except OSError:  # it has ended meanwhile
+                continue
+            if told.st_uid == user:
+                tasks += max(1, told.st_nlink - 2)
+    return tasks
