@@ -7,7 +7,8 @@
     exchange.py    what goes over, to the byte
     told.py        motions, sensors and walls in plain numbers
     keeper.py      over there: who kills whatever the code started
-    answering.py   over there: who calls the code
+    answering.py   over there: who answers, whatever the code does
+    calling.py     over there: the code, and what may be asked of it
 
 What this protects from, and what it does not: docs/safety.md.
 """

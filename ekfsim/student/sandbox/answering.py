@@ -16,28 +16,29 @@ from ekfsim.student.fault import FaultError
 from ekfsim.student.sandbox.exchange import ANSWER, FAULT, HEAD, Message, fault, packed
 from ekfsim.student.sandbox.limits import ALONE, Limits, keep_to
 
-Handler = Callable[[list[Any]], bytes]
-
 
 def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits) -> None:
     """Answer one request after another, until the other end closes."""
     _prepare(asked, limits)
-    from ekfsim.student.sandbox.code import Code  # NumPy comes after the limits
+    from ekfsim.student.sandbox.calling import Requests  # NumPy comes after the limits
 
-    code = Code(asked["place"], asked["provided"], limits)
-    signal.signal(signal.SIGALRM, _too_long(limits))
+    label = os.path.basename(asked["place"])
+    requested = Requests(asked["place"], label, asked["provided"])
+    rung = _alarm(limits)
     read, write, loads, alarm = os.read, os.write, json.loads, signal.setitimer
     while True:
         length, _, mark = HEAD.unpack(_read(read, requests, HEAD.size))
         seconds, what, told = loads(_read(read, requests, length))
+        rung.clear()
         try:
             alarm(signal.ITIMER_REAL, seconds)
-            kind, content = ANSWER, getattr(code, what)(*told)
+            kind, content = ANSWER, getattr(requested, what)(*told)
             alarm(signal.ITIMER_REAL, 0)
         except FaultError as error:
-            kind, content = FAULT, fault(error.place, error.wrong)
+            wrong = limits.too_long if rung else error.wrong
+            kind, content = FAULT, fault(error.place, wrong)
         except BaseException as error:  # sys.exit among them
-            kind, content = FAULT, fault(code.label, f"{type(error).__name__}: {error}")
+            kind, content = FAULT, fault(label, f"{type(error).__name__}: {error}")
         finally:
             alarm(signal.ITIMER_REAL, 0)
         _flush()
@@ -50,18 +51,23 @@ def _prepare(asked: Mapping[str, Any], limits: Limits) -> None:
     os.dup2(nowhere, 0)
     os.dup2(2, 1)  # what is printed does not go where answers go
     os.environ.clear()
-    os.environ.update({name: "1" for name in ALONE})
+    os.environ.update(dict.fromkeys(ALONE, "1"))
     os.chdir(asked["folder"])
     os.environ["HOME"] = os.environ["TMPDIR"] = asked["folder"]
     sys.argv[:] = [asked["place"]]
     keep_to(limits)
 
 
-def _too_long(limits: Limits) -> Callable[[int, FrameType | None], None]:
-    def handler(number: int, frame: FrameType | None) -> None:
-        raise TimeoutError(f"took longer than {limits.seconds:g} s")
+def _alarm(limits: Limits) -> list[int]:
+    """The alarm interrupts the code where it is; the list that is returned holds that it did."""
+    rung: list[int] = []
 
-    return handler
+    def ring(number: int, frame: FrameType | None) -> None:
+        rung.append(number)
+        raise TimeoutError(limits.too_long)
+
+    signal.signal(signal.SIGALRM, ring)
+    return rung
 
 
 def _flush() -> None:

@@ -92,10 +92,13 @@ def descendants(ancestor: int) -> Iterator[int]:
     children: dict[int, list[int]] = {}
     for name in os.listdir("/proc") if sys.platform == "linux" else ():
         if name.isdigit():
-            with suppress(OSError, ValueError, IndexError), open(f"/proc/{name}/stat", "rb") as file:
-                # pid (name) state parent …: a name may hold anything
-                parent = int(file.read().rpartition(b")")[2].split()[1])
-                children.setdefault(parent, []).append(int(name))
+            try:
+                with open(f"/proc/{name}/stat", "rb") as file:
+                    told = file.read()
+            except OSError:  # it has ended meanwhile
+                continue
+            parent = int(told.rpartition(b")")[2].split()[1])  # pid (any name) state parent …
+            children.setdefault(parent, []).append(int(name))
     waiting = [ancestor]
     while waiting:
         below = children.get(waiting.pop(), [])

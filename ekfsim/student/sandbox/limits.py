@@ -29,6 +29,11 @@ class Limits:
         if self.memory_mb < LEAST_MEMORY:
             raise ValueError(f"memory_mb is {self.memory_mb}; {LEAST_MEMORY} is the least")
 
+    @property
+    def too_long(self) -> str:
+        """What is told of who took longer."""
+        return f"took longer than {self.seconds:g} s"
+
 
 def keep_to(limits: Limits) -> None:
     """Keep this process, and what it starts, to the limits. Nobody can raise them again."""

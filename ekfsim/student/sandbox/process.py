@@ -60,6 +60,7 @@ class Process:
         through: Sequence[str] = (),
     ) -> None:  # fmt: skip
         self._label, self._limits, self._left = os.path.basename(place), limits, limits.seconds
+        self.ended = False
         self._came = bytearray()  # of the exchange, not yet read
         self._kept, self._printed = bytearray(), 0
         asked = {
@@ -84,7 +85,7 @@ class Process:
         began = time.monotonic()
         self._take(0)
         if self._came:
-            raise self._fault("answers before it was asked")
+            raise self.refused("answers before it was asked")
         mark = secrets.token_bytes(8)
         request = json.dumps([self._left, what, told]).encode()
         try:
@@ -93,6 +94,8 @@ class Process:
         finally:
             self._left -= time.monotonic() - began
         if answer.kind == FAULT:
+            if self._left <= 0:
+                self.end()
             raise FaultError(*fault_of(answer.content))
         return answer.content
 
@@ -117,7 +120,7 @@ class Process:
                 length, kind, theirs = HEAD.unpack_from(self._came)
                 most = {ANSWER: MOST_NUMBERS, FAULT: MOST_WORDS}.get(kind, -1)
                 if theirs != mark or length > most:
-                    raise self._fault("writes to the exchange itself; only what it returns counts")
+                    raise self.refused("writes to the exchange itself; only what it returns counts")
                 end = HEAD.size + length
                 if len(self._came) >= end:
                     content = bytes(self._came[HEAD.size : end])
@@ -130,7 +133,7 @@ class Process:
         """Seconds that are left to it. Raises FaultError where there are none."""
         left = self._left + GRACE - (time.monotonic() - began)
         if left <= 0:
-            raise self._fault(f"took longer than {self._limits.seconds:g} s")
+            raise self.refused(self._limits.too_long)
         return left
 
     def _take(self, seconds: float) -> bool:
@@ -149,21 +152,24 @@ class Process:
                 if not part:
                     return False
                 if len(self._came) > HEAD.size + MOST_NUMBERS:
-                    raise self._fault("writes to the exchange itself; only what it returns counts")
+                    raise self.refused("writes to the exchange itself; only what it returns counts")
             else:
                 self._printed += len(part)
                 self._kept += part[: max(0, 4 * self._limits.printed - len(self._kept))]
         return True
 
-    def _fault(self, wrong: str) -> FaultError:
-        """It has lost its right to be asked again."""
+    def refused(self, wrong: str) -> FaultError:
+        """What it did is no answer: it is ended, and not asked again."""
         self.end()
         return FaultError(self._label, wrong)
 
     def _ended(self) -> FaultError:
         """It has ended, or closed the exchange, where it should have answered."""
+        try:
+            status = self._process.wait(GRACE)
+        except subprocess.TimeoutExpired:
+            return self.refused("closed the exchange instead of answering")
         self.end()
-        status = self._process.returncode
         limits = self._limits
         if status == TOO_MANY:
             wrong = f"started more than {limits.processes} processes"
@@ -184,6 +190,7 @@ class Process:
 
     def end(self) -> None:
         """Kill it, and all that it started."""
+        self.ended = True
         process = self._process
         for pipe in (process.stdin, process.stdout, process.stderr):
             if pipe is not None:
