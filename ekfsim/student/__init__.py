@@ -5,6 +5,7 @@
     mistakes/    the known mistakes, and which of them its numbers are those of
 
     own/         from the place of a student's code to a filter like any other
+    sandbox/     the same code in a process of its own, which can be killed
 
 What its code is given are copies, and what comes back of it is looked at before it is used.
 """
