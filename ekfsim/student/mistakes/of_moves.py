@@ -6,56 +6,43 @@ import numpy as np
 
 from ekfsim.commands import Move
 from ekfsim.geometry import Array
-from ekfsim.models.motions.move_turn import MoveTurn
-from ekfsim.records import Control
-from ekfsim.student.asked import Asked
 from ekfsim.student.mistakes.mistake import Mistake
+from ekfsim.student.mistakes.steps import commanded, move_turn, moves
 from ekfsim.student.mistakes.working import Piece, Pieces, Working
 
-
-def moves(asked: Asked) -> bool:
-    """A motion of any robot."""
-    return isinstance(asked.given, Control)
+Direction = Callable[[float, float], float]  # of the way, from θ and a
 
 
-def move_turn(asked: Asked) -> bool:
-    """A move of the classroom's robot."""
-    return isinstance(asked.given, Control) and isinstance(asked.given.motion, MoveTurn)
+def command(s: Working, _: Callable[[], Array]) -> Array:
+    """u as it was asked of the robot."""
+    asked = s.asked.command
+    assert isinstance(asked, Move)
+    return np.array([asked.distance, asked.angle])
 
 
-def commanded(asked: Asked) -> bool:
-    """A move of the classroom's robot, whose command is known."""
-    return move_turn(asked) and isinstance(asked.command, Move)
+def angle(of: Callable[[float], float]) -> Piece:
+    """u with another angle."""
+    return lambda s, right: np.array([right()[0], of(right()[1])])
 
 
-def _command(s: Working, _: Callable[[], Array]) -> Array:
-    command = s.asked.command
-    assert isinstance(command, Move)
-    return np.array([command.distance, command.angle])
+def towards(direction: Direction) -> Piece:
+    """x with another heading, to take a Jacobian at."""
+    return lambda s, _: np.array([s.x[0], s.x[1], direction(s.x[2], s.u_f[1])])
 
 
-def _turned(share: float) -> Piece:
-    """x with this share of the turn in its heading already."""
-
-    def x(s: Working, _: Callable[[], Array]) -> Array:
-        return np.array([s.x[0], s.x[1], s.x[2] + share * s.u_f[1]])
-
-    return x
-
-
-def _driven(share: float) -> Piece:
-    """f with the way along a heading that has this share of the turn."""
+def _driven(direction: Direction) -> Piece:
+    """f with the way in another direction."""
 
     def f(s: Working, _: Callable[[], Array]) -> Array:
         d, a = s.u_f
-        θ = s.x[2] + share * a
-        return np.array([s.x[0] + d * np.cos(θ), s.x[1] + d * np.sin(θ), s.x[2] + a])
+        along = direction(s.x[2], a)
+        return np.array([s.x[0] + d * np.cos(along), s.x[1] + d * np.sin(along), s.x[2] + a])
 
     return f
 
 
 def _bent(share: float) -> Piece:
-    """J_u of that f: now the turn bends the way."""
+    """J_u where this share of the turn bends the way."""
 
     def G(s: Working, right: Callable[[], Array]) -> Array:
         d, a = s.u_J
@@ -66,43 +53,142 @@ def _bent(share: float) -> Piece:
     return G
 
 
-def _along(share: float) -> tuple[Pieces, ...]:
-    f, x = _driven(share), _turned(share)
-    return {"f": f}, {"f": f, "x_F": x, "x_G": x}, {"f": f, "x_F": x, "G": _bent(share)}
+def _along(direction: Direction) -> tuple[Pieces, ...]:
+    """The way in another direction; and with the Jacobians taken there as well."""
+    f, x = _driven(direction), towards(direction)
+    return {"f": f}, {"f": f, "x_F": x, "x_G": x}
 
 
-def _angle(of: Callable[[Array], Array]) -> Piece:
-    """The input with another angle."""
-    return lambda s, right: np.array([right()[0], of(right()[1])])
+def _turning(share: float) -> tuple[Pieces, ...]:
+    """The way along a heading that has a share of the turn already; and with its own Jacobians."""
+
+    def direction(θ: float, a: float) -> float:
+        return θ + share * a
+
+    f, x = _driven(direction), towards(direction)
+    return *_along(direction), {"f": f, "x_F": x, "G": _bent(share)}
+
+
+def _entry(i: int, of: Callable[[float, float], float]) -> Piece:
+    """f with another x, y or θ, from what it was and what it should become."""
+
+    def f(s: Working, right: Callable[[], Array]) -> Array:
+        after = right().copy()
+        after[s.places[i]] = of(s.x[s.places[i]], after[s.places[i]])
+        return after
+
+    return f
+
+
+def _exchanged_slope(s: Working, right: Callable[[], Array]) -> Array:
+    """J_x of an f with sine and cosine exchanged."""
+    J, (d, _), θ = right().copy(), s.u_J, s.x[2]
+    J[0, 2], J[1, 2] = d * np.cos(θ), -d * np.sin(θ)
+    return J
+
+
+def exchanged(_: Working, right: Callable[[], Array]) -> Array:
+    """A Jacobian with its rows of x and y exchanged: sine for cosine."""
+    return right()[[1, 0, 2]]
+
+
+_SINE_FIRST: Piece = _driven(lambda θ, _: np.pi / 2 - θ)
+_SOUTH: Piece = _entry(1, lambda before, after: 2 * before - after)
+
+
+def _southward(s: Working, right: Callable[[], Array]) -> Array:
+    """A Jacobian with the other sign in its row of y."""
+    return np.array([[1.0], [-1.0], [1.0]]) * (right() - np.eye(*right().shape)) + np.eye(
+        *right().shape
+    )
 
 
 OF_MOVES = (
     Mistake(
         "turn-before-move",
-        "your step turns first and drives along the new heading",
+        "your step turns first, and drives along the new heading",
         "eq 3: first the way d along θ, then the turn a",
         move_turn,
-        _along(1.0),
+        _turning(1.0),
     ),
     Mistake(
         "command-for-odometry",
         "your step is the one with the commanded motion in place of the measured one",
         "eq 4: u is what the odometry measured; the command is not used at all",
         commanded,
-        ({"u": _command}, {"u_f": _command}, {"u_f": _command, "u_J": _command}),
+        ({"u": command}, {"u_f": command}, {"u_f": command, "u_J": command}),
     ),
     Mistake(
         "degrees-in-f",
-        "your angle a is in degrees where radians are added to θ",
-        "eq 3: a is in radians, as θ is",
+        "your turn a is in degrees where it is added to θ in radians",
+        "eq 3: θ + a, both in radians",
         move_turn,
-        ({"u_f": _angle(np.degrees)}, {"u": _angle(np.degrees)}),
+        ({"u_f": angle(np.degrees)}, {"u": angle(np.degrees)}),
+    ),
+    Mistake(
+        "radians-twice",
+        "your turn a is taken from degrees to radians, but it is in radians already",
+        "eq 3: θ + a, both in radians",
+        move_turn,
+        ({"u": angle(np.radians)}, {"u_f": angle(np.radians)}),
+    ),
+    Mistake(
+        "degrees-in-cosine",
+        "your cosine and sine are given θ in degrees",
+        "eq 3: d cos θ and d sin θ, θ in radians",
+        move_turn,
+        _along(lambda θ, _: np.degrees(θ)),
     ),
     Mistake(
         "middle-heading",
         "your way goes along the heading in the middle of the turn, θ + a/2",
         "eq 3: first the way d along θ, then the turn a",
         move_turn,
-        _along(0.5),
+        _turning(0.5),
+    ),
+    Mistake(
+        "turn-for-heading",
+        "your way goes in the direction a of the turn, not along the heading θ",
+        "eq 3: d cos θ and d sin θ",
+        move_turn,
+        _along(lambda _, a: a),
+    ),
+    Mistake(
+        "sine-for-cosine",
+        "your sine and cosine are exchanged in f: x + d sin θ, y + d cos θ",
+        "eq 3: x + d cos θ, y + d sin θ",
+        move_turn,
+        (
+            {"f": _SINE_FIRST},
+            {"f": _SINE_FIRST, "F": _exchanged_slope, "G": exchanged},
+        ),
+    ),
+    Mistake(
+        "y-sign",
+        "your y grows where it should shrink: y − d sin θ",
+        "eq 3: y + d sin θ",
+        move_turn,
+        ({"f": _SOUTH}, {"f": _SOUTH, "F": _southward, "G": _southward}),
+    ),
+    Mistake(
+        "turn-sign",
+        "your turn goes the other way round: θ − a",
+        "eq 3: θ + a",
+        moves,
+        ({"f": _entry(2, lambda before, after: 2 * before - after)},),
+    ),
+    Mistake(
+        "turn-forgotten",
+        "your θ stays as it was: the turn is not added",
+        "eq 3: θ + a",
+        moves,
+        ({"f": _entry(2, lambda before, _: before)},),
+    ),
+    Mistake(
+        "not-moved",
+        "your x stays as it was before the move; only P changes",
+        "eq 4: the new estimate is Φ of the old one and of u",
+        moves,
+        ({"mean": lambda s, _: s.x},),
     ),
 )
