@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 from ekfsim.records import Control
 from ekfsim.student.comparing.compare import Compared
-from ekfsim.student.comparing.naming import At, Naming, Seen
+from ekfsim.student.comparing.naming import CLEAN, At, Naming, Seen
 from ekfsim.student.fault import FaultError
-from ekfsim.student.mistakes.guessing import Guess
+from ekfsim.student.mistakes.guessing import Gives, Guess, gives
 from ekfsim.student.mistakes.mistake import Mistake
 
 
@@ -33,9 +33,14 @@ class Found:
         return self.first is None and self.fault is None
 
 
-def found(runs: Iterable[tuple[int, Iterable[Compared]]]) -> Found:
-    """What is found in runs, each with its number. One that fails is the last."""
-    moves, readings = Naming(), Naming()
+def found(
+    runs: Iterable[tuple[int, Iterable[Compared]]], gives: Gives = gives, clean: float = CLEAN
+) -> Found:
+    """What is found in runs, each with its number. One that fails is the last.
+
+    gives, clean : what is taken for the same number, where not all digits are known
+    """
+    moves, readings = Naming(gives, clean), Naming(gives, clean)
     begun = steps = differing = run = 0
     largest, fault = 0.0, None
     first: At | None = None

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from ekfsim.student.comparing.compare import Compared
 from ekfsim.student.comparing.difference import unit
-from ekfsim.student.mistakes.guessing import Guess, fits, guesses
+from ekfsim.student.mistakes.guessing import Gives, Guess, fits, gives, guesses
 from ekfsim.student.mistakes.known import KNOWN
 from ekfsim.student.mistakes.mistake import Mistake
 
@@ -42,6 +42,8 @@ class Naming:
     which explains the most steps, and which would show at none that is right.
     """
 
+    gives: Gives = gives  # what is taken for the same number
+    clean: float = CLEAN
     _alike: dict[frozenset[Guess], Seen] = field(default_factory=dict)
     _candidates: dict[Guess, None] = field(default_factory=dict)  # in the order of their finds
     _witnesses: list[Compared] = field(default_factory=list)
@@ -55,7 +57,7 @@ class Naming:
             self._alike[explained] = Seen(1, at) if before is None else Seen(
                 before.steps + 1, before.first
             )  # fmt: skip
-        elif len(self._witnesses) < WITNESSES and at.step.size < CLEAN:
+        elif len(self._witnesses) < WITNESSES and at.step.size < self.clean:
             self._witnesses.append(at.step)
 
     def explanations(self, at: At) -> list[Guess]:
@@ -85,9 +87,11 @@ class Naming:
         were, and where none does.
         """
         σ = unit(step.right)
-        if step.asked.index == 0 or fits((), step.asked, step.theirs, σ):
+        if step.asked.index == 0 or fits((), step.asked, step.theirs, σ, self.gives):
             return []  # the start; or right equations, beside a reference that has others
-        found = [one for one in self._candidates if fits(one, step.asked, step.theirs, σ)]
+        found = [
+            one for one in self._candidates if fits(one, step.asked, step.theirs, σ, self.gives)
+        ]
         searches = self._searches
         if searches["all"] < SEARCHED or (not found and searches["in vain"] < IN_VAIN):
             searches["all"] += 1
@@ -99,11 +103,11 @@ class Naming:
 
     def _searched(self, step: Compared) -> list[Guess]:
         σ = unit(step.right)
-        alone = [(one,) for one in KNOWN if fits((one,), step.asked, step.theirs, σ)]
+        alone = [(one,) for one in KNOWN if fits((one,), step.asked, step.theirs, σ, self.gives)]
         if alone or self._searches["pairs"] >= IN_PAIRS:
             return list(alone)
         self._searches["pairs"] += 1
-        return guesses(step.asked, step.theirs, σ)
+        return guesses(step.asked, step.theirs, σ, self.gives)
 
     def _best(self, alike: Iterable[Guess]) -> list[Guess]:
         """The guesses that are believed most, in the order of the table."""
@@ -117,7 +121,7 @@ class Naming:
     def _worth(self, guess: Guess) -> tuple[bool, int]:
         """Whether nothing speaks against a guess, and how many steps speak for it."""
         silent = all(
-            fits((mistake,), one.asked, one.theirs, unit(one.right))
+            fits((mistake,), one.asked, one.theirs, unit(one.right), self.gives)
             for mistake in guess
             for one in self._witnesses
             if mistake.where(one.asked)

@@ -1,6 +1,6 @@
 """Which mistakes a student's numbers are those of."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import combinations, product
 
 import numpy as np
@@ -18,38 +18,11 @@ SAME = 1e-9  # σ; numbers that are nearer than this are the same
 LAST_DIGITS = 16 * float(np.finfo(float).eps)  # of a number: what the order of its terms changes
 
 Guess = tuple[Mistake, ...]
+# whether a step with some changes leads to a student's numbers; its last argument is `unit`
+Gives = Callable[[Asked, tuple[Pieces, ...], Answer, Array], bool]
 
 
-def guesses(asked: Asked, theirs: Answer, unit: Array) -> list[Guess]:
-    """The mistakes that reproduce a student's numbers, the most common first; only where no single
-    one does, the pairs that do.
-
-    unit : (n,) σ of each entry of the state, at least 1e-6 m or rad
-    """
-    here = [mistake for mistake in KNOWN if mistake.where(asked)]
-    alone = [(mistake,) for mistake in here if fits((mistake,), asked, theirs, unit)]
-    if alone:
-        return list(alone)
-    return [pair for pair in combinations(here, 2) if fits(pair, asked, theirs, unit)]
-
-
-def fits(mistakes: Guess, asked: Asked, theirs: Answer, unit: Array) -> bool:
-    """Whether a step with these mistakes, all together, has the student's numbers."""
-    return all(mistake.where(asked) for mistake in mistakes) and any(
-        _gives(asked, changes, theirs, unit)
-        for ways in product(*(mistake.ways for mistake in mistakes))
-        for changes in (_orders(ways))
-    )
-
-
-def _orders(ways: tuple[Pieces, ...]) -> Iterator[tuple[Pieces, ...]]:
-    """Changes one upon the other; the other way round as well, where both change one symbol."""
-    yield ways
-    if len(ways) > 1 and any(symbol in ways[1] for symbol in ways[0]):
-        yield ways[::-1]
-
-
-def _gives(asked: Asked, changes: tuple[Pieces, ...], theirs: Answer, unit: Array) -> bool:
+def gives(asked: Asked, changes: tuple[Pieces, ...], theirs: Answer, unit: Array) -> bool:
     """Whether these changes lead to the student's numbers, eq. 12 being written as one likes."""
     with np.errstate(all="ignore"):
         step = Working(asked, *changes)
@@ -61,6 +34,35 @@ def _gives(asked: Asked, changes: tuple[Pieces, ...], theirs: Answer, unit: Arra
             _same_covariance(Working(asked, form, *changes).covariance, theirs.P, unit)
             for form in FORMS
         )
+
+
+def guesses(asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> list[Guess]:
+    """The mistakes that reproduce a student's numbers, the most common first; only where no single
+    one does, the pairs that do.
+
+    unit : (n,) σ of each entry of the state, at least 1e-6 m or rad
+    """
+    here = [mistake for mistake in KNOWN if mistake.where(asked)]
+    alone = [(mistake,) for mistake in here if fits((mistake,), asked, theirs, unit, gives)]
+    if alone:
+        return list(alone)
+    return [pair for pair in combinations(here, 2) if fits(pair, asked, theirs, unit, gives)]
+
+
+def fits(mistakes: Guess, asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> bool:
+    """Whether a step with these mistakes, all together, has the student's numbers."""
+    return all(mistake.where(asked) for mistake in mistakes) and any(
+        gives(asked, changes, theirs, unit)
+        for ways in product(*(mistake.ways for mistake in mistakes))
+        for changes in (_orders(ways))
+    )
+
+
+def _orders(ways: tuple[Pieces, ...]) -> Iterator[tuple[Pieces, ...]]:
+    """Changes one upon the other; the other way round as well, where both change one symbol."""
+    yield ways
+    if len(ways) > 1 and any(symbol in ways[1] for symbol in ways[0]):
+        yield ways[::-1]
 
 
 def _same_mean(asked: Asked, ours: Array, theirs: Array, unit: Array) -> bool:
