@@ -1,6 +1,6 @@
 """Which mistakes a student's numbers are those of."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations, product
 
 import numpy as np
@@ -12,10 +12,11 @@ from ekfsim.records import Reading
 from ekfsim.student.asked import Answer, Asked
 from ekfsim.student.mistakes.known import KNOWN
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.working import FORMS, Pieces, Working
+from ekfsim.student.mistakes.working import FORMS, Pieces, Working, right, usable
 
 SAME = 1e-9  # σ; numbers that are nearer than this are the same
 LAST_DIGITS = 16 * float(np.finfo(float).eps)  # of a number: what the order of its terms changes
+USUAL = 2  # ways of making a mistake that are tried together with another mistake
 
 Guess = tuple[Mistake, ...]
 # whether a step with some changes leads to a student's numbers; its last argument is `unit`
@@ -26,9 +27,9 @@ def gives(asked: Asked, changes: tuple[Pieces, ...], theirs: Answer, unit: Array
     """Whether these changes lead to the student's numbers, eq. 12 being written as one likes."""
     with np.errstate(all="ignore"):
         step = Working(asked, *changes)
-        if not _same_mean(asked, step.result.mean, theirs.x, unit):
+        if not _same_mean(asked, step.mean, theirs.x, unit):
             return False
-        if _same_covariance(step.result.covariance, theirs.P, unit):
+        if _same_covariance(step.covariance, theirs.P, unit):
             return True
         return isinstance(asked.given, Reading) and any(
             _same_covariance(Working(asked, form, *changes).covariance, theirs.P, unit)
@@ -42,41 +43,75 @@ def guesses(asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> 
 
     unit : (n,) σ of each entry of the state, at least 1e-6 m or rad
     """
-    here = [mistake for mistake in KNOWN if mistake.where(asked)]
-    alone = [(mistake,) for mistake in here if fits((mistake,), asked, theirs, unit, gives)]
-    if alone:
-        return list(alone)
-    return [pair for pair in combinations(here, 2) if fits(pair, asked, theirs, unit, gives)]
+    alone = [(one,) for one in KNOWN if fits((one,), asked, theirs, unit, gives)]
+    return list(alone) or _pairs(asked, theirs, unit, gives)
 
 
 def fits(mistakes: Guess, asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> bool:
     """Whether a step with these mistakes, all together, has the student's numbers."""
-    return all(mistake.where(asked) for mistake in mistakes) and any(
+    ways = [mistake.ways for mistake in mistakes]
+    return (
+        all(mistake.where(asked) for mistake in mistakes)
+        and usable(asked)
+        and _made(ways, asked, theirs, unit, gives)
+    )
+
+
+def _pairs(asked: Asked, theirs: Answer, unit: Array, gives: Gives) -> list[Guess]:
+    """The pairs of mistakes that show in this step, each made in one of its most usual ways."""
+    if not usable(asked):
+        return []
+    same = Answer(*right(asked))
+    showing = {
+        mistake: [way for way in mistake.ways[:USUAL] if not _shows_nothing(asked, way, same, unit)]
+        for mistake in KNOWN
+        if mistake.where(asked)
+    }
+    return [
+        pair
+        for pair in combinations(showing, 2)
+        if _made([showing[mistake] for mistake in pair], asked, theirs, unit, gives)
+    ]
+
+
+def _shows_nothing(asked: Asked, way: Pieces, same: Answer, unit: Array) -> bool:
+    return gives(asked, (way,), same, unit)
+
+
+def _made(
+    mistakes: Sequence[Sequence[Pieces]], asked: Asked, theirs: Answer, unit: Array, gives: Gives
+) -> bool:
+    """Whether some way of making each of these mistakes leads to the numbers."""
+    return any(
         gives(asked, changes, theirs, unit)
-        for ways in product(*(mistake.ways for mistake in mistakes))
-        for changes in (_orders(ways))
+        for ways in product(*mistakes)
+        for changes in _orders(ways)
     )
 
 
 def _orders(ways: tuple[Pieces, ...]) -> Iterator[tuple[Pieces, ...]]:
     """Changes one upon the other; the other way round as well, where both change one symbol."""
     yield ways
-    if len(ways) > 1 and any(symbol in ways[1] for symbol in ways[0]):
+    if len(ways) > 1 and not ways[0].keys().isdisjoint(ways[1]):
         yield ways[::-1]
 
 
 def _same_mean(asked: Asked, ours: Array, theirs: Array, unit: Array) -> bool:
-    apart = theirs - ours
-    for i in asked.headings:
-        apart[i] = wrap(apart[i])
-    return bool(np.all(np.abs(apart) <= SAME * unit + LAST_DIGITS * np.abs(theirs)))
+    """Headings may be unwrapped. Number by number: most are told by the first of them."""
+    for i, (x, other, σ) in enumerate(
+        zip(theirs.tolist(), ours.tolist(), unit.tolist(), strict=True)
+    ):
+        near = SAME * σ + LAST_DIGITS * abs(x)
+        apart = x - other
+        if i in asked.headings and not abs(apart) <= near:
+            apart = float(wrap(np.array(apart)))
+        if not abs(apart) <= near:  # nan is not near
+            return False
+    return True
 
 
 def _same_covariance(ours: Array, theirs: Array, unit: Array) -> bool:
     """As it is, or made symmetric afterwards."""
     unit = np.maximum(unit, np.sqrt(np.abs(np.diag(theirs))))
     allowed = SAME * np.outer(unit, unit)
-    return bool(
-        np.all(np.abs(theirs - ours) <= allowed)
-        or np.all(np.abs(theirs - symmetric(ours)) <= allowed)
-    )
+    return any(bool(np.all(np.abs(theirs - P) <= allowed)) for P in (ours, symmetric(ours)))

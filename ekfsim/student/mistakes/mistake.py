@@ -8,7 +8,7 @@ import numpy as np
 
 from ekfsim.filters.belief import Gaussian
 from ekfsim.student.asked import Asked
-from ekfsim.student.mistakes.working import Pieces, Working
+from ekfsim.student.mistakes.working import Pieces, Working, usable
 
 Where = Callable[[Asked], bool]
 
@@ -25,7 +25,7 @@ class Mistake:
 
     def applied(self, asked: Asked) -> Gaussian | None:
         """What a filter with this mistake alone makes of the step; None where it cannot be made."""
-        return outcome(asked, self.ways[0]) if self.where(asked) else None
+        return outcome(asked, self.ways[0]) if self.where(asked) and usable(asked) else None
 
 
 def outcome(asked: Asked, *changes: Pieces) -> Gaussian | None:

@@ -49,6 +49,13 @@ def _first_wall(crossed: Crossed, _: Working) -> int:
 
 def _look(s: Working, x: Array, heading: Heading, choice: Choice) -> Seen:
     """Follow a beam from x as textbooks do: the lines of all walls, and one of the crossings."""
+    seen: Seen = s.model.once(
+        (heading, choice, x.tobytes(), s.z.tobytes()), lambda: _follow(s, x, heading, choice)
+    )
+    return seen
+
+
+def _follow(s: Working, x: Array, heading: Heading, choice: Choice) -> Seen:
     walls = s.laser.walls
     a, b = walls.segments[:, 0], walls.segments[:, 1]
     along = heading(x[2], s.laser.bearing)
@@ -100,7 +107,7 @@ def _likeliest(crossed: Crossed, s: Working) -> int:
 
 def _upright(s: Working, right: Callable[[], Array]) -> Array:
     """The shortest way to the wall, r cos of the angle to its normal: 1/cos is |∂r/∂p|."""
-    shortest: Array = right() / np.hypot(*s.sensor.H(s.x_h)[0, :2])
+    shortest: Array = right() / np.hypot(*s.model.H(s.x_h)[0, :2])
     return shortest
 
 

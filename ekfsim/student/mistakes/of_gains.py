@@ -35,8 +35,8 @@ def _number(s: Working) -> float:
 
 def _anew(s: Working) -> tuple[Array, Array]:
     """K and H at the estimate after the update."""
-    H = s.sensor.H(s.mean)
-    R = s.sensor.R(s.mean)
+    x = s.x + s.K @ s.innovation
+    H, R = s.model.H(x), s.model.R(x)
     return gain_of_moments(s.P @ H.T, H @ s.P @ H.T + R), H
 
 

@@ -5,7 +5,6 @@ from collections.abc import Callable
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.student.mistakes.mistake import Mistake
 from ekfsim.student.mistakes.of_moves import angle, command
 from ekfsim.student.mistakes.steps import commanded, everywhere, move_turn, moves, wandering
@@ -26,10 +25,8 @@ def _variances(of: Callable[[float, float, float, float], tuple[float, float]]) 
     """P_u from d, a and their ratios."""
 
     def M(s: Working, _: Callable[[], Array]) -> Array:
-        motion = s.motion
-        assert isinstance(motion, MoveTurn)
         d, a = s.u_M
-        return np.diag(np.array(of(d, a, motion.distance_ratio, motion.angle_ratio)))
+        return np.diag(np.array(of(d, a, s.robot.distance_ratio, s.robot.angle_ratio)))
 
     return M
 

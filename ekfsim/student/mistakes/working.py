@@ -11,10 +11,12 @@ from ekfsim.filters.arithmetic.algebra import gain_of_moments, symmetric, wrappe
 from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array
 from ekfsim.models.layout import INERTIAL, POSE, SPEED_POSE
+from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.protocols import Motion, Sensor
 from ekfsim.models.sensors.laser import Laser
-from ekfsim.records import Control, Reading
+from ekfsim.records import Control
 from ekfsim.student.asked import Asked
+from ekfsim.student.mistakes.recalling import Recalling, recalling
 
 Rule = Callable[["Working"], Array]
 # what a mistake has in place of a symbol; its second argument gives what stood there before
@@ -31,11 +33,11 @@ MOTION: Mapping[str, Rule] = MappingProxyType(
         "u_M": lambda s: s.u,  # that the noise is taken of
         "x_F": lambda s: s.x,  # where F is taken
         "x_G": lambda s: s.x,  # where G is taken
-        "f": lambda s: s.motion.f(s.x, s.u_f),  # eq. 4
-        "F": lambda s: s.motion.F(s.x_F, s.u_J),  # eq. 6
-        "G": lambda s: s.motion.G(s.x_G, s.u_J),  # eq. 6
-        "M": lambda s: s.motion.M(s.u_M),  # eq. 1
-        "Q": lambda s: np.asarray(s.motion.Q(s.u)),
+        "f": lambda s: s.model.f(s.x, s.u_f),  # eq. 4
+        "F": lambda s: s.model.F(s.x_F, s.u_J),  # eq. 6
+        "G": lambda s: s.model.G(s.x_G, s.u_J),  # eq. 6
+        "M": lambda s: s.model.M(s.u_M),  # eq. 1
+        "Q": lambda s: np.asarray(s.model.Q(s.u)),
         "spread": lambda s: s.F @ s.P @ s.F.T,
         "noise": lambda s: s.G @ s.M @ s.G.T,
         "mean": lambda s: s.f,
@@ -50,10 +52,10 @@ READING: Mapping[str, Rule] = MappingProxyType(
         "x_h": lambda s: s.x,  # where h is taken
         "x_H": lambda s: s.x,
         "x_R": lambda s: s.x,
-        "h": lambda s: s.sensor.h(s.x_h),  # eq. 8
-        "H": lambda s: s.sensor.H(s.x_H),  # eq. 11
-        "R": lambda s: s.sensor.R(s.x_R),  # eq. 11
-        "innovation": lambda s: s.sensor.residual(s.z, s.h),  # eq. 9
+        "h": lambda s: s.model.h(s.x_h),  # eq. 8
+        "H": lambda s: s.model.H(s.x_H),  # eq. 11
+        "R": lambda s: s.model.R(s.x_R),  # eq. 11
+        "innovation": lambda s: s.model.residual(s.z, s.h),  # eq. 9
         "S": lambda s: s.H @ s.P @ s.H.T + s.R,  # eq. 11
         "cross": lambda s: s.P @ s.H.T,
         "K": lambda s: gain_of_moments(s.cross, s.S),  # eq. 11, 0 where S = 0
@@ -82,9 +84,10 @@ class Working:
     """The working of one step. A symbol is worked out when it is first asked for: `s.K`."""
 
     asked: Asked
+    model: Recalling
 
     def __init__(self, asked: Asked, *changes: Pieces) -> None:
-        self.asked = asked
+        self.asked, self.model = asked, recalling(model_of(asked))
         rules = dict(MOTION if isinstance(asked.given, Control) else READING)
         for pieces in changes:
             for symbol, piece in pieces.items():
@@ -98,23 +101,16 @@ class Working:
         return value
 
     @property
-    def motion(self) -> Motion:
-        """The motion that the filter is given."""
-        assert isinstance(self.asked.given, Control)
-        return self.asked.given.motion
-
-    @property
-    def sensor(self) -> Sensor:
-        """The sensor whose reading the filter is given."""
-        assert isinstance(self.asked.given, Reading)
-        return self.asked.given.sensor
+    def robot(self) -> MoveTurn:
+        """The motion, where it is the classroom's."""
+        assert isinstance(self.model.model, MoveTurn)
+        return self.model.model
 
     @property
     def laser(self) -> Laser:
         """The sensor, where it is the classroom's."""
-        sensor = self.sensor
-        assert isinstance(sensor, Laser)
-        return sensor
+        assert isinstance(self.model.model, Laser)
+        return self.model.model
 
     @property
     def given_numbers(self) -> Array:
@@ -128,17 +124,8 @@ class Working:
         return places_of(self.asked)
 
     @property
-    def used(self) -> bool:
-        """Whether there is something to be used: an input, or a reading and a prediction of it."""
-        if isinstance(self.asked.given, Control):
-            return True
-        return bool(np.isfinite(self.z).all() and np.isfinite(self.h).all())
-
-    @property
     def result(self) -> Gaussian:
-        """The belief after the step; that before it, where the reading cannot be used."""
-        if not self.used:
-            return Gaussian(self.asked.x, self.asked.P)
+        """The belief after the step."""
         return Gaussian(wrapped(np.array(self.mean), self.asked.headings), self.covariance)
 
 
@@ -149,8 +136,26 @@ def places_of(asked: Asked) -> tuple[int, int, int]:
     return next((layout.places for layout in layouts if len(layout.names) == n), POSE.places)
 
 
+def model_of(asked: Asked) -> Motion | Sensor:
+    """The motion or the sensor that the filter is given."""
+    given = asked.given
+    return given.motion if isinstance(given, Control) else given.sensor
+
+
+def usable(asked: Asked) -> bool:
+    """Whether something can be made of it: an input, or a reading and a prediction of it."""
+    given = asked.given
+    if isinstance(given, Control):
+        return True
+    return bool(np.isfinite(given.z).all() and np.isfinite(given.sensor.h(asked.x)).all())
+
+
 def right(asked: Asked) -> Gaussian:
-    """What the EKF makes of the step: eqs 4 and 7, or 8 to 12."""
+    """What the EKF makes of the step: eqs 4 and 7, or 8 to 12. A reading that cannot be used leaves
+    the belief as it was.
+    """
+    if not usable(asked):
+        return Gaussian(asked.x, asked.P)
     x, P = Working(asked).result
     return Gaussian(x, symmetric(P))
 
