@@ -5,6 +5,7 @@ streams, signals, exit statuses, and mistakes told in sentences.
 import atexit
 import gc
 import os
+import re
 import shutil
 import signal
 import sys
@@ -154,8 +155,10 @@ def width() -> int | None:
 
 
 def _placed(line: str) -> bool:
-    """Whether a line begins with file:line:col, which an editor wants to find at its very start."""
-    return line.count(":") > 2 and line.split(":")[1].isdigit() and line.split(":")[2].isdigit()
+    """Whether a line begins with file:line:col, or, of a student's code, with file.py:line: an
+    editor wants to find it at its very start.
+    """
+    return re.match(r"[^:]*:\d+:\d+:|[^:]*\.py:\d+: ", line) is not None
 
 
 class _UnreadError(Exception):
