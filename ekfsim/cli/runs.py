@@ -1,7 +1,8 @@
 """The commands that play one run: play, render, run, record."""
 
 import sys
-from contextlib import ExitStack
+from contextlib import ExitStack, redirect_stderr
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -74,8 +75,10 @@ def render(
     scene, tally = scene_of(**chosen), Tally()
     warn(boxes(texts(scene)))
     first, *others = scene.alone()
+    names = scene.filter, *scene.beside
     runs = (kept(steps_of(first), [tally.write]), *map(steps_of, others))
-    extent = limits.of_all(scene, runs, confidence)
+    with redirect_stderr(StringIO()):  # what a filter prints it prints again as it is drawn
+        extent = limits.of_all(scene, runs, confidence)
     pictures = animation.number_of_pictures(tally.views, every)
     with click.progressbar(
         length=pictures, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()
@@ -86,7 +89,7 @@ def render(
             bar.update(1)
 
         animation.render(
-            together(steps_of(first), map(steps_of, others)), scene, extent, out,
+            together(steps_of(first), map(steps_of, others), names), scene, extent, out,
             look=Look(confidence, conditional), every=every, force=force, progress=made_one,
         )  # fmt: skip
     click.echo(f"{in_a_line(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
@@ -122,11 +125,12 @@ def run(
         for one, result, files in zip(alone, results, outputs.for_each(scene), strict=True):
             sinks = stack.enter_context(files.open(one, confidence, result))
             runs.append(kept(result.following(steps_of(one)), [sink.write for sink in sinks]))
-        for view in together(runs[0], runs[1:]):
+        for view in together(runs[0], runs[1:], (scene.filter, *scene.beside)):
             heed()
             if not quiet:
                 sys.stdout.write(narrate(view, scene, confidence, explain))
-    (sys.stderr if outputs.on_stdout() else sys.stdout).write(conclude_all(scene, results, quiet))
+    told = conclude_all(scene, results, quiet, view.apart)
+    (sys.stderr if outputs.on_stdout() else sys.stdout).write(told)
 
 
 @click.command(short_help="Write the simulated run of COMMANDS as a recorded log.")

@@ -7,15 +7,22 @@ from ekfsim.filters.variants.shadows import ShadowsAlone
 
 
 def kind_of(name: str) -> Kind:
-    """The filter of that name, or at that place.
+    """The filter of that name, built-in or registered, or at that place.
 
-    Raises UsageError where there is no such place, FaultError where its code fails.
+    Raises UsageError where there is none, FaultError where its code fails.
     """
     if name in FILTERS:
         return FILTERS[name]
     from ekfsim.student.own.choice import own  # the door to filters of one's own
 
     return own(name)
+
+
+def registered() -> list[str]:
+    """The names under which installed packages register filters; built-in names win."""
+    from ekfsim.student.own.choice import registered_names
+
+    return [name for name in registered_names() if name not in FILTERS]
 
 
 def begun(name: str, beginning: Beginning) -> Filter:

@@ -105,17 +105,21 @@ def filters_in(text: str, option: str = "--filter") -> tuple[str, ...]:
 def filter_in(name: str, option: str) -> str:
     """The filter that a name or a place means. Raises UsageError where it means none."""
     from ekfsim.filters import FILTERS
-    from ekfsim.filters.choice import kind_of
+    from ekfsim.filters.choice import kind_of, registered
 
     if name in FILTERS:
         return name
-    if is_place(name):
-        place = absolute(name)
-        kind_of(place)
-        return place
-    near = f"{name}.py" if os.path.isfile(f"{name}.py") else nearest(name, list(FILTERS))
-    known = f"known: {', '.join(FILTERS)}, or one of your own: FILE.py"
-    right = f"did you mean '{near}'?" if near else known
+    known = [*FILTERS, *registered()]
+    if is_place(name) or name in known:
+        name = absolute(name)
+        kind_of(name)
+        return name
+    if os.path.isdir(name):
+        raise UsageError(f"{option} {short(name)}: is a folder; name a file in it: FILE.py")
+    near = f"{name}.py" if os.path.isfile(f"{name}.py") else nearest(name, known)
+    right = f"known: {', '.join(known)}, or one of your own: FILE.py"
+    if near:
+        right = f"did you mean '{near}'?"
     raise UsageError(f"{option} {short(name)}: there is no such filter; {right}")
 
 

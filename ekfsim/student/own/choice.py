@@ -1,7 +1,10 @@
 """The filter that a place stands for, as filters/choice.py asks for it."""
 
+import sys
+from contextlib import redirect_stderr
 from dataclasses import dataclass
 from functools import partial
+from io import StringIO
 from typing import ClassVar
 
 from ekfsim.filters.protocol import Beginning, Filter
@@ -9,6 +12,7 @@ from ekfsim.student.own.calls import InProcess
 from ekfsim.student.own.filter import OwnFilter
 from ekfsim.student.own.forms import Whole
 from ekfsim.student.own.loading import load
+from ekfsim.student.own.loading import registered_names as registered_names
 from ekfsim.student.own.whole import WholeFilter
 
 
@@ -27,7 +31,17 @@ class Own:
         return OwnFilter.around(partial(InProcess, code), beginning)
 
 
-def own(place: str) -> Own:
-    """The filter at a place. Raises UsageError where there is none, FaultError where it fails."""
-    load(place)
-    return Own(place)
+def own(name: str) -> Own:
+    """The filter at a place, or that of a registered name. What it prints as it is loaded it prints
+    again as its run begins.
+
+    Raises UsageError where there is none, FaultError where it fails.
+    """
+    printed = StringIO()
+    try:
+        with redirect_stderr(printed):
+            load(name)
+    except BaseException:
+        sys.stderr.write(printed.getvalue())
+        raise
+    return Own(name)

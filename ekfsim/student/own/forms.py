@@ -116,7 +116,8 @@ def _checked(form: Form, told: str) -> Form:
         if not _takes(function, (*taken, "self") if of else taken):
             place = where(function)
             right = f"write {step}({of}{', '.join(taken)})"
-            raise UsageError(f"{place or told}: {step}{_signature(function)}; {right}")
+            wrong = f"{step}{_signature(function)} does not take what it is given"
+            raise UsageError(f"{place or told}: {wrong}; {right}")
     if isinstance(form, Stateful) and not _takes(form.kind, ("x", "P")):
         place = where(form.kind.__init__)  # type: ignore[misc]
         wrong = f"{form.kind.__name__}{_signature(form.kind)} is not begun with x and P"

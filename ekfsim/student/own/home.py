@@ -118,6 +118,8 @@ def words_of(error: BaseException) -> str:
         text = f"{text[:MOST_WORDS]}…"
     if isinstance(error, HandedError):
         return text
+    if isinstance(error, SystemExit):
+        return f"it calls exit({text}); a filter returns"
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 

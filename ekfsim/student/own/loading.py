@@ -7,12 +7,15 @@ import os
 import sys
 import warnings
 from dataclasses import dataclass
+from importlib.metadata import entry_points
 from types import ModuleType
 
 from ekfsim.errors import UsageError
-from ekfsim.filters.place import is_file, label, parts
+from ekfsim.filters.place import is_file, is_place, label, parts
 from ekfsim.student.own.forms import Form, form_of
 from ekfsim.student.own.home import Home, shown
+
+GROUP = "ekfsim.filters"  # of entry points
 
 
 @dataclass(frozen=True)
@@ -31,8 +34,26 @@ def load(place: str) -> Code:
     Raises UsageError where there is no such place or no filter in it, FaultError where its code
     fails.
     """
+    if not is_place(place):
+        place = registered(place)
     file, name = parts(place)
     return _of_file(os.path.abspath(file), name) if is_file(place) else _of_module(file, name)
+
+
+def registered(name: str) -> str:
+    """The place that an installed package registered under a name. Raises UsageError."""
+    places = sorted({point.value for point in entry_points(group=GROUP, name=name)})
+    if len(places) > 1:
+        right = f"name one of them: {' or '.join(places)}"
+        raise UsageError(f"{name}: {len(places)} packages register it; {right}")
+    if not places:
+        raise UsageError(f"{name}: there is no such filter")
+    return places[0]
+
+
+def registered_names() -> list[str]:
+    """The names that installed packages register filters under; none of them is loaded."""
+    return sorted({point.name for point in entry_points(group=GROUP)})
 
 
 def _of_file(path: str, name: str) -> Code:

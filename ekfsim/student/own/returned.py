@@ -61,6 +61,8 @@ def looked_at(x: Any, P: Any, n: int) -> Answer:
 
 def numbers(name: str, value: Any) -> Array:
     """An array of real numbers, a copy. Raises WrongError where it is none."""
+    if value is None:
+        raise WrongError(f"{name} is None, not an array of numbers")
     try:
         if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
             raise WrongError(f"{name} holds masked values; it is to hold numbers")
@@ -70,14 +72,24 @@ def numbers(name: str, value: Any) -> Array:
     except WrongError:
         raise
     except Exception:
-        raise WrongError(
-            f"{name} is no array of numbers: its entries have different shapes"
-        ) from None
+        raise WrongError(f"{name} is no array of numbers: {_uneven(name, value)}") from None
     if array.dtype.kind == "c":
         raise WrongError(f"{name} holds complex numbers; write {name}.real where they should be")
+    if array.dtype.kind in "US":
+        raise WrongError(f"{name} holds text where numbers should be")
     if array.dtype.kind not in "iuf":
         raise WrongError(f"{name} is {a_kind(value)}, not an array of numbers")
     return np.array(array, float)
+
+
+def _uneven(name: str, value: Any) -> str:
+    """Which entry is shaped otherwise than the first."""
+    try:
+        first, *rest = (np.shape(entry) for entry in value)
+        i, shape = next((i, one) for i, one in enumerate(rest, 1) if one != first)
+    except Exception:
+        return "its entries have different shapes"
+    return f"{name}[0] has the shape {first}, {name}[{i}] the shape {shape}"
 
 
 def one_of(name: str, part: Any) -> float:

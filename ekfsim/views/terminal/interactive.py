@@ -7,6 +7,8 @@ import os
 import shutil
 import sys
 from collections.abc import Callable
+from contextlib import redirect_stderr
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -21,7 +23,7 @@ from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import Look, get_ready
 from ekfsim.views.terminal import drawing as terminal
 from ekfsim.views.terminal.keyboard import Key, Keyboard, keys
-from ekfsim.views.terminal.playback import View
+from ekfsim.views.terminal.playback import UntilFailure, View
 from ekfsim.views.terminal.player import Player, Screen
 
 if TYPE_CHECKING:
@@ -46,9 +48,9 @@ def play_interactively(
     window_wanted = show == "window" or (show == "auto" and _window_available())
     if show == "window" and not _window_available():
         raise UsageError(_why_no_window())
-    extent = limits.of_all(
-        scene, (itertools.islice(play(one), LOOK_AHEAD) for one in scene.alone()), look.probability
-    )
+    ahead = (UntilFailure(itertools.islice(play(one), LOOK_AHEAD)) for one in scene.alone())
+    with redirect_stderr(StringIO()):  # what a filter prints it prints again as it is watched
+        extent = limits.of_all(scene, ahead, look.probability)
     pictures = Pictures(scene, extent, look, out, force)
     window: Window | None = None
     screen: Screen

@@ -1,17 +1,22 @@
 """One press of `n` is one view; `p` is a list index."""
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
 from ekfsim.commands import Move, Untold
+from ekfsim.errors import StepError
+from ekfsim.files.results.outputs import kept
 from ekfsim.filters.belief import Belief, Gaussian, posed
 from ekfsim.geometry import Array
 from ekfsim.models.layout import Layout
 from ekfsim.records import Control, Reading, Step
+from ekfsim.views.terminal.parting import Apart, Parting
 
+T = TypeVar("T")
 GATHERED = 200  # motion inputs of a driven or recorded robot in one view, at most
 
 
@@ -36,6 +41,7 @@ class View:
     since: float | None = None  # s, the instant of the first of the steps, as stamped
     start: float = 0.0  # s, the stamp of the start
     others: tuple["View", ...] = ()  # the same view as other filters have it, that watch beside
+    apart: tuple[Apart, ...] = ()  # of each of them: whether it believes something else
 
     @property
     def belief(self) -> Belief:
@@ -87,11 +93,24 @@ def views(steps: Iterable[Step]) -> Iterator[View]:
         )
 
 
-def together(steps: Iterable[Step], others: Iterable[Iterable[Step]]) -> Iterator[View]:
-    """Every view of a run, with what other filters make of the same entries."""
-    first, *beside = (views(each) for each in (steps, *others))
+def together(
+    steps: Iterable[Step], others: Iterable[Iterable[Step]], names: Sequence[str] = ()
+) -> Iterator[View]:
+    """Every view of a run, with what other filters make of the same entries.
+
+    names : of the filters, as the scene has them; told where they part
+    """
+    partings = [Parting(names[0], name) for name in names[1:]]
+    first = views(kept(steps, [parting.take for parting in partings]))
+    held = itertools.zip_longest(others, partings)
+    beside = [views(each if p is None else kept(each, [p.hold])) for each, p in held]
     for view, *same in zip(first, *beside, strict=True):
-        yield replace(view, others=tuple(same)) if same else view
+        if not same:
+            yield view
+            continue
+        index = view.step.entry.index - (1 if view.beam else 0)  # what is shown of it
+        apart = tuple(parting.until(index) for parting in partings)
+        yield replace(view, others=tuple(same), apart=apart)
 
 
 def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, Step, int]]:
@@ -101,7 +120,8 @@ def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, Step, int]]:
     first: Step | None = None
     last: Step | None = None
     inputs = 0
-    for step in steps:
+    coming = UntilFailure(steps)
+    for step in coming:
         gathered = _gathered(step)
         if first is not None and last is not None and not gathered:
             yield first, last, inputs
@@ -115,6 +135,8 @@ def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, Step, int]]:
             first = None
     if first is not None and last is not None:
         yield first, last, inputs
+    if coming.failure is not None:
+        raise coming.failure
 
 
 def _gathered(step: Step) -> bool:
@@ -127,6 +149,21 @@ def _gathered(step: Step) -> bool:
 def _position(belief: Belief, layout: Layout) -> Array:
     """The estimated position : (2,) m"""
     return layout.pose(belief.mean)[:2]
+
+
+class UntilFailure(Iterator[T]):
+    """What comes before a run fails, if it does; the failure is kept."""
+
+    def __init__(self, coming: Iterable[T]) -> None:
+        self._coming = iter(coming)
+        self.failure: StepError | None = None
+
+    def __next__(self) -> T:
+        try:
+            return next(self._coming)
+        except StepError as failure:
+            self.failure = failure
+            raise StopIteration from None
 
 
 class Tally:
@@ -144,11 +181,24 @@ class Tally:
 
 
 class Playback:
-    """The views of a run by number, computed when first asked for and kept for the way back."""
+    """The views of a run by number, computed when first asked for and kept for the way back.
 
-    def __init__(self, steps: Iterable[Step], others: Iterable[Iterable[Step]] = ()) -> None:
-        self._coming = together(steps, others)
+    A run that fails ends before its `failure`.
+    """
+
+    def __init__(
+        self,
+        steps: Iterable[Step],
+        others: Iterable[Iterable[Step]] = (),
+        names: Sequence[str] = (),
+    ) -> None:
+        self._coming = UntilFailure(together(steps, others, names))
         self._seen: list[View] = []
+
+    @property
+    def failure(self) -> StepError | None:
+        """What the run failed by, once what comes before it has been asked for."""
+        return self._coming.failure
 
     def __iter__(self) -> Iterator[View]:
         """Every view, from the first to the last."""

@@ -7,6 +7,7 @@ from typing import Protocol, TextIO
 from ekfsim.diagnostics.summary import Summary
 from ekfsim.files.results.outputs import kept
 from ekfsim.localization import play
+from ekfsim.printable import shown
 from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.views.terminal.keyboard import HELP, Action, Counted, Key
@@ -48,7 +49,7 @@ class Player:
         self._summaries = [Summary.of(one) for one in alone]
         runs = (steps, *map(play, alone[1:]))
         first, *others = (kept(run, [s.add]) for run, s in zip(runs, self._summaries, strict=True))
-        self.playback = Playback(first, others)
+        self.playback = Playback(first, others, (self.scene.filter, *self.scene.beside))
 
     def play(self, next_key: Callable[[], Key]) -> None:
         """From the first view until a key quits."""
@@ -61,6 +62,8 @@ class Player:
                 continue
             action, count = pressed
             if action is Action.QUIT:
+                if self.playback.failure is not None:
+                    raise self.playback.failure
                 return
             self.press(action, count)
             self.out.flush()
@@ -99,7 +102,8 @@ class Player:
             self.number = view.number
             self._tell(view)
         if self.number == start:
-            self._stay("The run is over: q quits, p goes back, r starts again")
+            over = "is over" if self.playback.failure is None else "failed here"
+            self._stay(f"The run {over}: q quits, p goes back, r starts again")
         else:
             self.told_to_stay = False
             self.screen.show(self._view(self.number))
@@ -117,10 +121,14 @@ class Player:
         self.screen.show(self._view(number))
 
     def _tell(self, view: View) -> None:
-        """The narrative of a view, and after the last one the closing summary."""
+        """The narrative of a view, and after the last one the closing summary, or what failed."""
         self.out.write(self._narrated(view))
-        if self.playback.view(view.number + 1) is None:
-            self.out.write(conclude_all(self.scene, self._summaries))
+        if self.playback.view(view.number + 1) is not None:
+            return
+        if self.playback.failure is not None:
+            self.out.write(f"The run failed: {shown(self.playback.failure)}\n")
+        else:
+            self.out.write(conclude_all(self.scene, self._summaries, parted=view.apart))
 
     def _narrated(self, view: View) -> str:
         return narrate(view, self.scene, self.probability, self.explain)

@@ -66,6 +66,11 @@ def _measured(entry: Entry, inputs: int) -> str:
 
 def notes(view: View, scene: Scene, read: Beam | Sight | None) -> list[str]:
     """What is to be seen in this view, a paragraph each."""
+    parted = [apart.told for apart in view.apart if apart.since is not None]
+    return [*_notes(view, scene, read), *parted]
+
+
+def _notes(view: View, scene: Scene, read: Beam | Sight | None) -> list[str]:
     step, given = view.step, view.step.entry.given
     match step.entry.command:
         case Say(text):

@@ -11,6 +11,7 @@ from ekfsim.filters.belief import Refused
 from ekfsim.filters.chi_square import quantile
 from ekfsim.records import Nees
 from ekfsim.scene import Scene
+from ekfsim.views.terminal.parting import Apart
 from ekfsim.views.words.numbers import number, turn
 from ekfsim.views.words.text_table import aligned
 
@@ -33,9 +34,14 @@ def conclude(summary: Summary) -> str:
     return "".join(f"{line}\n" for line in [*lines, f"Verdict: {sentence(summary.evidence)}"])
 
 
-def conclude_all(scene: Scene, summaries: Sequence[Summary], quiet: bool = False) -> str:
+def conclude_all(
+    scene: Scene,
+    summaries: Sequence[Summary],
+    quiet: bool = False,
+    parted: Sequence[Apart] = (),
+) -> str:
     """The same where several filters watched:
-    side by side, and a verdict on each unless it is to be quiet.
+    side by side, where they parted, and a verdict on each unless it is to be quiet.
     """
     if len(summaries) == 1:
         return conclude(summaries[0])
@@ -44,6 +50,7 @@ def conclude_all(scene: Scene, summaries: Sequence[Summary], quiet: bool = False
         f"The run is over after {_done(first)}; "
         f"{len(names)} filters side by side (RMSE in m, degrees):",
         *_table(names, summaries),
+        *(apart.told for apart in parted),
     ]
     told = (
         f"{name}: {sentence(summary.evidence)}"

@@ -56,7 +56,8 @@ def narrate(view: View, scene: Scene, probability: float = 0.954, explain: bool 
             )
         case _:
             text = opening(scene) + form.words + _start(view, scene, probability)
-    return shown(f"{text}\n")
+    parted = (apart.told for apart in view.apart if apart.since == step.entry.index)
+    return shown("".join([text, *(f"{told}\n" for told in parted), "\n"]))
 
 
 def _start(view: View, scene: Scene, probability: float) -> str:
