@@ -129,5 +129,8 @@ def shown(file: str) -> str:
     >>> shown(os.path.abspath("mine.py"))
     'mine.py'
     """
-    here = os.path.join(os.getcwd(), "")
+    try:
+        here = os.path.join(os.getcwd(), "")
+    except FileNotFoundError:  # somebody has deleted it
+        return os.path.basename(file)
     return file.removeprefix(here)

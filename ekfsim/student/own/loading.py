@@ -26,6 +26,7 @@ class Code:
     form: Form
     home: Home
     source: str | None = None  # the text of its file
+    module: ModuleType | None = None  # all that stands in it
 
 
 def load(place: str) -> Code:
@@ -71,7 +72,8 @@ def _of_file(path: str, name: str) -> Code:
             home.blame(error, f"{shown(path)}:1")
     told = f"{shown(path)}:{name}" if name else shown(path)
     text = source.decode(errors="replace")
-    return Code(label(f"{path}:{name}" if name else path), form_of(module, name, told), home, text)
+    shown_as = label(f"{path}:{name}" if name else path)
+    return Code(shown_as, form_of(module, name, told), home, text, module)
 
 
 def _of_module(module_name: str, name: str) -> Code:
@@ -90,7 +92,7 @@ def _of_module(module_name: str, name: str) -> Code:
     place = f"{module_name}:{name}"
     top = getattr(sys.modules[module_name.partition(".")[0]], "__file__", None) or ""
     home.root = os.path.join(os.path.dirname(top), "") if "__init__" in top else top
-    return Code(place, form_of(module, name, place), home)
+    return Code(place, form_of(module, name, place), home, module=module)
 
 
 def _read(path: str) -> bytes:

@@ -13,7 +13,8 @@ from types import FrameType
 from typing import Any
 
 from ekfsim.student.fault import FaultError
-from ekfsim.student.sandbox.exchange import ANSWER, FAULT, HEAD, Message, fault, packed
+from ekfsim.student.sandbox.exchange import HEAD, answered, faulted
+from ekfsim.student.sandbox.kernel import fence, give_up_privileges
 from ekfsim.student.sandbox.limits import ALONE, Limits, keep_to
 
 
@@ -22,9 +23,9 @@ def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits)
     _prepare(asked, limits)
     from ekfsim.student.sandbox.calling import Requests  # NumPy comes after the limits
 
-    label = os.path.basename(asked["place"])
-    requested = Requests(asked["place"], label, asked["provided"])
-    rung = _alarm(limits)
+    fenced = fence(asked["folder"], [*asked["read"], sys.prefix, sys.base_prefix])
+    requested = Requests(asked["place"], asked["provided"], fenced)
+    label, rung = os.path.basename(asked["place"]), _alarm(limits)
     read, write, loads, alarm = os.read, os.write, json.loads, signal.setitimer
     while True:
         length, _, mark = HEAD.unpack(_read(read, requests, HEAD.size))
@@ -32,23 +33,20 @@ def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits)
         rung.clear()
         try:
             alarm(signal.ITIMER_REAL, seconds)
-            kind, content = ANSWER, getattr(requested, what)(*told)
-            alarm(signal.ITIMER_REAL, 0)
+            message = answered(getattr(requested, what)(*told), mark)
         except FaultError as error:
-            wrong = limits.too_long if rung else error.wrong
-            kind, content = FAULT, fault(error.place, wrong)
+            message = faulted(error.place, limits.too_long if rung else error.wrong, mark)
         except BaseException as error:  # sys.exit among them
-            kind, content = FAULT, fault(label, f"{type(error).__name__}: {error}")
+            message = faulted(label, f"{type(error).__name__}: {error}", mark)
         finally:
             alarm(signal.ITIMER_REAL, 0)
         _flush()
-        _write(write, answers, packed(Message(kind, mark, content)))
+        _write(write, answers, message)
 
 
 def _prepare(asked: Mapping[str, Any], limits: Limits) -> None:
-    """Nothing of whoever started this but the folder, and no more than the limits."""
-    nowhere = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nowhere, 0)
+    """Nothing of whoever started this but the folder, no privileges, no more than the limits."""
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)  # what is printed does not go where answers go
     os.environ.clear()
     os.environ.update(dict.fromkeys(ALONE, "1"))
@@ -56,6 +54,7 @@ def _prepare(asked: Mapping[str, Any], limits: Limits) -> None:
     os.environ["HOME"] = os.environ["TMPDIR"] = asked["folder"]
     sys.argv[:] = [asked["place"]]
     keep_to(limits)
+    give_up_privileges()
 
 
 def _alarm(limits: Limits) -> list[int]:

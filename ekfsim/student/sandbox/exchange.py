@@ -1,21 +1,25 @@
 """What goes between the two processes: a head, then text or plain numbers. Nothing is unpickled.
 
-head     16 bytes: how many follow (4), what they are (1), 3 unused, the mark (8)
-request  JSON: what is asked, from whom
-answer   ANSWER: float64, little-endian · FAULT: where and what is wrong, in UTF-8
+    head     16 bytes: how many follow (4), what they are (1), nothing (3), the mark (8)
+    REQUEST  JSON: [seconds, what, [of what]]
+    NUMBERS  float64, the lowest byte first
+    WORDS    UTF-8
+    FAULT    UTF-8: where, and what is wrong
 
 The mark is drawn anew for each request: what comes without it was written before it was asked for,
 or by somebody else.
 """
 
 import struct
+from collections.abc import Sequence
 from typing import NamedTuple
 
 HEAD = struct.Struct("<IB3x8s")
-REQUEST, ANSWER, FAULT = range(3)
-MOST_NUMBERS = 2**20  # bytes of one answer
-MOST_WORDS = 4000  # bytes of one fault
-SEPARATOR = "\0"  # between where and what
+REQUEST, NUMBERS, WORDS, FAULT = range(4)
+MOST = {NUMBERS: 2**20, WORDS: 4000, FAULT: 4000}  # bytes of what is answered
+BETWEEN = "\0"  # where and what
+
+Numbers = Sequence[float]
 
 
 class Message(NamedTuple):
@@ -32,12 +36,20 @@ def packed(message: Message) -> bytes:
     return HEAD.pack(len(content), kind, mark) + content
 
 
-def fault(place: str, wrong: str) -> bytes:
-    """The content of a fault."""
-    return f"{place}{SEPARATOR}{wrong}".encode(errors="replace")[:MOST_WORDS]
+def answered(answer: Numbers | str, mark: bytes) -> bytes:
+    """An answer as it goes over."""
+    if isinstance(answer, str):
+        return packed(Message(WORDS, mark, answer.encode(errors="replace")[: MOST[WORDS]]))
+    return packed(Message(NUMBERS, mark, struct.pack(f"<{len(answer)}d", *answer)))
+
+
+def faulted(place: str, wrong: str, mark: bytes) -> bytes:
+    """A fault as it goes over."""
+    content = f"{place}{BETWEEN}{wrong}".encode(errors="replace")
+    return packed(Message(FAULT, mark, content[: MOST[FAULT]]))
 
 
 def fault_of(content: bytes) -> tuple[str, str]:
     """Where, and what is wrong."""
-    place, _, wrong = content.decode(errors="replace").partition(SEPARATOR)
+    place, _, wrong = content.decode(errors="replace").partition(BETWEEN)
     return place, wrong

@@ -14,13 +14,16 @@ MOST_FILES = 2000
 MOST_BYTES = 64 * 2**20
 
 
-def copy_of(submission: Path) -> Path:
+def copy_of(submission: Path, shared: bool = False) -> Path:
     """A fresh folder with a copy of a file, or of all that is in a folder; links stay links.
 
+    shared : whether other users are to read it
     Raises FaultError where it is too much or cannot be read.
     """
     folder = Path(tempfile.mkdtemp(prefix="ekfsim-"))
     try:
+        if shared:
+            folder.chmod(0o755)
         if submission.is_dir():
             _copy(submission, folder)
         else:

@@ -2,8 +2,8 @@
 
 It holds no number of a student's and calls nothing of his. On Linux all that loses its parent below
 it becomes its child (PR_SET_CHILD_SUBREAPER), whatever session it has gone to: when it has no child
-left, nothing is left. It ends when the code's process does, or when the other end of the exchange
-is closed, be it because the parent was killed.
+left, nothing is left. It ends when the code's process does, when it is told to (SIGTERM), or when
+the other end of the exchange is closed, be it because the parent was killed.
 """
 
 import os
@@ -15,9 +15,9 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Any
 
+from ekfsim.student.sandbox.kernel import SET_CHILD_SUBREAPER, SET_PDEATHSIG, prctl
 from ekfsim.student.sandbox.limits import Limits
 
-SET_PDEATHSIG, SET_CHILD_SUBREAPER = 1, 36  # of prctl(2)
 TICK = 0.2  # s between two looks at how many processes there are
 KILLING = 5.0  # s; by then whoever can be killed is dead
 TOO_MANY = 255  # the status that tells of too many processes
@@ -29,13 +29,13 @@ def main(asked: Mapping[str, Any]) -> None:
     Ends with its status, 128 + n where signal n ended it, or TOO_MANY.
     """
     requests, answers, limits = os.dup(0), os.dup(1), Limits(**asked["limits"])
-    _prctl(SET_CHILD_SUBREAPER, 1)
+    prctl(SET_CHILD_SUBREAPER, 1)
     keeper = os.getpid()
     student = os.fork()
     if student == 0:
         try:
             os.setsid()
-            _prctl(SET_PDEATHSIG, signal.SIGKILL)
+            prctl(SET_PDEATHSIG, signal.SIGKILL)
             if os.getppid() == keeper:
                 from ekfsim.student.sandbox.answering import serve
 
@@ -45,9 +45,18 @@ def main(asked: Mapping[str, Any]) -> None:
     nowhere = os.open(os.devnull, os.O_RDWR)
     for descriptor in (0, 1, 2, answers):  # or nobody would see the other end close
         os.dup2(nowhere, descriptor)
-    status = _seen_to_its_end(student, requests, limits)
+    signal.signal(signal.SIGTERM, _enough)
+    try:
+        status = _seen_to_its_end(student, requests, limits)
+    except InterruptedError:
+        status = 0
     _end_all(student)
     os._exit(status)
+
+
+def _enough(number: int, frame: object) -> None:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    raise InterruptedError
 
 
 def _seen_to_its_end(student: int, requests: int, limits: Limits) -> int:
@@ -104,11 +113,3 @@ def descendants(ancestor: int) -> Iterator[int]:
         below = children.get(waiting.pop(), [])
         yield from below
         waiting.extend(below)
-
-
-def _prctl(option: int, value: int) -> None:
-    """Ask the kernel for what Python has no function for; elsewhere than on Linux there is none."""
-    if sys.platform == "linux":
-        import ctypes
-
-        ctypes.CDLL(None).prctl(option, value, 0, 0, 0)

@@ -20,24 +20,26 @@ from typing import Any
 import numpy as np
 
 import ekfsim
+from ekfsim.errors import RunError, UsageError
+from ekfsim.printable import in_a_line, short
 from ekfsim.student.fault import FaultError
 from ekfsim.student.sandbox.exchange import (
-    ANSWER,
     FAULT,
     HEAD,
-    MOST_NUMBERS,
-    MOST_WORDS,
+    MOST,
+    NUMBERS,
     REQUEST,
     Message,
     fault_of,
     packed,
 )
-from ekfsim.student.sandbox.keeper import TOO_MANY
+from ekfsim.student.sandbox.keeper import KILLING, TOO_MANY, descendants
 from ekfsim.student.sandbox.limits import ALONE, Limits
 
+STARTING = 60.0  # s in which Python and NumPy have started even on a busy machine
 GRACE = 0.25  # s beyond its time in which it can still say where it was
-ENDING = 2.0  # s in which the keeper ends what there is
 CHUNK = 2**16
+FORGED = "writes to the exchange itself; only what a function returns counts"
 START = """\
 import json, sys
 asked = json.loads(sys.argv[1])
@@ -46,43 +48,52 @@ sys.path[at:at] = asked["paths"]
 from ekfsim.student.sandbox.keeper import main
 main(asked)
 """
-PATHS = [str(Path(module.__file__ or "").parents[1]) for module in (ekfsim, np)]
+PACKAGES = [Path(module.__file__ or "").parent for module in (ekfsim, np)]
 
 
 class Process:
     """A process with a student's code, from its start to its end.
 
-    through : words of a command that it is begun through, such as ("sudo", "-u", "nobody")
+    through : words of a command that it is begun through, such as ("sudo", "-u", "nobody"); where
+    the last is a python, it is that which is begun
     """
 
     def __init__(
         self, place: str, folder: Path, provided: Sequence[str] | None, limits: Limits,
-        through: Sequence[str] = (),
+        through: Sequence[str],
     ) -> None:  # fmt: skip
-        self._label, self._limits, self._left = os.path.basename(place), limits, limits.seconds
-        self.ended = False
+        self._label, self._limits, self._left = os.path.basename(place), limits, STARTING
+        self.ended = self._closed = False
         self._came = bytearray()  # of the exchange, not yet read
         self._kept, self._printed = bytearray(), 0
         asked = {
-            "place": place, "folder": str(folder), "provided": provided, "paths": PATHS,
+            "place": place, "folder": str(folder), "provided": provided,
+            "paths": [str(package.parent) for package in PACKAGES],
+            "read": list(map(str, map(_installed, PACKAGES))),
             "limits": dataclasses.asdict(limits),
         }  # fmt: skip
-        self._process = subprocess.Popen(
-            [*through, sys.executable, "-I", "-X", "utf8", "-c", START, json.dumps(asked)],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            cwd=folder, env=dict.fromkeys(ALONE, "1"), start_new_session=True, bufsize=0,
-        )  # fmt: skip
+        self._process = _begun(through, folder, json.dumps(asked))
         pipes = self._process.stdin, self._process.stdout, self._process.stderr
         self._requests, self._answers, self._prints = (pipe.fileno() for pipe in pipes if pipe)
+        self._wait = select.poll()
         for pipe in (self._requests, self._answers, self._prints):
             os.set_blocking(pipe, False)
-        self._wait = select.poll()
-        self._wait.register(self._answers, select.POLLIN)
-        self._wait.register(self._prints, select.POLLIN)
+        for pipe in (self._answers, self._prints):
+            self._wait.register(pipe, select.POLLIN)
+        try:
+            _, self.fenced = map(int, np.frombuffer(self.ask("hello")))
+        except FaultError as fault:  # none of the student's: his code has not been read yet
+            self.end()
+            told = short(in_a_line(" ".join(self.printed[0].split()[-30:])), 200)
+            begun = f"the process for a student's code, through {' '.join(through) or 'nothing'}"
+            raise RunError(f"{begun}: {fault.wrong}{told and f'; it says: {told}'}") from None
+        self._left = limits.seconds
 
-    def ask(self, what: str, *told: Any) -> bytes:
-        """The numbers that it answers. Raises FaultError for whatever else comes of it."""
+    def ask(self, what: str, *told: Any, kind: int = NUMBERS) -> bytes:
+        """What it answers, of that kind. Raises FaultError for whatever else comes of it."""
         began = time.monotonic()
+        if self._left <= 0:
+            raise self.refused(self._limits.too_long)
         self._take(0)
         if self._came:
             raise self.refused("answers before it was asked")
@@ -97,6 +108,8 @@ class Process:
             if self._left <= 0:
                 self.end()
             raise FaultError(*fault_of(answer.content))
+        if answer.kind != kind:
+            raise self.refused(FORGED)
         return answer.content
 
     def _send(self, message: bytes, began: float) -> None:
@@ -109,25 +122,26 @@ class Process:
                 if message:
                     self._take(self._remaining(began))
         except BrokenPipeError:
-            raise self._ended() from None
+            raise self._lost() from None
         finally:
-            self._wait.unregister(self._requests)
+            if not self.ended:
+                self._wait.unregister(self._requests)
 
     def _answer(self, mark: bytes, began: float) -> Message:
         """Its answer, if it is one."""
         while True:
             if len(self._came) >= HEAD.size:
                 length, kind, theirs = HEAD.unpack_from(self._came)
-                most = {ANSWER: MOST_NUMBERS, FAULT: MOST_WORDS}.get(kind, -1)
-                if theirs != mark or length > most:
-                    raise self.refused("writes to the exchange itself; only what it returns counts")
+                if theirs != mark or length > MOST.get(kind, -1):
+                    raise self.refused(FORGED)
                 end = HEAD.size + length
                 if len(self._came) >= end:
                     content = bytes(self._came[HEAD.size : end])
                     del self._came[:end]
                     return Message(kind, mark, content)
-            if not self._take(self._remaining(began)):
-                raise self._ended()
+            if self._closed:
+                raise self._lost()
+            self._take(self._remaining(began))
 
     def _remaining(self, began: float) -> float:
         """Seconds that are left to it. Raises FaultError where there are none."""
@@ -136,8 +150,8 @@ class Process:
             raise self.refused(self._limits.too_long)
         return left
 
-    def _take(self, seconds: float) -> bool:
-        """Wait for what it writes or prints, and take it in; False where it answers no more."""
+    def _take(self, seconds: float) -> None:
+        """Wait for what it writes or prints, and take it in."""
         for pipe, _ in self._wait.poll(seconds * 1000):
             if pipe == self._requests:
                 continue
@@ -147,41 +161,40 @@ class Process:
                 continue
             if not part:
                 self._wait.unregister(pipe)
-            if pipe == self._answers:
-                self._came += part
-                if not part:
-                    return False
-                if len(self._came) > HEAD.size + MOST_NUMBERS:
-                    raise self.refused("writes to the exchange itself; only what it returns counts")
-            else:
+            if pipe == self._prints:
                 self._printed += len(part)
                 self._kept += part[: max(0, 4 * self._limits.printed - len(self._kept))]
-        return True
+                continue
+            self._came += part
+            self._closed |= not part
+            if len(self._came) > HEAD.size + MOST[NUMBERS]:
+                raise self.refused(FORGED)
 
     def refused(self, wrong: str) -> FaultError:
         """What it did is no answer: it is ended, and not asked again."""
         self.end()
         return FaultError(self._label, wrong)
 
-    def _ended(self) -> FaultError:
+    def _lost(self) -> FaultError:
         """It has ended, or closed the exchange, where it should have answered."""
         try:
             status = self._process.wait(GRACE)
         except subprocess.TimeoutExpired:
             return self.refused("closed the exchange instead of answering")
-        self.end()
         limits = self._limits
         if status == TOO_MANY:
             wrong = f"started more than {limits.processes} processes"
-        elif status in (128 + signal.SIGXCPU, 128 + signal.SIGKILL):
-            wrong = f"was killed: more than {limits.cpu_seconds} s of CPU"
+        elif status == 128 + signal.SIGXCPU:
+            wrong = f"took more than {limits.cpu_seconds} s of CPU"
+        elif status == 128 + signal.SIGKILL:
+            wrong = "was killed: by itself, or for want of memory, or for what it took of CPU"
         elif status > 128:
             wrong = f"crashed: {signal.strsignal(status - 128)}"
         elif status < 0:
             wrong = "killed the process that watches over it"
         else:
             wrong = f"ended its process with status {status} instead of answering"
-        return FaultError(self._label, wrong)
+        return self.refused(wrong)
 
     @property
     def printed(self) -> tuple[str, int]:
@@ -190,14 +203,42 @@ class Process:
 
     def end(self) -> None:
         """Kill it, and all that it started."""
-        self.ended = True
-        process = self._process
+        if self.ended:
+            return
+        self.ended, process = True, self._process
         for pipe in (process.stdin, process.stdout, process.stderr):
             if pipe is not None:
                 pipe.close()
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            process.terminate()
         try:
-            process.wait(ENDING)
-        except subprocess.TimeoutExpired:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
+            process.wait(KILLING + 1)
+        except subprocess.TimeoutExpired:  # the keeper has been stopped, or cannot kill
+            for one in (*descendants(process.pid), process.pid):
+                with contextlib.suppress(ProcessLookupError, PermissionError):
+                    os.kill(one, signal.SIGKILL)
+            process.wait(1)
+
+
+def _begun(through: Sequence[str], folder: Path, asked: str) -> "subprocess.Popen[bytes]":
+    """The process, or what it is begun through. Raises UsageError where there is no such thing."""
+    alone = dict.fromkeys(ALONE, "1")
+    command = [sys.executable, "-I", "-X", "utf8", "-c", START, asked]
+    words = [word.replace("{folder}", str(folder)) for word in through]
+    if words and os.path.basename(words[-1]).startswith("python"):
+        command[0:1] = words
+    elif words:
+        command[0:0] = [*words, "env", "-i", *(f"{name}={value}" for name, value in alone.items())]
+    try:
+        return subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            cwd=folder, env=None if through else alone, start_new_session=True, bufsize=0,
+        )  # fmt: skip
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise UsageError(f"{in_a_line(command[0])}: cannot be started: {reason}") from None
+
+
+def _installed(package: Path) -> Path:
+    """What is read where a package stands: all that is installed beside it, else itself."""
+    return package.parent if package.parent.name.endswith("-packages") else package

@@ -1,6 +1,7 @@
 """A caller whose student's code runs in a process of its own."""
 
 import math
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
@@ -8,11 +9,13 @@ from typing import Any, Self
 
 import numpy as np
 
+from ekfsim.errors import UsageError
 from ekfsim.geometry import Array
 from ekfsim.printable import in_a_line, short, shown
 from ekfsim.records import Control, Reading
-from ekfsim.student.asked import Answer, Asked
+from ekfsim.student.asked import Answer, Asked, Caller
 from ekfsim.student.fault import FaultError
+from ekfsim.student.sandbox.exchange import NUMBERS, WORDS
 from ekfsim.student.sandbox.folder import copy_of, remove
 from ekfsim.student.sandbox.limits import Limits
 from ekfsim.student.sandbox.process import Process
@@ -43,36 +46,45 @@ class Sandboxed:
         limits: Limits = Limits(),  # noqa: B008  frozen
         through: Sequence[str] = (),
     ) -> None:
+        if os.name != "posix":
+            raise UsageError(
+                "a student's code is kept to no limits on this system; grade on Linux or macOS, "
+                "on Windows in WSL"
+            )
         self._submission, self._provided = submission, provided
         self._file = (file or submission.name) + (f":{name}" if name else "")
         self._limits, self._through = limits, through
-        self._teller = Teller()
+        self.teller = Teller()
         self._folder: Path | None = None
         self._process: Process | None = None
         self._fatal: tuple[str, str] | None = None
+        self._runs = 0
+        self._own = self.new_caller()
 
-    def begin(self, x: Array, P: Array) -> None:
+    def new_caller(self) -> Caller:
+        """One more caller of the same process, for a run beside others."""
+        self._runs += 1
+        return _Run(self, self._runs - 1)
+
+    def begin(self, x: Array, P: Array) -> Answer | None:
         """A run begins with this belief; whatever the code kept of an earlier run is forgotten."""
-        self._ask("begin", x.tolist(), P.ravel().tolist())
+        return self._own.begin(x, P)
 
     def call(self, asked: Asked) -> Answer:
         """What the code makes of a motion input or a reading. Raises FaultError."""
-        n = len(asked.x)
-        match asked.given:
-            case Control(motion, u):
-                slot, value, moves = self._teller.slot(motion), u, True
-            case Reading(sensor, z):
-                slot, value, moves = self._teller.slot(sensor), z, False
-        content = self._ask(
-            "call", self._teller.new(), slot, asked.x.tolist(), asked.P.ravel().tolist(),
-            value.tolist(), asked.headings, moves,
-        )  # fmt: skip
-        if len(content) != 8 * (n + n * n):
-            raise self._refused("answers with another number of numbers than was asked for")
-        numbers = np.frombuffer(content, "<f8")
-        if not all(map(math.isfinite, numbers.tolist())):
-            raise self._refused("answers with what is no finite number")
-        return Answer(numbers[:n].copy(), numbers[n:].reshape(n, n).copy())
+        return self._own.call(asked)
+
+    def place_of(self, given: Control | Reading) -> str:
+        """file:line of the code that answers to it."""
+        return self._own.place_of(given)
+
+    def derivative(self, name: str, x: Array, given: Control | Reading) -> Array:
+        """What the student's own function F, G or H returns. Raises FaultError."""
+        n, told = len(x), self.teller.told(given)
+        inputs = len(told[2])
+        rows, columns = {"F": (n, n), "G": (n, inputs), "H": (inputs, n)}[name]
+        numbers = self.numbers((rows * columns,), "derivative", name, x.tolist(), told)
+        return numbers.reshape(rows, columns)
 
     @property
     def printed(self) -> str:
@@ -81,8 +93,13 @@ class Sandboxed:
             return ""
         text, size = self._process.printed
         kept = text[: self._limits.printed]
-        more = size - len(kept.encode(errors="replace"))
+        more = size - len(kept.encode())
         return shown(kept) + (f"… and {more} bytes more" if more > 0 else "")
+
+    @property
+    def fenced(self) -> int:
+        """Which version of Landlock is around it, 0 for none; see docs/safety.md."""
+        return (self._process or self._begun()).fenced
 
     def close(self) -> None:
         """End the process and all that it started, and delete its folder."""
@@ -103,33 +120,70 @@ class Sandboxed:
     ) -> None:
         self.close()
 
-    def _ask(self, what: str, *told: Any) -> bytes:
-        """The numbers that it answers. Raises FaultError."""
+    def numbers(self, allowed: tuple[int, ...], what: str, *told: Any) -> Array:
+        """Finite numbers that it answers, as many as is allowed. Raises FaultError."""
+        content = self._ask(NUMBERS, what, *told)
+        numbers = np.frombuffer(content[: len(content) // 8 * 8], "<f8").copy()
+        if len(content) // 8 in allowed and all(map(math.isfinite, numbers.tolist())):
+            return numbers
+        assert self._process is not None
+        raise self._told(self._process.refused("answers something else than was asked"))
+
+    def words(self, what: str, *told: Any) -> str:
+        """Words that it answers, as they stand in a line. Raises FaultError."""
+        answer = self._ask(WORDS, what, *told).decode(errors="replace")
+        return short(in_a_line(answer), MOST_PLACE)
+
+    def _ask(self, kind: int, what: str, *told: Any) -> bytes:
         if self._fatal is not None:
             raise FaultError(*self._fatal)
-        process = self._process or self._begun()
         try:
-            return process.ask(what, *told)
+            return (self._process or self._begun()).ask(what, *told, kind=kind)
         except FaultError as fault:
             raise self._told(fault) from None
 
     def _begun(self) -> Process:
-        self._folder = copy_of(self._submission)
+        self._folder = copy_of(self._submission, shared=bool(self._through))
         place = str(self._folder / self._file)
         self._process = Process(place, self._folder, self._provided, self._limits, self._through)
         return self._process
 
-    def _refused(self, wrong: str) -> FaultError:
-        """What it answered cannot be used, and was not made by our side of it."""
-        assert self._process is not None
-        return self._told(self._process.refused(wrong))
-
     def _told(self, fault: FaultError) -> FaultError:
         """The same fault, whatever its words hold; kept, where the process has ended by it."""
-        place, wrong = (
-            short(in_a_line(text), most)
-            for text, most in ((fault.place, MOST_PLACE), (fault.wrong, MOST_WORDS))
-        )
-        if self._process is not None and self._process.ended:
+        place = short(in_a_line(fault.place), MOST_PLACE)
+        wrong = short(in_a_line(fault.wrong), MOST_WORDS)
+        if self._process is None or self._process.ended:
             self._fatal = place, wrong
         return FaultError(place, wrong)
+
+
+class _Run:
+    """One run after another of the code in a process that has others beside it."""
+
+    def __init__(self, sandbox: Sandboxed, number: int) -> None:
+        self._sandbox, self._number = sandbox, number
+
+    def begin(self, x: Array, P: Array) -> Answer | None:
+        """A run begins with this belief."""
+        numbers = self._sandbox.numbers(
+            (0, x.size + P.size), "begin", self._number, x.tolist(), P.ravel().tolist()
+        )
+        return _answer(numbers, len(x)) if len(numbers) else None
+
+    def call(self, asked: Asked) -> Answer:
+        """What the code makes of a motion input or a reading."""
+        x, P = asked.x, asked.P
+        told = self._sandbox.teller.told(asked.given)
+        numbers = self._sandbox.numbers(
+            (x.size + P.size,),
+            "call", self._number, x.tolist(), P.ravel().tolist(), told, asked.headings,
+        )  # fmt: skip
+        return _answer(numbers, len(x))
+
+    def place_of(self, given: Control | Reading) -> str:
+        """file:line of the code that answers to it."""
+        return self._sandbox.words("place_of", self._sandbox.teller.told(given))
+
+
+def _answer(numbers: Array, n: int) -> Answer:
+    return Answer(numbers[:n], numbers[n:].reshape(n, n))

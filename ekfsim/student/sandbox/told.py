@@ -10,9 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from ekfsim.records import Control, Reading
+
 MODELS = "ekfsim.models."
 WALLS = "ekfsim.raycast.walls"  # the one part of a model that is no model
 SLOTS = 64
+
+# an input or a reading: models that are new, the number of its own, u or z, whether it is a motion
+Told = tuple[list[tuple[int, Any]], int, list[float], bool]
 
 
 class Teller:
@@ -24,8 +29,18 @@ class Teller:
         self._next = 0
         self._new: list[tuple[int, Any]] = []
 
-    def slot(self, model: Any) -> int:
-        """The number of a model; what it is, is told with the next request."""
+    def told(self, given: Control | Reading) -> Told:
+        """An input or a reading; of its model, what the other side has not been told yet."""
+        match given:
+            case Control(motion, u):
+                slot, value, moves = self._slot(motion), u, True
+            case Reading(sensor, z):
+                slot, value, moves = self._slot(sensor), z, False
+        new, self._new = self._new, []
+        return new, slot, value.tolist(), moves
+
+    def _slot(self, model: Any) -> int:
+        """The number of a model."""
         known = self._slots.get(id(model))
         if known is not None:
             return known
@@ -35,11 +50,6 @@ class Teller:
         self._held[slot], self._slots[id(model)] = model, slot
         self._new.append((slot, told))
         return slot
-
-    def new(self) -> list[tuple[int, Any]]:
-        """What the other side has not been told yet."""
-        new, self._new = self._new, []
-        return new
 
     def _told(self, model: Any) -> list[Any]:
         kind = type(model)
@@ -57,7 +67,7 @@ class Teller:
             case tuple():
                 return ["tuple", [self._value(part) for part in value]]
             case _ if type(value).__module__ == WALLS:  # large, and the same for many sensors
-                return ["slot", self.slot(value)]
+                return ["slot", self._slot(value)]
             case _:
                 return self._told(value)
 
@@ -66,12 +76,15 @@ class Listener:
     """The side that makes them again."""
 
     def __init__(self) -> None:
-        self.models: list[Any] = [None] * SLOTS
+        self._models: list[Any] = [None] * SLOTS
 
-    def hear(self, new: list[tuple[int, Any]]) -> None:
-        """Take in what the other side tells."""
-        for slot, told in new:
-            self.models[slot] = self._made(told)
+    def given(self, told: Told) -> Control | Reading:
+        """What was told."""
+        new, slot, value, moves = told
+        for number, model in new:
+            self._models[number] = self._made(model)
+        kind = Control if moves else Reading
+        return kind(self._models[slot], np.array(value))
 
     def _made(self, told: Any) -> Any:
         match told:
@@ -80,7 +93,7 @@ class Listener:
             case ["tuple", parts]:
                 return tuple(map(self._made, parts))
             case ["slot", slot]:
-                return self.models[slot]
+                return self._models[slot]
             case ["model", str(module), str(name), values] if _ours(module):
                 return getattr(import_module(module), name)(*map(self._made, values))
             case bool() | int() | float() | str():
