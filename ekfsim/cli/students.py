@@ -1,4 +1,4 @@
-"""The commands for students and who teaches them: worksheet."""
+"""The commands for students and who teaches them: mutants, worksheet."""
 
 from pathlib import Path
 from typing import Any
@@ -6,9 +6,11 @@ from typing import Any
 import click
 
 from ekfsim.cli.asked import scene_of
-from ekfsim.cli.kinds import Result, Share
-from ekfsim.cli.options import EXPLAIN, FORCE, scene_options
-from ekfsim.printable import in_a_line
+from ekfsim.cli.kinds import Result, Seed, Share, Whole
+from ekfsim.cli.options import EXPLAIN, FORCE, MOST, MOST_RUNS, scene_options
+from ekfsim.cli.process import heed, width
+from ekfsim.errors import RunError, UsageError
+from ekfsim.printable import in_a_line, shown
 
 
 @click.command(short_help="Write the narrative of COMMANDS with gaps to fill in.")
@@ -40,3 +42,64 @@ def worksheet(
         sheet.write(made.sheet)
         beside.write(made.solution)
     click.echo(in_a_line(f"{out}: {made.gaps} gaps; {solution}: what belongs in them"))
+
+
+@click.command(short_help="Tell which known mistakes COMMANDS expose, by which number.")
+@click.argument("commands", nargs=-1, required=True)
+@click.option("--seed", type=Seed(), help="In place of the files' seeds.")
+@click.option("--run", "run_number", type=Whole(0, MOST), default=0, help="Which run of the seed.")
+@click.option(
+    "--runs",
+    type=Whole(1, MOST_RUNS),
+    metavar="N",
+    help="What statistics of N runs would see of each, too (of one COMMANDS).",
+)
+@click.option("--csv", type=Result(), metavar="FILE", help="Write a table, a row a mistake.")
+@click.option(
+    "--all", "all_of_them", is_flag=True, help="Exit status 1 where one is exposed by none."
+)
+@FORCE
+def mutants(
+    commands: tuple[str, ...], seed: int | None, run_number: int, runs: int | None,
+    csv: Path | None, all_of_them: bool, force: bool,
+) -> None:  # fmt: skip
+    """Tell which known mistakes of students' filters COMMANDS expose: the first step at which a
+    filter with the mistake has other numbers than the right one, and which.
+
+    Of several COMMANDS a matrix is told: a row a mistake, a column a file.
+    """
+    from ekfsim.files.results.writing import refuse_existing, whole_text
+    from ekfsim.student.exposing.exposed import exposed
+    from ekfsim.student.exposing.statistics import with_mistake, without_mistake
+    from ekfsim.student.exposing.table import write_exposed
+    from ekfsim.student.mistakes.known import KNOWN
+    from ekfsim.views.student.exposing import first_of, of_one, of_several
+
+    if runs is not None and len(commands) > 1:
+        raise UsageError("--runs: name one COMMANDS")
+    if csv is not None:
+        refuse_existing(csv, force)
+    scenes = [scene_of(name, seed=seed, run_number=run_number) for name in commands]
+    found = []
+    for scene in scenes:
+        heed()
+        found.append(exposed(scene))
+    right, statistics = None, {}
+    if runs is not None:
+        right = without_mistake(scenes[0], runs)
+        for mistake in KNOWN:
+            heed()
+            statistics[mistake] = with_mistake(scenes[0], mistake, runs)
+    if csv is not None:
+        with whole_text(csv, force) as file:
+            write_exposed(file, scenes, found, statistics)
+    told = (
+        of_one(commands[0], found[0], right, statistics, width())
+        if len(found) == 1
+        else of_several(commands, found, width())
+    )
+    click.echo(shown(told), nl=False)
+    together = (first_of(rows) for rows in zip(*found, strict=True))
+    missed = [one.mistake.name for one in together if one.possible and one.first is None]
+    if all_of_them and missed:
+        raise RunError(f"not exposed: {', '.join(missed)}")

@@ -6,6 +6,7 @@
 
     own/         from the place of a student's code to a filter like any other
     sandbox/     the same code in a process of its own, which can be killed
+    exposing/    which of the known mistakes an input exposes
 
 What its code is given are copies, and what comes back of it is looked at before it is used.
 """

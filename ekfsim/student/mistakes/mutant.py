@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from ekfsim.geometry import Array
+from ekfsim.records import Control, Reading
 from ekfsim.student.asked import Answer, Asked
 from ekfsim.student.mistakes.mistake import Mistake
 from ekfsim.student.mistakes.working import right
@@ -21,6 +22,10 @@ class Mutant:
         """The EKF's step with the mistake, where it can be made."""
         belief = self.mistake.applied(asked)
         return Answer(*(right(asked) if belief is None else belief))
+
+    def place_of(self, given: Control | Reading) -> str:
+        """No file."""
+        return self.mistake.name
 
 
 def mutant(mistake: Mistake) -> Mutant:

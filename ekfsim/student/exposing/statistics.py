@@ -1,0 +1,91 @@
+"""What statistics of many runs alone would see of a filter with a known mistake.
+
+Its own numbers go on from step to step; ν, S and NIS are those of the right equations at its own
+prior, as whoever judges it would calculate them.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ekfsim.diagnostics.nees import nees
+from ekfsim.filters.belief import Gaussian, Refused
+from ekfsim.geometry import Booleans, Integers
+from ekfsim.localization import advance, filter_of, first_belief
+from ekfsim.records import Control, Reading, Step
+from ekfsim.scene import Scene
+from ekfsim.simulation import simulate
+from ekfsim.student.asked import Asked
+from ekfsim.student.comparing.compare import believed
+from ekfsim.student.exposing.exposed import of_the_textbook
+from ekfsim.student.mistakes.mistake import Mistake
+from ekfsim.student.mistakes.mutant import mutant
+from ekfsim.study.block import Watched, follow, instants, length_of, run_block, steps_told
+from ekfsim.study.plan import Case
+from ekfsim.study.results import Result
+from ekfsim.study.verdict import Verdict, Word
+from ekfsim.systems import system_of
+
+
+def without_mistake(scene: Scene, runs: int) -> Result:
+    """What a study says of the runs 0 … runs − 1 of the right filter."""
+    played = of_the_textbook(scene)
+    return Result(Case((), played), run_block(played, 0, runs))
+
+
+def with_mistake(scene: Scene, mistake: Mistake, runs: int) -> Result:
+    """What it says of the same runs of a filter with a mistake."""
+    played, numbers = of_the_textbook(scene), np.arange(runs)
+    start = Watched.empty(numbers, steps_told(length_of(played)))
+    with np.errstate(all="ignore"):  # of beliefs that are none
+        watched = follow(start, instants(_steps(played, mistake, numbers)))
+    return Result(Case((), played), watched.tally())
+
+
+def seen(result: Result) -> str:
+    """What its verdict says against a filter, and is sure of; "" where it says nothing."""
+    verdict = Verdict(result)
+    end, way = verdict.at_end, verdict.on_the_way
+    if end.decided and end.word is not Word.CONSISTENT:
+        return str(end.word.value)
+    return f"{way.word.value} on the way" if way.word is not None and way.decided else ""
+
+
+def _steps(scene: Scene, mistake: Mistake, numbers: Integers) -> Iterator[Step]:
+    """The steps of N runs side by side under a filter with a mistake. numbers : (N,)"""
+    reference, wrong, layout = filter_of(scene, numbers), mutant(mistake), scene.world.layout
+    belief, earlier = first_belief(scene, numbers.shape), dict[int, Asked]()
+    happened = simulate(scene, numbers)
+    for entry in system_of(scene.world.system).entries(happened, scene.reading):
+        step = advance(reference, belief, entry, scene.guard, layout)
+        posterior = Gaussian(belief.mean.copy(), belief.covariance.copy())
+        for run in np.flatnonzero(_handed_over(step, numbers)).tolist():
+            given = _of_run(entry.given, run, numbers)
+            asked = Asked(
+                belief.mean[run], belief.covariance[run], given, layout.headings, entry.command,
+                entry.index, earlier.get(run),
+            )  # fmt: skip
+            earlier[run] = replace(asked, earlier=None)
+            believes = believed(wrong.call(asked), layout)
+            posterior.mean[run], posterior.covariance[run] = believes
+        measured = None if entry.truth is None else nees(posterior, entry.truth, layout)
+        yield replace(step, posterior=posterior, nees=measured)
+        belief = posterior
+
+
+def _handed_over(step: Step, numbers: Integers) -> Booleans:
+    """Which runs' filters are asked something : (N,)"""
+    c = step.correction
+    if c is None:
+        return np.full(numbers.shape, step.entry.given is not None)
+    used: Booleans = (c.refused == Refused.NOT) & ~np.isnan(c.nis)
+    return np.broadcast_to(used, numbers.shape)
+
+
+def _of_run(given: Control | Reading | None, run: int, numbers: Integers) -> Control | Reading:
+    """An input or a reading of one of N runs; one that is alike for all has no axis of theirs."""
+    if isinstance(given, Control):
+        return replace(given, u=np.broadcast_to(given.u, (len(numbers), given.u.shape[-1]))[run])
+    assert given is not None
+    return replace(given, z=np.broadcast_to(given.z, (len(numbers), given.z.shape[-1]))[run])
