@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ekfsim.cli.process import heed, part_with, say
-from ekfsim.errors import EkfsimError
+from ekfsim.errors import EkfsimError, StepError
 
 if TYPE_CHECKING:
     from ekfsim.study.plan import Plan, Task
@@ -48,7 +48,8 @@ def progress(plan: "Plan", journal: "Journal") -> Iterator[Callable[["Task", "Ta
         try:
             yield done
         except EkfsimError as failure:
-            failure.args = ("; ".join(filter(None, (str(failure), kept(journal, total)))),)
+            left = kept(journal, total, isinstance(failure, StepError))
+            failure.args = ("; ".join(filter(None, (str(failure), left))),)
             raise
         except (KeyboardInterrupt, SystemExit):
             part_with(kept(journal, total))
@@ -69,10 +70,18 @@ def blocks_bar(total: int) -> Iterator[Callable[[object, object], None]]:
         yield done
 
 
-def kept(journal: "Journal", total: int) -> str:
-    """What is kept of a study that ends early, and the way on."""
+def kept(journal: "Journal", total: int, failed: bool = False) -> str:
+    """What is kept of a study that ends early, and the way on.
+
+    failed : in the code of a filter, which is another once it is mended
+    """
     if not len(journal):
         return ""
+    if failed:
+        return (
+            f"{len(journal)} of {total} blocks are kept in {journal.path.parent}, made by this "
+            "code: once it is mended, begin anew with --force"
+        )
     if len(journal) == total:
         return f"all blocks are kept in {journal.path.parent}, --resume goes on with the tables"
     return (
@@ -91,9 +100,9 @@ def study_into(
     from ekfsim.files.results.writing import refuse_existing_folder
     from ekfsim.study.running.doing import do, results_of
     from ekfsim.study.running.journal import journal_in, remove
-    from ekfsim.views.study.folder import FILES, write_study
+    from ekfsim.views.study.folder import FILES, copies_in, write_study
 
-    refuse_existing_folder(out, *FILES, force=force)
+    refuse_existing_folder(out, *FILES, *copies_in(out, plan.filters), force=force)
     partial = out.with_name(f"{out.name}.partial")
     with journal_in(partial, plan, resume, force) as journal:
         if resume and not len(journal):

@@ -89,8 +89,9 @@ def compare(
 
         get_ready()
         from ekfsim.views.study.compare_folder import FILES, write_comparison
+        from ekfsim.views.study.folder import copies_in
 
-        refuse_existing_folder(out, *FILES, force=force)
+        refuse_existing_folder(out, *FILES, *copies_in(out, comparison.filters), force=force)
     with blocks_bar(comparison.a.blocks) as done:
         found = total(comparison, comparison.tasks(), engine_of(workers, cluster), done)
     if out is not None:

@@ -1,5 +1,7 @@
 """The filter that a scene names, as its run begins."""
 
+from collections.abc import Mapping
+
 from ekfsim.filters import FILTERS
 from ekfsim.filters.protocol import Beginning, Filter, Kind
 from ekfsim.filters.variants.by_reading import NoiseByReading
@@ -23,6 +25,17 @@ def registered() -> list[str]:
     from ekfsim.student.own.choice import registered_names
 
     return [name for name in registered_names() if name not in FILTERS]
+
+
+def code_of(name: str) -> Mapping[str, bytes]:
+    """The files that a filter of one's own is made of, by their names from its own folder; none
+    of a built-in one. Raises what `kind_of` does.
+    """
+    if name in FILTERS:
+        return {}
+    from ekfsim.student.own.choice import contents
+
+    return contents(name)
 
 
 def begun(name: str, beginning: Beginning) -> Filter:

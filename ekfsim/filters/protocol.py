@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar, Protocol, Self
 
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.filters.tuning import UNTUNED, Tuning
-from ekfsim.geometry import Array, Booleans
+from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.protocols import Motion, Sensor
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ class Beginning:
     tuning: Tuning = UNTUNED  # the numbers that this filter alone may have
     # where the state would be by plan : (T + 1, n); None: no plan is known
     nominal: Callable[[], Array] | None = None
+    runs: Integers | None = None  # (N,) the numbers of runs side by side; None of one alone
 
 
 class Filter(Protocol):

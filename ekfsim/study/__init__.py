@@ -6,5 +6,5 @@ block.py       1024 runs → a Tally                verdict.py      what they sa
 counting.py    the runs at one step → counts      expectation.py  what a scene promises
 tally.py       records that add                   tables.py       CSV
 comparison.py  two settings side by side, by      running/        engines, clusters, the journal
-pairs.py       differences of pairs of runs
+pairs.py       differences of pairs of runs       code.py         that of filters of one's own
 """

@@ -12,6 +12,7 @@ from ekfsim.errors import UsageError
 from ekfsim.files.scenes.filter_checks import refuse_unread
 from ekfsim.files.scenes.load_study import FILTER, Request
 from ekfsim.files.scenes.settings import Setting, filters_in, setting
+from ekfsim.study.code import of_same_code
 from ekfsim.study.pairs import Pairs, Shared, Sums, run_pairs
 from ekfsim.study.plan import Plan, Task, way_of
 from ekfsim.study.results import Share, Z
@@ -51,11 +52,17 @@ class Comparison:
     def block(self, case: int) -> Callable[[int, int], Pairs]:
         """What becomes of pairs of runs: a function of the first and of how many."""
         a, b = self.a.cases[case].scene, self.b.cases[case].scene
-        return functools.partial(run_pairs, a, b, way=way_of(self.a.request))
+        block = functools.partial(run_pairs, a, b, way=way_of(self.a.request))
+        return of_same_code(block, {**self.a.codes, **self.b.codes})
 
     def tasks(self) -> Iterator[Task]:
         """Every block, in order."""
         return self.a.tasks_of(0)
+
+    @property
+    def filters(self) -> tuple[str, ...]:
+        """Of both sides, each once."""
+        return tuple(dict.fromkeys((*self.a.filters, *self.b.filters)))
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -93,10 +100,10 @@ def told_side(text: str, option: str) -> tuple[Setting, ...]:
             )
         key, _, value = (word.strip() for word in part.partition("="))
         if key == FILTER:
-            filters_in(value, f"{option} {FILTER}")
-        found.append(
-            Setting(FILTER, value, f"{option} {part}") if key == FILTER else setting(part, option)
-        )
+            (named,) = filters_in(value, f"{option} {FILTER}")
+            found.append(Setting(FILTER, named, f"{option} {part}"))
+        else:
+            found.append(setting(part, option))
     for n, one in enumerate(found):
         if one.key in [other.key for other in found[:n]]:
             raise UsageError(f"{option} {text}: '{one.key}' is set twice; keep one of them")

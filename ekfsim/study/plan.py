@@ -5,7 +5,7 @@ runs.
 import functools
 import hashlib
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -19,9 +19,11 @@ from ekfsim.files.scenes.one_file import read
 from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.source import as_written, bytes_of
 from ekfsim.files.yaml.parsing import parse
+from ekfsim.filters.place import label
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import BLOCK
 from ekfsim.study.block import run_block
+from ekfsim.study.code import digests, of_same_code
 from ekfsim.study.tally import Tally
 from ekfsim.twins import Way, compiles, taken
 from ekfsim.version import VERSION
@@ -45,8 +47,8 @@ class Case:
 
     @property
     def filter(self) -> str:
-        """The name of the filter."""
-        return self.scene.filter
+        """What people call the filter."""
+        return label(self.scene.filter)
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,12 @@ class Plan:
     @property
     def filters(self) -> tuple[str, ...]:
         """The filters that watch, in their order."""
-        return tuple(dict.fromkeys(case.filter for case in self.cases))
+        return tuple(dict.fromkeys(case.scene.filter for case in self.cases))
+
+    @property
+    def called(self) -> tuple[str, ...]:
+        """What people call them."""
+        return tuple(map(label, self.filters))
 
     def tasks(self) -> Iterator[Task]:
         """Every block of every case, in the order in which they are put together."""
@@ -126,7 +133,18 @@ class Plan:
 
     def block(self, case: int) -> Callable[[int, int], Tally]:
         """What becomes of runs of a case: a function of the first and of how many."""
-        return functools.partial(run_block, self.cases[case].scene, way=way_of(self.request))
+        scene = self.cases[case].scene
+        block = functools.partial(run_block, scene, way=way_of(self.request))
+        return of_same_code(block, self.code_of(scene.filter))
+
+    @functools.cached_property
+    def codes(self) -> Mapping[str, str]:
+        """The code of each filter of one's own as a word, as it was when this was first asked."""
+        return digests(self.filters)
+
+    def code_of(self, filter: str) -> Mapping[str, str]:
+        """The same of one filter alone."""
+        return {name: code for name, code in self.codes.items() if name == filter}
 
     @property
     def blocks(self) -> int:
@@ -142,7 +160,8 @@ class Plan:
             "world": _digest(world_of(request)),
             "runs": request.runs,
             "seed": self.seed,
-            "filters": ",".join(self.filters),
+            "filters": ",".join(self.called),
+            "code": " ".join(f"{label(name)} {code}" for name, code in self.codes.items()),
             "sweep": " ".join(
                 f"{values[0].key}={','.join(one.value for one in values)}"
                 for values in request.sweep

@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TextIO
 
+from ekfsim.printable import cell
 from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
 from ekfsim.study.verdict import Verdict, Word
@@ -48,7 +49,7 @@ def write_steps(file: TextIO, plan: Plan, results: Iterable[Result]) -> None:
 
 
 def _case(result: Result) -> list[str]:
-    return [*(one.value for one in result.case.values), result.case.filter]
+    return [*(one.value for one in result.case.values), str(cell(result.case.filter))]
 
 
 def _at(at: AtStep) -> list[str]:

@@ -129,7 +129,8 @@ def test_the_options_of_either_side_win_over_those_of_both():
         ),
         (
             ["--b", "filter=oracle"],
-            f"--b filter oracle: there is no such filter; known: {', '.join(FILTERS)}",
+            f"--b filter oracle: there is no such filter; known: {', '.join(FILTERS)}, or one of "
+            "your own: FILE.py",
         ),
         (["--b", "gate=2"], "--b gate=2: "),
         (
@@ -155,7 +156,8 @@ def test_mistakes_in_a_file_of_a_comparison_are_told_at_their_place(place):
     (place / "compare.yaml").write_text("study: short.yaml\na: {gaurd: off}\nb: {filter: oracle}\n")
     assert ekfsim("compare", "compare.yaml").err.splitlines() == [
         "compare.yaml:2:5: a: unknown key 'gaurd'; did you mean 'guard'?",
-        f"compare.yaml:3:13: b.filter: 'oracle' is no filter; known: {', '.join(FILTERS)}",
+        f"compare.yaml:3:13: b.filter: 'oracle' is no filter; known: {', '.join(FILTERS)}, or one "
+        "of your own: FILE.py",
     ]
 
 

@@ -352,7 +352,7 @@ def test_a_study_file_is_overruled_by_options(place):
                                  "more"),
         ("runs: 100", "run: 100", "s.yaml:2:1: unknown key 'run'; did you mean 'runs'?"),
         ("[ekf, ukf]", "[ekf, ufk]", f"s.yaml:3:10: filters: 'ufk' is no filter; known: "
-                                     f"{', '.join(FILTERS)}"),
+                                     f"{', '.join(FILTERS)}, or one of your own: FILE.py"),
         ("0.05]", "[1]]", "s.yaml:5:33: sweep.noise.rangeSigmaRatio[1]: a list stands where a "
                           "number or a word "
          "belongs; write e.g. 0.02"),

@@ -22,6 +22,8 @@ from ekfsim.files.keys.system import SystemName
 from ekfsim.filters.tuning import MOST_PARTICLES, CrossCovariances, RangeVariance, Tuning
 
 MAX_COMMANDS = 1_000_000
+# of a filter, in a schema: FILE.py, FILE.py:Name or package.module:Name
+PLACE = r"^(.*\.py(:\w*)?|[^\W\d][\w.]*:[^\W\d][\w.]*)$"
 MOVE: JsonDict = {"distance": 1.75, "angle": 90}
 LogFormat = Literal["pylon", "gnss", "mower", "mrclam", "ranges", "pioneer", "classroom"]
 SYSTEM_OF: dict[str, SystemName] = {  # the system that each format of a log records
@@ -47,8 +49,15 @@ def filter_names() -> list[str]:
 
 
 def known_filters(schema: dict[str, Any]) -> None:
-    """Let the schema list the filters."""
-    schema["enum"] = filter_names()
+    """Let the schema list the filters, and say how a place of another is written."""
+    schema["anyOf"] = [{"enum": filter_names()}, {"pattern": PLACE}]
+
+
+def is_filter(name: str) -> bool:
+    """Whether it names a filter, or a place where one may be found."""
+    from ekfsim.filters.place import is_place
+
+    return name in filter_names() or is_place(name)
 
 
 class MoveKeys(Strict):
@@ -227,7 +236,8 @@ class CommandsKeys(Strict):
     seed: Seed = Field(0, description="Whole number below 2³² that fixes all noise; --seed wins.")
     filter: str = Field(
         "ekf",
-        description="Name of the filter; --filter wins.",
+        description="Name of the filter, or the place of one of your own: FILE.py or FILE.py:Name, "
+        "relative to this file, or package.module:Name; --filter wins.",
         examples=["ekf"],
         json_schema_extra=known_filters,
     )
@@ -280,6 +290,6 @@ class CommandsKeys(Strict):
     @classmethod
     def known(cls, name: str) -> str:
         """A filter there is. Raises PydanticCustomError for another."""
-        if name not in filter_names():
+        if not is_filter(name):
             raise PydanticCustomError("literal_error", "unknown filter", {"expected": ""})
         return name

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, ConfigDict, Field, WithJsonSchema, field_validator
 from pydantic_core import PydanticCustomError
 
-from ekfsim.files.keys.commands import filter_names
+from ekfsim.files.keys.commands import filter_names, is_filter, known_filters
 from ekfsim.files.keys.fields import Name, Seed, Strict, Text
 from ekfsim.printable import quoted
 
@@ -33,16 +33,7 @@ Values = Annotated[
     list[Value], Field(title="a list of values", min_length=1, examples=[[0.005, 0.01, 0.02]])
 ]
 Side = dict[str, Value]
-FilterName = Annotated[
-    str,
-    WithJsonSchema(
-        {
-            "type": "string",
-            "enum": ["kf", "kf-nominal", "ekf", "iekf", "ukf", "ukf-augmented", "pf"],
-            "examples": ["ekf"],
-        }
-    ),
-]
+FilterName = Annotated[str, Field(examples=["ekf"], json_schema_extra=known_filters)]
 
 
 class StudyKeys(Strict):
@@ -73,7 +64,8 @@ class StudyKeys(Strict):
     filters: Annotated[list[FilterName], Field(title="a list of filters", min_length=1)] | None = (
         Field(
             None,
-            description="The filters that watch, in place of the commands file's.",
+            description="The filters that watch, in place of the commands file's; a file of one's "
+            "own is named relative to this file.",
             examples=[["ekf", "ukf"]],
         )
     )
@@ -117,15 +109,11 @@ class StudyKeys(Strict):
     @field_validator("filters")
     @classmethod
     def known(cls, names: list[str] | None) -> list[str] | None:
-        """Filters there are, each once. Raises PydanticCustomError for another."""
-        for n, name in enumerate(names or []):
-            if name not in filter_names():
-                right = f"known: {', '.join(filter_names())}"
+        """Filters there are. Raises PydanticCustomError for another."""
+        for name in names or []:
+            if not is_filter(name):
+                right = f"known: {', '.join(filter_names())}, or one of your own: FILE.py"
                 raise PydanticCustomError(
                     "order", "{name} is no filter; {right}", {"name": quoted(name), "right": right}
-                )
-            if name in (names or [])[:n]:
-                raise PydanticCustomError(
-                    "order", "{name} stands twice; delete one", {"name": quoted(name)}
                 )
         return names

@@ -1,16 +1,22 @@
-"""What of a filter's settings no single key can tell:
-whether it reads them, and whether they fit the world.
+"""What of a filter no single key can tell: whether it reads its settings, whether they fit the
+world; and whether its code lies where a file names it. Nothing of that code is run here.
 """
 
+import os
 from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 
 from ekfsim.errors import Mistake, UsageError
 from ekfsim.files.keys.commands import CommandsKeys, TuningKeys
 from ekfsim.files.keys.fields import aliases
+from ekfsim.files.looking import is_file as is_there
+from ekfsim.files.looking import read_from
 from ekfsim.files.scenes.checks import Sound
 from ekfsim.files.scenes.settings import FILTER_SETTINGS, Setting, path_of
 from ekfsim.filters import FILTERS
+from ekfsim.filters.place import absolute, is_file, label, parts, stem
 from ekfsim.filters.tuning import reads
+from ekfsim.printable import quoted
 from ekfsim.world import World
 
 NUMBER = {key: name for name, key in aliases(TuningKeys).items()}  # the program's name of each key
@@ -69,7 +75,42 @@ def refuse_unread(settings: Iterable[Setting], names: Sequence[str]) -> None:
     lines = []
     for one in unread(settings, names):
         key = str(path_of(one)[1])
-        wrong = f"no filter here ({', '.join(names)}) reads it"
+        wrong = f"no filter here ({', '.join(map(label, names))}) reads it"
         lines.append(f"{one.told}: {wrong}; name one that does: --filter {who_reads(key)}")
     if lines:
         raise UsageError(*lines)
+
+
+def filter_beside(file: str | Path, named: str) -> str:
+    """The filter that a file names: a built-in one, or the place of another."""
+    if named in FILTERS or not is_file(named):
+        return named
+    return absolute(os.path.join(os.path.dirname(file), os.path.expanduser(named)))
+
+
+def missing(file: str | Path, named: str) -> tuple[str, str] | None:
+    """What is wrong with the place of a filter that a file names, and what would be right; None
+    where a file is there.
+    """
+    place = filter_beside(file, named)
+    if named in FILTERS or not is_file(place):
+        return None
+    path, _ = parts(place)
+    try:
+        with read_from(quoted(named)):
+            if is_there(Path(path)):
+                return None
+    except UsageError as refusal:
+        return str(refusal), "name a file that can be read"
+    return f"{quoted(named)}: there is no such file", "write its path relative to this file"
+
+
+def alike(filters: Sequence[str]) -> Iterator[tuple[int, str, str]]:
+    """Which of some filters cannot be told from one before it, what is wrong, and what would be
+    right.
+    """
+    for n, one in enumerate(filters):
+        if one in filters[:n]:
+            yield n, f"{quoted(label(one))} stands twice", "delete one"
+        elif stem(one) in map(stem, filters[:n]):
+            yield n, f"two filters are called {label(one)}", "give one of the files another name"

@@ -19,7 +19,12 @@ from ekfsim.files.packaged import resolve, source_name, world_beside
 from ekfsim.files.scenes.building import scene_of, world_of
 from ekfsim.files.scenes.checks import Sound, kidnap_warnings, perfect_beam_warnings
 from ekfsim.files.scenes.drive_checks import check_fit
-from ekfsim.files.scenes.filter_checks import check_filter_settings, filter_warnings
+from ekfsim.files.scenes.filter_checks import (
+    check_filter_settings,
+    filter_beside,
+    filter_warnings,
+    missing,
+)
 from ekfsim.files.scenes.one_file import File, in_order_of_place, read
 from ekfsim.files.scenes.overruling import idle_on_log, of_log, refusal
 from ekfsim.files.scenes.settings import Setting
@@ -227,6 +232,7 @@ def scene_in(
     if mistakes or found.value is None or not isinstance(keys, CommandsKeys):
         return Loaded(None, mistakes, warnings)
     scene = scene_of(keys, found.value, source_name(source), source_name(path))
+    scene = replace(scene, filter=filter_beside(path, scene.filter))
     return Loaded(scene, mistakes, warnings)
 
 
@@ -272,6 +278,9 @@ def check(path: str | Path) -> Loaded[World] | Loaded[Scene]:
     loaded, keys = scene_in(file, Path(path)), file.keys
     if not isinstance(keys, CommandsKeys) or file.sound is None:
         return loaded
+    absent = missing(path, keys.filter)
+    if absent is not None:
+        loaded.mistakes.append(file.sound.mistake(("filter",), *absent))
     loaded = replace(loaded, warnings=[*loaded.warnings, *filter_warnings(file.sound, keys)])
     if keys.recording is None or keys.recording.path is None:
         return loaded

@@ -9,9 +9,11 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from ekfsim.errors import MOST_TOLD, InputError, Mistake, Place, UsageError
+from ekfsim.files.keys.commands import is_filter
 from ekfsim.files.keys.study import StudyKeys
 from ekfsim.files.looking import is_file
 from ekfsim.files.packaged import packaged, resolve
+from ekfsim.files.scenes.filter_checks import alike, filter_beside, missing
 from ekfsim.files.scenes.settings import (
     OF_COMMANDS,
     Setting,
@@ -33,6 +35,7 @@ from ekfsim.systems.document import DocumentReading
 
 SIDES = ("a", "b")  # of a comparison
 FILTER = "filter"  # a key that only they have
+FILTERS_KEY = "filters"  # of a study
 SWEEP = "sweep"
 MOST_ROWS = 10_000  # of a table
 
@@ -132,6 +135,7 @@ def read_request(name: str) -> Request:
         mistakes += tell(error, "study", root, str(path))
     mistakes += setting_mistakes(root, str(path))
     mistakes += side_mistakes(root, str(path))
+    mistakes += filter_mistakes(root, str(path))
     if mistakes:
         raise InputError(
             sorted(mistakes, key=lambda mistake: (mistake.place.line, mistake.place.column))
@@ -145,7 +149,7 @@ def read_request(name: str) -> Request:
     sweep = tuple(tuple(values) for route, values in told if route[0] == SWEEP)
     a, b = (tuple(side_of(root, side, str(path))) for side in SIDES)
     return Request(
-        commands, world, keys.runs, keys.seed, tuple(keys.filters or ()), fixed, sweep,
+        commands, world, keys.runs, keys.seed, filters_of(root, str(path)), fixed, sweep,
         keys.reading, keys.fast, a, b,
         keys.ekfsim, name, commands_name, world_name,
     )  # fmt: skip
@@ -212,10 +216,30 @@ def keys_of(root: Node, name: str) -> Iterator[str]:
     yield from node.keys if (node := root.at((name,))) is not None else ()
 
 
+def filters_of(root: Node, file: str) -> tuple[str, ...]:
+    """The filters that watch; what is no text is left out."""
+    node = root.at((FILTERS_KEY,))
+    listed = node.value if node is not None and isinstance(node.value, list) else []
+    return tuple(filter_beside(file, one.written) for one in listed if one.written)
+
+
+def filter_mistakes(root: Node, file: str) -> Iterator[Mistake]:
+    """Filters that stand twice, and those of one's own that are not there."""
+    filters = filters_of(root, file)
+    for n, wrong, right in alike(filters):
+        route: Route = (FILTERS_KEY, n)
+        yield at(file, root.nearest(route).mark, route, wrong, right)
+    for n in range(len(filters)):
+        route = (FILTERS_KEY, n)
+        if fault := missing(file, root.nearest(route).written):
+            yield at(file, root.nearest(route).mark, route, *fault)
+
+
 def side_of(root: Node, side: str, file: str) -> Iterator[Setting]:
     """What a comparison's file sets for one of its sides, a or b."""
     for key in node.keys if (node := root.at((side,))) else ():
-        yield setting_at(root, (side, key), key, file)
+        one = setting_at(root, (side, key), key, file)
+        yield replace(one, value=filter_beside(file, one.value)) if key == FILTER else one
 
 
 def setting_at(root: Node, path: tuple[str | int, ...], key: str, file: str) -> Setting:
@@ -261,14 +285,13 @@ def side_mistakes(root: Node, file: str) -> Iterator[Mistake]:
     """
     for side in SIDES:
         for one in side_of(root, side, file):
-            if one.key == FILTER and one.value not in FILTERS:
-                right = f"known: {', '.join(FILTERS)}"
-                yield at(
-                    file,
-                    root.nearest((side, FILTER)).mark,
-                    (side, FILTER),
-                    f"{quoted(one.value)} is no filter",
-                    right,
-                )
-            elif one.key != FILTER and (fault := fault_of(one)):
+            if one.key == FILTER:
+                node = root.nearest((side, FILTER))
+                fault = missing(file, node.written)
+                if not is_filter(node.written):
+                    right = f"known: {', '.join(FILTERS)}, or one of your own: FILE.py"
+                    fault = f"{quoted(node.written)} is no filter", right
+                if fault:
+                    yield at(file, node.mark, (side, FILTER), *fault)
+            elif fault := fault_of(one):
                 yield at(file, root.nearest((side,)).keys[one.key], (side,), *fault)

@@ -122,6 +122,14 @@ def key_of(mapping: Schema, key: str) -> Schema:
     return found
 
 
+def words_of(schema: Schema) -> list[str]:
+    """The few words that a value may be, [] where it may be any; FILE.py is a file of one's own."""
+    words: list[str] = schema.get("enum", [])
+    for one in schema.get("anyOf", []):
+        words = [*one["enum"], "FILE.py"] if "enum" in one else words
+    return words
+
+
 def keys_at(kind: Kind, path: tuple[str | int, ...]) -> Schema:
     """What the schema says of each key of a mapping of a file; {} where it knows none."""
     whole = json_schema(kind)

@@ -10,7 +10,7 @@ from pydantic_core import ErrorDetails
 
 from ekfsim.errors import MOST_TOLD, Mistake, Place
 from ekfsim.files.yaml.marked import Mark, Node, Path, field_of
-from ekfsim.files.yaml.schema import Kind, Schema, keys_at, schema_at
+from ekfsim.files.yaml.schema import Kind, Schema, keys_at, schema_at, words_of
 from ekfsim.printable import quoted as quoted
 from ekfsim.printable import short as short
 
@@ -132,7 +132,7 @@ def meant(key: str, kind: Kind, path: Path) -> str:
 
 def unknown_word(node: Node, schema: Schema) -> tuple[str, str]:
     """A word that is none of the few allowed."""
-    words = schema["enum"]
+    words = words_of(schema)
     if not isinstance(node.value, str):
         return f"{what_stands(node)} where a word belongs", f"write {one_of(words)}"
     near = nearest(node.value, words)
@@ -167,7 +167,7 @@ def wrong_length(node: Node, schema: Schema) -> tuple[str, str]:
 
 def wrong_kind(node: Node, schema: Schema) -> tuple[str, str]:
     """Text for a number, a number for text, a list for a mapping, …"""
-    if "enum" in schema:
+    if words_of(schema):
         return unknown_word(node, schema)
     wanted, value = schema.get("type"), node.value
     right = f"write e.g. {example(schema)}"

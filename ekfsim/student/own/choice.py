@@ -1,10 +1,12 @@
 """The filter that a place stands for, as filters/choice.py asks for it."""
 
+import os
 import sys
 from contextlib import redirect_stderr
 from dataclasses import dataclass
 from functools import partial
 from io import StringIO
+from pathlib import Path
 from typing import ClassVar
 
 from ekfsim.filters.protocol import Beginning, Filter
@@ -45,3 +47,19 @@ def own(name: str) -> Own:
         sys.stderr.write(printed.getvalue())
         raise
     return Own(name)
+
+
+def contents(name: str) -> dict[str, bytes]:
+    """The file at a place, and the modules beside it that it imports, by their names from its
+    folder; of an installed one its package, as far as it is imported. Raises what `own` does.
+    """
+    with redirect_stderr(StringIO()):
+        home = load(name).home
+    modules = home.modules if home.folder else sys.modules
+    below = os.path.join(home.folder, "") if home.folder else home.root
+    files = {getattr(module, "__file__", None) or "" for module in list(modules.values())}
+    return {
+        os.path.relpath(file, os.path.dirname(below)): Path(file).read_bytes()
+        for file in sorted(files)
+        if file.startswith(below)
+    }

@@ -10,7 +10,7 @@ from ekfsim.filters import kalman
 from ekfsim.filters.arithmetic.algebra import symmetric
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction, Refused
 from ekfsim.filters.protocol import Beginning
-from ekfsim.geometry import Array, Booleans
+from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.protocols import Motion, Sensor
 from ekfsim.models.sensors.laser_by_reading import LaserByReading
 from ekfsim.records import Control, Reading
@@ -31,6 +31,7 @@ class OwnFilter:
     new_caller: Callable[[], Caller]
     gate: float | None = None
     headings: tuple[int, ...] = (2,)
+    runs: Integers | None = None  # (N,) the numbers of runs side by side
     callers: dict[tuple[int, ...], Caller] = field(default_factory=dict)  # one for each run
 
     @classmethod
@@ -41,7 +42,7 @@ class OwnFilter:
     @classmethod
     def around(cls, new_caller: Callable[[], Caller], beginning: Beginning) -> Self:
         """The filter for a run that begins so."""
-        return cls(new_caller, beginning.gate, beginning.headings)
+        return cls(new_caller, beginning.gate, beginning.headings, beginning.runs)
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
         """What predict returns of x, P and u of each run          u : (…, m)"""
@@ -84,12 +85,17 @@ class OwnFilter:
         self, run: tuple[int, ...], x: Array, P: Array, given: Control | Reading
     ) -> Gaussian:
         """What one run's call makes of its belief. Raises FaultError."""
-        caller = self.callers.get(run)
-        if caller is None:
-            caller = self.callers[run] = self.new_caller()
-            caller.begin(x[run], P[run])
-        asked = Asked(x[run], P[run], given, self.headings)
-        return believed(asked, caller.call(asked), caller)
+        try:
+            caller = self.callers.get(run)
+            if caller is None:
+                caller = self.callers[run] = self.new_caller()
+                caller.begin(x[run], P[run])
+            asked = Asked(x[run], P[run], given, self.headings)
+            return believed(asked, caller.call(asked), caller)
+        except FaultError as fault:
+            if self.runs is None or fault.run is not None:
+                raise
+            raise fault.in_run(int(self.runs[run])) from fault.__cause__
 
 
 def believed(asked: Asked, theirs: Answer, caller: Caller) -> Gaussian:

@@ -16,7 +16,7 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import active_children, connection, get_context, parent_process
 from typing import Any, NamedTuple, Protocol, TypeVar
 
-from ekfsim.errors import EkfsimError, RunError, UsageError
+from ekfsim.errors import EkfsimError, RunError, StepError, UsageError
 from ekfsim.study.plan import Task
 from ekfsim.version import VERSION
 
@@ -78,6 +78,7 @@ class Failed(NamedTuple):
     """
 
     told: str
+    at_a_step: bool = False  # of a run: the code of a filter failed
 
 
 def do_packed(packed: bytes, first: int, runs: int, version: str) -> Any:
@@ -93,15 +94,17 @@ def do_packed(packed: bytes, first: int, runs: int, version: str) -> Any:
     except UsageError as lack:
         return Failed(f"a worker cannot do this: {lack}")
     except EkfsimError as failure:
-        return Failed(str(failure))
+        return Failed(str(failure), isinstance(failure, StepError))
     except ModuleNotFoundError as missing:
         raise RunError(f"a worker cannot do this: {missing}") from missing
 
 
 def unfailed(made: T | Failed) -> T:
-    """What a worker sent, where it is a block. Raises RunError where that failed."""
+    """What a worker sent, where it is a block. Raises RunError where that failed, StepError where
+    a run did.
+    """
     if isinstance(made, Failed):
-        raise RunError(*made.told.split("\n"))
+        raise (StepError if made.at_a_step else RunError)(*made.told.split("\n"))
     return made
 
 

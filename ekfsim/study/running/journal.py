@@ -16,6 +16,7 @@ from typing import Any, BinaryIO
 from ekfsim.errors import UsageError
 from ekfsim.files.packaged import PACKAGE
 from ekfsim.files.results.writing import told
+from ekfsim.filters.place import label
 from ekfsim.study.plan import Plan, Task
 from ekfsim.study.tally import Tally
 from ekfsim.version import VERSION
@@ -157,11 +158,11 @@ def _compare(head: Mapping[str, Any], plan: Plan, path: Path) -> None:
         raise UsageError(f"{path}: is no journal of this version; begin anew with --force")
     for name, value in now.items():
         if was.get(name) != value:
-            what = (
-                f"the {name} file was another"
-                if name in ("commands", "world")
-                else f"{name} was {was.get(name) or 'not given'}, and is now {value or 'not given'}"
-            )
+            what = f"{name} was {was.get(name) or 'not given'}, and is now {value or 'not given'}"
+            if name in ("commands", "world"):
+                what = f"the {name} file was another"
+            elif name == "code":
+                what = f"the code of {' or '.join(map(label, plan.codes))} was another"
             raise UsageError(
                 f"{path.parent}: was begun as another study: {what}; begin anew with --force"
             )

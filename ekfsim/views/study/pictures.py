@@ -118,7 +118,7 @@ def told(plan: Plan) -> str:
     facts = [
         f"ekfsim {VERSION}", f"world {scene.world_source}", f"commands {scene.commands_source}",
         f"{request.runs} runs",
-        f"seed {plan.seed}", f"filter {','.join(plan.filters)}", f"gate {scene.gate}",
+        f"seed {plan.seed}", f"filter {','.join(plan.called)}", f"gate {scene.gate}",
         f"guard {scene.guard}",
     ]  # fmt: skip
     facts += [f"set {one}" for one in request.settings]
@@ -152,7 +152,7 @@ def _over_values(axes: Axes, plan: Plan, results: Sequence[Result], quantity: Qu
     metric = len(known) == len(values)  # words stand in their order
     x = np.array(known if metric else range(len(values)), float)
     order = np.argsort(x)
-    for pen, name in zip(PENS, plan.filters, strict=False):
+    for pen, name in zip(PENS, plan.called, strict=False):
         y = numbers([quantity.of(result.last) for result in results if result.case.filter == name])[
             order
         ]

@@ -5,7 +5,7 @@ import pickle
 
 import pytest
 
-from ekfsim.errors import RunError, UsageError
+from ekfsim.errors import StepError, UsageError
 from ekfsim.student.fault import FaultError
 from ekfsim.study.running.engines import Failed, do_packed, unfailed
 from ekfsim.version import VERSION
@@ -31,10 +31,13 @@ def sent(failure):
 
 
 def test_a_fault_is_sent_in_words_alone():
-    fault = FaultError("mine.py:12", "nan in P; divide by no zero", "run 3, step 7 (sense 90°)")
+    fault = (
+        FaultError("mine.py:12", "nan in P; divide by no zero").at("step 7 (sense 90°)").in_run(3)
+    )
     made = sent(fault)
-    assert made == Failed("mine.py:12: run 3, step 7 (sense 90°): nan in P; divide by no zero")
-    with pytest.raises(RunError) as told:
+    words = "mine.py:12: run 3, step 7 (sense 90°): nan in P; divide by no zero"
+    assert made == Failed(words, at_a_step=True)
+    with pytest.raises(StepError) as told:
         unfailed(made)
     assert (str(told.value), told.value.status) == (str(fault), 1)
 
@@ -51,8 +54,13 @@ def test_a_mistake_of_our_own_keeps_its_traceback():
 
 
 def test_a_fault_is_packed_by_its_words():
-    fault = FaultError("mine.py:12", "nan in P").at("step 7")
+    fault = FaultError("mine.py:12", "nan in P").in_run(3).at("step 7")
     fault.__cause__ = StrangeError()
     again = pickle.loads(pickle.dumps(fault))
-    assert (type(again), str(again)) == (FaultError, "mine.py:12: step 7: nan in P")
-    assert (again.place, again.wrong, again.step) == ("mine.py:12", "nan in P", "step 7")
+    assert (type(again), str(again)) == (FaultError, "mine.py:12: run 3, step 7: nan in P")
+    assert (again.place, again.wrong, again.step, again.run) == (
+        "mine.py:12",
+        "nan in P",
+        "step 7",
+        3,
+    )
