@@ -34,6 +34,6 @@ for command in (
     *(runs.play, runs.render, runs.run, runs.record),
     *(files.check, files.schema, files.list_packaged, files.show, files.new, files.figures),
     *(studies.study, studies.compare),
-    *(students.mutants, students.worksheet),
+    *(students.diff, students.mutants, students.worksheet),
 ):
     ekfsim.add_command(command)

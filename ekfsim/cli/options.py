@@ -91,6 +91,21 @@ WORLD = click.option(
     "--world", help="A world file or packaged world in place of the one that COMMANDS names."
 )
 SEED = click.option("--seed", type=Seed(), help="In place of the file's seed.")
+PLAYED = (  # which run of which file
+    click.argument("commands"),
+    WORLD,
+    SEED,
+    click.option(
+        "--run", "run_number", type=Whole(0, MOST), default=0, help="Which run of the seed."
+    ),
+    click.option(
+        "--log",
+        type=Source(),
+        metavar="PATH",
+        help="A recorded log in place of the one that COMMANDS names.",
+    ),
+    READING,
+)
 SETTINGS = (  # what overrules the files in every run of a study
     SET,
     PARTICLES,
@@ -126,19 +141,7 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return _with(
         command,
         [
-            click.argument("commands"),
-            WORLD,
-            click.option("--seed", type=Seed(), help="In place of the file's seed."),
-            click.option(
-                "--run", "run_number", type=Whole(0, MOST), default=0, help="Which run of the seed."
-            ),
-            click.option(
-                "--log",
-                type=Source(),
-                metavar="PATH",
-                help="A recorded log in place of the one that COMMANDS names.",
-            ),
-            READING,
+            *PLAYED,
             click.option(
                 "--filter",
                 "filter_name",
@@ -159,6 +162,47 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 show_default=True,
                 help="Probability of the ellipse and the cone.",
             ),
+            PLAIN,
+        ],
+    )
+
+
+def diff_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of a comparison step by step: whose filter, beside which, over which runs."""
+    return _with(
+        command,
+        [
+            *PLAYED,
+            click.option(
+                "--filter",
+                "filter_name",
+                metavar="FILE.py[:NAME]",
+                help="The filter of one's own, or package.module:NAME.",
+            ),
+            click.option(
+                "--against",
+                metavar="NAME",
+                default="ekf",
+                show_default=True,
+                help="What it is held against: a built-in filter, or FILE.py.",
+            ),
+            click.option(
+                "--runs",
+                type=Whole(1, MOST_RUNS),
+                metavar="N",
+                default=1,
+                show_default=True,
+                help="How many runs, from --run on.",
+            ),
+            click.option(
+                "--provided",
+                metavar="NAME,…",
+                help="The only equations of motion and sensor that the filter may ask for, "
+                "e.g. f,h.",
+            ),
+            GATE,
+            GUARD,
+            SET,
             PLAIN,
         ],
     )

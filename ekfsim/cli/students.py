@@ -1,16 +1,65 @@
-"""The commands for students and who teaches them: mutants, worksheet."""
+"""The commands for students and who teaches them: diff, mutants, worksheet."""
 
+import sys
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 
 from ekfsim.cli.asked import scene_of
 from ekfsim.cli.kinds import Result, Seed, Share, Whole
-from ekfsim.cli.options import EXPLAIN, FORCE, MOST, MOST_RUNS, scene_options
+from ekfsim.cli.options import EXPLAIN, FORCE, MOST, MOST_RUNS, diff_options, scene_options
 from ekfsim.cli.process import heed, width
 from ekfsim.errors import RunError, UsageError
 from ekfsim.printable import in_a_line, shown
+
+T = TypeVar("T")
+
+
+@click.command(short_help="Find the first wrong number of a filter of one's own.")
+@diff_options
+def diff(
+    filter_name: str | None, against: str, runs: int, provided: str | None, **chosen: Any
+) -> None:
+    """Hold a filter of one's own against the built-in one, step by step, each from what it believed
+    itself: the first wrong number, and which mistake it comes of.
+
+    Exit status 0 where both are equal, 1 where they differ or the code fails, 2 for wrong usage.
+    """
+    from dataclasses import replace
+
+    from ekfsim.files.scenes.settings import filter_in
+    from ekfsim.filters.place import label
+    from ekfsim.provenance import told_in_a_line
+    from ekfsim.student.comparing.found import found as found_in
+    from ekfsim.student.comparing.sides import caller_of, comparable, runs_of
+    from ekfsim.student.own.handed import provided_in
+    from ekfsim.views.student.difference import Sides, told
+
+    if filter_name is None:
+        raise click.MissingParameter(param_hint="'--filter'", param_type="option")
+    name = comparable(filter_in(filter_name, "--filter"), "--filter")
+    reference = comparable(filter_in(against, "--against"), "--against")
+    scene = replace(scene_of(**chosen), filter=name, beside=())
+    caller = caller_of(scene, None if provided is None else provided_in(provided, "--provided"))
+    found = found_in(heeded(runs_of(scene, caller, reference, runs)))
+    if not found.steps and found.fault is None:
+        raise UsageError(f"{scene.commands_source}: has no move and no reading to be compared")
+    made = f"{told_in_a_line(scene)}, against {label(reference)}"
+    sides = Sides(label(name), label(reference), made, scene.world.system == "classroom")
+    click.echo(shown(told(found, sides)), nl=False)
+    if found.fault is not None:
+        raise found.fault
+    if not found.equal:
+        sys.exit(RunError.status)
+
+
+def heeded(runs: Iterable[T]) -> Iterator[T]:
+    """The same, ended by a signal between two."""
+    for run in runs:
+        heed()
+        yield run
 
 
 @click.command(short_help="Write the narrative of COMMANDS with gaps to fill in.")

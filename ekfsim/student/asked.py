@@ -1,12 +1,11 @@
 """One call of a filter: what it is asked, from which belief; and who answers."""
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from ekfsim.commands import Move, Plain, Sense
+from ekfsim.commands import Plain
 from ekfsim.geometry import Array
-from ekfsim.records import Control, Reading
+from ekfsim.records import Control, Entry, Reading, called
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,20 +19,14 @@ class Asked:
     command: Plain | None = None  # what was asked of the robot; a filter is never told
     index: int = 0  # of the entry, from 1; 0 at the start, where only the belief is asked for
     earlier: "Asked | None" = None  # the call before, of the same run, without its own earlier one
+    t: float | None = None  # s, in drives and recorded logs
 
     @property
     def step(self) -> str:
         """At which step it is, as people are told: step 7 (sense 90°)."""
         if self.index == 0:
             return "the start"
-        match self.command:
-            case Move(distance, angle):
-                what = f"move {distance:.6g} m, {math.degrees(angle):.6g}°"
-            case Sense(angle):
-                what = f"sense {math.degrees(angle):.6g}°"
-            case _:
-                what = self.given.name if isinstance(self.given, Reading) else "predict"
-        return f"step {self.index} ({what})"
+        return called(Entry(self.index, self.given, command=self.command, t=self.t))
 
 
 class Answer(NamedTuple):

@@ -13,15 +13,20 @@ _, MOVED, READ = simulate(scene(Move(0.1 + 0.2, math.radians(90)), Sense(math.ra
 
 
 @pytest.mark.parametrize(
-    ("given", "command", "told"),
+    ("given", "command", "t", "told"),
     [
-        (MOVED.given, MOVED.command, "step 7 (move 0.3 m, 90°)"),
-        (READ.given, READ.command, "step 7 (sense -86°)"),
-        (MOVED.given, None, "step 7 (predict)"),
-        (Reading(READ.given.sensor, READ.given.z, "marker 3"), None, "step 7 (marker 3)"),
+        (MOVED.given, MOVED.command, None, "step 7 (move 0.3 m, 90°)"),
+        (READ.given, READ.command, None, "step 7 (sense -86°)"),
+        (MOVED.given, None, 1.5, "step 7 (motion at 1.5 s)"),
+        (
+            Reading(READ.given.sensor, READ.given.z, "marker 3"),
+            None,
+            2.0,
+            "step 7 (marker 3 at 2 s)",
+        ),
     ],
 )
-def test_a_step_is_told_by_its_number_and_its_command(given, command, told):
+def test_a_step_is_told_by_its_number_and_what_it_is(given, command, t, told):
     assert isinstance(given, Control | Reading)
-    asked = Asked(np.zeros(3), np.eye(3), given, command=command, index=7)
-    assert asked.step == told
+    assert Asked(np.zeros(3), np.eye(3), given, command=command, index=7, t=t).step == told
+    assert Asked(np.zeros(3), np.eye(3), given).step == "the start"

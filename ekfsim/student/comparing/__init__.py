@@ -5,4 +5,5 @@ difference.py    two answers to one question → which entries differ, in σ
 rounding.py      how far right forms of the same equations may be apart
 found.py         what is found in a run, or in N: the first wrong number, and all after it
 naming.py        by which known mistakes it is explained
+sides.py         who is called and beside which reference, as a scene names them
 """

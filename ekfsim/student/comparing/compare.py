@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ekfsim.diagnostics.ambiguity import remark
+from ekfsim.errors import StepError
 from ekfsim.filters.arithmetic.algebra import symmetric, wrapped
 from ekfsim.filters.belief import Correction, Gaussian, Prediction, Refused
 from ekfsim.filters.protocol import Filter
@@ -15,6 +16,7 @@ from ekfsim.scene import Guard
 from ekfsim.student.asked import Answer, Asked, Caller
 from ekfsim.student.comparing.difference import (
     DIFFERENT,
+    LEAST,
     Difference,
     differences,
     sizes,
@@ -22,9 +24,8 @@ from ekfsim.student.comparing.difference import (
     unit,
 )
 from ekfsim.student.comparing.rounding import NONE, deviations, rounding
-from ekfsim.student.fault import FaultError
 
-NEGATIVE = 1e-9  # σ²; so much below 0 an eigenvalue of P may be by rounding
+NEGATIVE = 1e-9  # of a variance; so much below 0 it may be by rounding, and the square of `LEAST`
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,21 +56,26 @@ def compare(
     """Each step of a run that is handed to the student's code: one error does not hide the next.
 
     Before them comes the start, where the code has begun with another belief than it was given. It
-    ends early where no belief is left to go on from. Raises FaultError where the code fails.
+    ends early where no belief is left to go on from. Raises FaultError where code fails.
     """
     begun, belief = caller.begin(first.mean.copy(), first.covariance.copy()), first
     earlier: Asked | None = None
     for entry in entries:
         if entry.given is None:
             continue
-        asked = Asked(*belief, entry.given, layout.headings, entry.command, entry.index, earlier)
+        asked = Asked(
+            *belief, entry.given, layout.headings, entry.command, entry.index, earlier, entry.t
+        )
         if begun is not None:
             start, begun = _started(replace(asked, command=None, index=0), begun, layout), None
             if start.differences:
                 yield start
                 belief = believed(start.theirs, layout)
                 asked = replace(asked, x=belief.mean, P=belief.covariance)
-        found = answered(asked, caller, reference, layout, guard)
+        try:
+            found = answered(asked, caller, reference, layout, guard)
+        except StepError as error:
+            raise error.at(asked.step) from error.__cause__
         if found is None:
             continue
         yield found
@@ -91,11 +97,7 @@ def answered(
             right, made = reference.update(prior, sensor, z)
             if not _handed_over(asked, made, guard):
                 return None
-    try:
-        theirs = caller.call(asked)
-    except FaultError as fault:
-        raise (fault if fault.step else fault.at(asked.step)) from None
-    return compared(asked, theirs, Gaussian(*right), made, layout)
+    return compared(asked, caller.call(asked), Gaussian(*right), made, layout)
 
 
 def compared(
@@ -138,9 +140,12 @@ def _handed_over(asked: Asked, made: Correction, guard: Guard) -> bool:
 def _unusable(theirs: Answer, asked: Asked, right: Gaussian, layout: Layout) -> str:
     """Why an answer cannot be a belief, "" where it can."""
     σ = np.maximum(deviations(asked.P), unit(right))
-    if float(np.linalg.eigvalsh(symmetric(theirs.P) / np.outer(σ, σ))[0]) >= -NEGATIVE:
+    slight = np.sqrt(NEGATIVE * np.square(σ) + LEAST**2)
+    if float(np.linalg.eigvalsh(symmetric(theirs.P) / np.outer(slight, slight))[0]) >= -1:
         return ""
-    for name, variance, s in zip(symbols(layout), theirs.P.diagonal().tolist(), σ, strict=True):
-        if variance < -NEGATIVE * s * s:
+    for name, variance, s in zip(
+        symbols(layout), theirs.P.diagonal().tolist(), slight, strict=True
+    ):
+        if variance < -s * s:
             return f"its variance of {name} is {variance:.6g}, and no variance is negative"
     return "its P has a negative eigenvalue, and is no covariance"

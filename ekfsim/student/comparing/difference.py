@@ -43,11 +43,14 @@ def sizes(theirs: Answer, right: Gaussian, layout: Layout) -> tuple[Array, Array
 def differences(
     theirs: Answer, right: Gaussian, rounding: Rounding, layout: Layout
 ) -> tuple[Difference, ...]:
-    """The entries that differ by more than 1e-6 σ, and by more than rounding; x first."""
+    """The entries that differ by more than 1e-6 σ, and by more than rounding; x first, and of a
+    symmetric P the upper half.
+    """
     σ = unit(right)
     in_x, in_P = sizes(theirs, right, layout)
     x = (in_x > DIFFERENT) & (in_x > rounding.x / σ)
     P = (in_P > DIFFERENT) & (in_P > rounding.P / np.outer(σ, σ))
+    lopsided = np.abs(theirs.P - theirs.P.T) > DIFFERENT * np.outer(σ, σ)
     found = [
         Difference(name, float(theirs.x[i]), float(right.mean[i]), float(in_x[i]))
         for i, name in enumerate(symbols(layout)) if x[i]
@@ -55,7 +58,7 @@ def differences(
     found += [
         Difference(name, float(theirs.P[ij]), float(right.covariance[ij]), float(in_P[ij]))
         for ij, name in _pairs(layout)
-        if P[ij] and (ij[0] <= ij[1] or theirs.P[ij] != theirs.P[ij[::-1]])
+        if P[ij] and (ij[0] <= ij[1] or lopsided[ij])
     ]
     return tuple(found)
 

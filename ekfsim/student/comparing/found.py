@@ -16,7 +16,8 @@ class Found:
     """The first wrong number, what explains it, and all that shows after it."""
 
     runs: int  # that were begun
-    steps: int  # that were compared
+    moves: int  # that were compared
+    readings: int
     differing: int
     largest: float  # σ, of the steps that do not differ
     first: At | None  # the first step that differs
@@ -26,6 +27,11 @@ class Found:
     ended: At | None  # the first step after which no belief was left to go on from
     fault: FaultError | None  # of the student's code, which ended it all
     fault_run: int = 0
+
+    @property
+    def steps(self) -> int:
+        """That were compared."""
+        return self.moves + self.readings
 
     @property
     def equal(self) -> bool:
@@ -41,7 +47,7 @@ def found(
     gives, clean : what is taken for the same number, where not all digits are known
     """
     moves, readings = Naming(gives, clean), Naming(gives, clean)
-    begun = steps = differing = run = 0
+    begun = steps = read = differing = run = 0
     largest, fault = 0.0, None
     first: At | None = None
     ended: At | None = None
@@ -50,8 +56,10 @@ def found(
             begun += 1
             for step in compared:
                 at = At(run, step)
-                (moves if isinstance(step.asked.given, Control) else readings).add(at)
+                is_move = isinstance(step.asked.given, Control)
+                (moves if is_move else readings).add(at)
                 steps += step.asked.index > 0
+                read += step.asked.index > 0 and not is_move
                 if step.differences:
                     differing += 1
                     first = first or at
@@ -67,6 +75,6 @@ def found(
         guesses = of.explanations(first)
     unnamed = tuple(seen for seen in (moves.unnamed(), readings.unnamed()) if seen is not None)
     return Found(
-        begun, steps, differing, largest, first, tuple(guesses),
+        begun, steps - read, read, differing, largest, first, tuple(guesses),
         moves.named() | readings.named(), unnamed, ended, fault, run,
     )  # fmt: skip

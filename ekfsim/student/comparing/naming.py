@@ -13,7 +13,7 @@ from ekfsim.student.mistakes.mistake import Mistake
 # a search goes through the whole table; what it has found is looked for at every other step, too
 SEARCHED = 6  # differing steps at which all single mistakes are looked for, whatever is known
 IN_VAIN = 20  # searches without a find, after which no more are made
-IN_PAIRS = 3  # searches among all pairs, which take long
+IN_PAIRS = 3  # searches among all pairs, which take seconds: no more after one in vain
 WITNESSES = 24  # steps without a difference, at which a mistake that is there must not show
 CLEAN = 1e-10  # σ; a witness is nearer to the reference than this
 
@@ -106,8 +106,9 @@ class Naming:
         alone = [(one,) for one in KNOWN if fits((one,), step.asked, step.theirs, σ, self.gives)]
         if alone or self._searches["pairs"] >= IN_PAIRS:
             return list(alone)
-        self._searches["pairs"] += 1
-        return guesses(step.asked, step.theirs, σ, self.gives)
+        pairs = guesses(step.asked, step.theirs, σ, self.gives)
+        self._searches["pairs"] += 1 if pairs else IN_PAIRS
+        return pairs
 
     def _best(self, alike: Iterable[Guess]) -> list[Guess]:
         """The guesses that are believed most, in the order of the table."""

@@ -1,6 +1,7 @@
 """The calls of a student's code, in this process."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -29,8 +30,11 @@ class InProcess:
         self._agreed: tuple[Array, Array] | None = None
         self._turned: Array | float = 0.0  # what its headings have more than ours, full turns
 
-    def begin(self, x: Array, P: Array) -> None:
-        """A run begins with this belief; whatever the code kept of an earlier run is forgotten."""
+    def begin(self, x: Array, P: Array) -> Answer | None:
+        """A run begins with this belief; whatever the code kept of an earlier run is forgotten.
+
+        What an object believes then, should it have both already.
+        """
         self._object = self._agreed = None
         if isinstance(self._form, Stateful):
             with self._code.home.entered():
@@ -39,6 +43,9 @@ class InProcess:
                 except BaseException as error:
                     self._code.home.blame(error, self._head("__init__"))
             self._agreed, self._turned = (x.copy(), P.copy()), 0.0
+            with suppress(AttributeError, WrongError):  # a call may set them yet
+                return looked_at(self._object.x, self._object.P, len(x))
+        return None
 
     def call(self, asked: Asked) -> Answer:
         """What the code makes of a motion input or a reading. Raises FaultError."""

@@ -7,13 +7,28 @@ from typing import Any
 
 import numpy as np
 
+from ekfsim.errors import UsageError
 from ekfsim.geometry import Array
 from ekfsim.models.protocols import Motion, Sensor
+from ekfsim.printable import quoted, short
 from ekfsim.raycast.walls import Walls
 from ekfsim.student.own.home import HandedError
 
 MOTION = ("f", "F", "G", "M", "Q")
 SENSOR = ("h", "H", "R", "residual")
+
+
+def provided_in(text: str, option: str) -> tuple[str, ...]:
+    """The equations that NAME,… names. Raises UsageError for what is none."""
+    names = tuple(name.strip() for name in text.split(","))
+    known = (*MOTION, *SENSOR)
+    for name in names:
+        if name not in known:
+            raise UsageError(
+                f"{option} {short(text)}: there is no equation {quoted(name)}; "
+                f"known: {', '.join(known)}"
+            )
+    return names
 
 
 class Handed:

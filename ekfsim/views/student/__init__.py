@@ -1,4 +1,5 @@
 """What is told of students' filters.
 
+difference.py    the first wrong number, what explains it, and all that shows after it
 exposing.py      which known mistakes an input exposes
 """
