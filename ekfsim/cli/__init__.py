@@ -7,7 +7,7 @@ from typing import NoReturn
 
 import click
 
-from ekfsim.cli import files, process, runs, students, studies
+from ekfsim.cli import files, grading, process, runs, students, studies
 from ekfsim.version import VERSION
 
 

@@ -1,4 +1,4 @@
-"""How far a study has come, on a terminal; and what is kept of it where it ends early."""
+"""How far a study or a grader has come, on a terminal; what is kept of it where it ends early."""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -12,6 +12,7 @@ from ekfsim.cli.process import heed, part_with, say
 from ekfsim.errors import EkfsimError, StepError
 
 if TYPE_CHECKING:
+    from ekfsim.student.grading.scores import Grade
     from ekfsim.study.plan import Plan, Task
     from ekfsim.study.results import Result
     from ekfsim.study.running.engines import Engine
@@ -68,6 +69,28 @@ def blocks_bar(total: int) -> Iterator[Callable[[object, object], None]]:
             bar.update(1)
 
         yield done
+
+
+@contextmanager
+def submissions_bar(total: int, work: Path) -> "Iterator[Callable[[Grade | None], None]]":
+    """A bar for submissions; what is kept of them where it ends early."""
+    graded = 0
+    with click.progressbar(
+        length=total, label="submissions", file=sys.stderr, hidden=not sys.stderr.isatty()
+    ) as bar:
+
+        def done(grade: "Grade | None") -> None:
+            nonlocal graded
+            heed()
+            graded += 1
+            bar.update(1)
+
+        try:
+            yield done
+        except (KeyboardInterrupt, SystemExit):
+            told = f"{graded} of {total} submissions are graded and kept in {work}"
+            part_with(f"{told}; the same command goes on with the rest" if graded else "")
+            raise
 
 
 def kept(journal: "Journal", total: int, failed: bool = False) -> str:

@@ -1,0 +1,104 @@
+"""What every submission is held against: the runs, the same for all, and the reference.
+
+They are made once in a process and kept, as far as they fit: no result depends on which submission
+came first.
+"""
+
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ekfsim.files.homework import Homework
+from ekfsim.filters.belief import Gaussian
+from ekfsim.filters.protocol import Filter
+from ekfsim.localization import filter_of, first_belief
+from ekfsim.records import Control, Entry, Reading
+from ekfsim.scene import Scene
+from ekfsim.simulation import simulate
+from ekfsim.student.asked import Answer, Asked
+from ekfsim.student.comparing.compare import Compared, compare
+from ekfsim.systems import system_of
+
+MOST_KEPT = 100_000  # entries
+
+
+class Reached(NamedTuple):
+    """How many steps a run has in which the student's code is asked something."""
+
+    moves: int
+    readings: int
+
+
+@dataclass
+class Bench:
+    """The scenes of a homework, played."""
+
+    homework: Homework
+    _entries: dict[tuple[str, int], tuple[Entry, ...]] = field(default_factory=dict)
+    _reached: dict[tuple[str, int, str], Reached] = field(default_factory=dict)
+
+    def scene(self, name: str, run: int = 0, filter: str = "ekf") -> Scene:
+        """A scene of the homework, its run, and who watches it. Readings are judged by nobody: a
+        student's filter has no gate.
+        """
+        return replace(self.homework.scenes[name], run=run, filter=filter, gate=None)
+
+    def entries(self, name: str, run: int) -> tuple[Entry, ...]:
+        """What happens in a run, as a filter of this system is given it."""
+        if (name, run) not in self._entries:
+            if sum(map(len, self._entries.values())) > MOST_KEPT:
+                self._entries.clear()
+            scene = self.scene(name, run)
+            happened = simulate(scene) if scene.log is None else scene.log.entries
+            given = system_of(scene.world.system).entries(happened, scene.reading)
+            self._entries[name, run] = tuple(given)
+        return self._entries[name, run]
+
+    def runs(self, name: str, asked_for: int) -> range:
+        """The runs of a scene; of a log there is one."""
+        return range(1 if self.homework.scenes[name].log is not None else asked_for)
+
+    def reference(self, name: str, run: int, filter: str) -> Filter:
+        """The reference at the beginning of a run."""
+        return filter_of(self.scene(name, run, filter))
+
+    def by_itself(self, name: str, run: int, filter: str) -> list[Compared]:
+        """The reference in the place of a student's filter: every step in which that is asked."""
+        reference, scene = self.reference(name, run, filter), self.scene(name, run)
+        entries, layout = self.entries(name, run), scene.world.layout
+        caller = AsCaller(reference)
+        return list(compare(entries, first_belief(scene), caller, reference, layout, scene.guard))
+
+    def reached(self, name: str, run: int, filter: str) -> Reached:
+        """How many steps of a run the reference is asked."""
+        key = name, run, filter
+        if key not in self._reached:
+            given = [step.asked.given for step in self.by_itself(*key)]
+            moves = sum(isinstance(one, Control) for one in given)
+            self._reached[key] = Reached(moves, len(given) - moves)
+        return self._reached[key]
+
+
+@dataclass(frozen=True)
+class AsCaller:
+    """A filter of ours that is called as a student's is."""
+
+    filter: Filter
+
+    def begin(self, x: object, P: object) -> None:
+        """It keeps nothing."""
+
+    def call(self, asked: Asked) -> Answer:
+        """Its step."""
+        belief = Gaussian(asked.x, asked.P)
+        match asked.given:
+            case Control(motion, u):
+                after, _ = self.filter.predict(belief, motion, u)
+            case Reading(sensor, z):
+                after, _ = self.filter.update(belief, sensor, z)
+        return Answer(np.array(after.mean), np.array(Gaussian(*after).covariance))
+
+    def place_of(self, given: Control | Reading) -> str:
+        """Of no interest."""
+        return ""

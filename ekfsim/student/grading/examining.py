@@ -1,0 +1,114 @@
+"""One test of one submission, from what is asked to points and words.
+
+Whatever goes wrong here costs that test alone: a student's failure is his, ours is told as ours.
+"""
+
+import signal
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from types import FrameType
+
+from ekfsim.errors import EkfsimError
+from ekfsim.files.homework import Homework
+from ekfsim.files.keys.homework import HomeworkPartKeys
+from ekfsim.printable import in_a_line, short
+from ekfsim.student.fault import FaultError
+from ekfsim.student.grading.bench import Bench
+from ekfsim.student.grading.parts.honesty import graded_honesty
+from ekfsim.student.grading.parts.inputs import graded_inputs
+from ekfsim.student.grading.parts.jacobians import graded_jacobian
+from ekfsim.student.grading.parts.steps import graded_steps
+from ekfsim.student.grading.scores import Check, Scored, checks_of
+from ekfsim.student.grading.submissions import Submission
+from ekfsim.student.sandbox.limits import Limits
+from ekfsim.student.sandbox.sandboxed import Sandboxed
+
+MOST_PRINTED = 300  # characters of what the code printed that are told
+
+
+@dataclass
+class Examiner:
+    """Grades the tests of a homework, one after another."""
+
+    homework: Homework
+    through: tuple[str, ...] = ()  # a command that the students' code is begun through
+    bench: Bench = field(init=False)
+    checks: tuple[Check, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.bench = Bench(self.homework)
+        self.checks = checks_of(self.homework.keys)
+
+    def examine(self, check: Check, submission: Submission) -> Scored:
+        """What becomes of a test. Raises nothing: what fails here is told in it."""
+        score = Scored(check)
+        try:
+            return self._examined(score, submission)
+        except FaultError as fault:  # of a kind that no part expects
+            return replace(score, words=(str(fault),), fault=str(fault)).earned(0.0)
+        except MemoryError:
+            return score.lost("not judged: the grader had too little memory")
+        except (EkfsimError, Exception) as error:
+            told = short(in_a_line(f"{type(error).__name__}: {error}"), 300)
+            return score.lost(f"not judged: the grader itself failed: {told}")
+
+    def _examined(self, score: Scored, submission: Submission) -> Scored:
+        part = _part_of(self.homework, score.check)
+        seconds = self.homework.keys.limits.seconds
+        if part.inputs is not None:
+            try:
+                with at_most(seconds):
+                    return graded_inputs(score, part.inputs, submission.path)
+            except TimeoutError:
+                told = f"the files take longer than {seconds:g} s to read and to play"
+                return replace(score, words=(told,), fault=told).earned(0.0)
+        file, missing = submission.filter(self.homework.keys.filter)
+        if missing:
+            return replace(score, words=(missing,), fault=missing).earned(0.0)
+        with self._sandboxed(submission, file) as pupil:
+            if part.steps is not None:
+                score = graded_steps(score, part.steps, self.bench, pupil)
+            elif part.jacobians is not None:
+                score = graded_jacobian(score, part.jacobians, self.bench, pupil)
+            else:
+                assert part.honesty is not None
+                score = graded_honesty(score, part.honesty, self.bench, pupil)
+            return replace(score, words=(*score.words, *_printed(pupil.printed)))
+
+    def _sandboxed(self, submission: Submission, file: str) -> Sandboxed:
+        asked = self.homework.keys.limits
+        limits = Limits(
+            seconds=asked.seconds, cpu_seconds=max(1, round(asked.seconds)), memory_mb=asked.memory
+        )
+        provided = self.homework.keys.provided
+        file = "" if submission.path.name == file else file
+        return Sandboxed(
+            submission.path, file, provided=provided, limits=limits, through=self.through
+        )
+
+
+def _printed(text: str) -> Sequence[str]:
+    """What the code printed, a line of it; it costs nothing and earns nothing."""
+    told = " ".join(text.split())
+    return [f"it printed: {short(told, MOST_PRINTED)}"] if told else []
+
+
+def _part_of(homework: Homework, check: Check) -> HomeworkPartKeys:
+    return homework.keys.parts[int(check.number.partition(".")[0]) - 1]
+
+
+@contextmanager
+def at_most(seconds: float) -> Iterator[None]:
+    """Raise TimeoutError where the block takes longer; only of a process's main thread."""
+
+    def end(number: int, frame: FrameType | None) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, end)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)

@@ -1,0 +1,48 @@
+"""Whether a homework can be graded at all: its reference is what it is to be, before anybody is
+held against it.
+"""
+
+from collections.abc import Iterator
+
+from ekfsim.errors import InputError, Mistake
+from ekfsim.files.homework import Homework
+from ekfsim.files.source import as_written
+from ekfsim.files.yaml.parsing import parse
+from ekfsim.files.yaml.telling import at
+from ekfsim.student.grading.bench import Bench
+from ekfsim.student.grading.parts.honesty import (
+    condemned_at_end,
+    condemned_on_the_way,
+    of_reference,
+    words,
+)
+from ekfsim.student.grading.parts.jacobians import has_points
+
+
+def refuse_unsound(homework: Homework) -> None:
+    """Raise InputError where an honest filter would be condemned, or a derivative is nowhere asked
+    for: no submission could have those points.
+    """
+    if mistakes := list(_mistakes(homework)):
+        raise InputError(mistakes)
+
+
+def _mistakes(homework: Homework) -> Iterator[Mistake]:
+    file, bench = str(homework.path), Bench(homework)
+    root, _ = parse(as_written(homework.path, file), file)
+    for n, part in enumerate(homework.keys.parts):
+        for k, name in enumerate(part.honesty.scenes if part.honesty else ()):
+            assert part.honesty is not None
+            verdict = of_reference(bench.scene(name), part.honesty.runs)
+            end, way = words(verdict)
+            wrong = [end] * condemned_at_end(verdict) + [way] * condemned_on_the_way(verdict)
+            if wrong:
+                path = "parts", n, "honesty", "scenes", k
+                told = f"{name}: the reference itself is not honest there: {'; '.join(wrong)}"
+                yield at(file, root.nearest(path).mark, path, told, "choose another scene")
+        for k, function in enumerate(part.jacobians.functions if part.jacobians else ()):
+            assert part.jacobians is not None
+            if not any(has_points(function, scene, bench) for scene in part.jacobians.scenes):
+                path = "parts", n, "jacobians", "functions", k
+                told = f"none of the scenes asks for {function}"
+                yield at(file, root.nearest(path).mark, path, told, "name another scene")
