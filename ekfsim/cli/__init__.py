@@ -35,5 +35,6 @@ for command in (
     *(files.check, files.schema, files.list_packaged, files.show, files.new, files.figures),
     *(studies.study, studies.compare),
     *(students.diff, students.mutants, students.worksheet),
+    *(grading.grade, grading.autograder),
 ):
     ekfsim.add_command(command)

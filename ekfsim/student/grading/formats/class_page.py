@@ -1,4 +1,4 @@
-"""class.md: which mistakes a class made, how many, and which scenes show them; it names nobody."""
+"""The page of a class: which mistakes it made, how many, which scenes show them. No names."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator

@@ -4,7 +4,8 @@ import re
 
 from ekfsim.printable import in_a_line
 
-MARKUP = re.compile(r"([\\`*_{}\[\]()<>#+!|&~$])")
+# signs that mean something anywhere, at the beginning, and at the edge of a word
+MARKUP = re.compile(r"[\\`*\[\]<>|&~$]|^[#+\-]|(?<!\w)_|_(?!\w)")
 NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
@@ -12,9 +13,9 @@ def page(text: str) -> str:
     r"""A text in a line of Markdown that means nothing there.
 
     >>> print(page("<b> *x* | [a](b)"))
-    \<b\> \*x\* \| \[a\]\(b\)
+    \<b\> \*x\* \| \[a\](b)
     """
-    return MARKUP.sub(r"\\\1", in_a_line(text))
+    return MARKUP.sub(lambda found: "\\" + found[0], in_a_line(text))
 
 
 def xml(text: str) -> str:

@@ -20,7 +20,7 @@ from ekfsim.files.scenes.one_file import kind_of_tree
 from ekfsim.files.source import as_written
 from ekfsim.files.yaml.marked import Node
 from ekfsim.files.yaml.parsing import parse
-from ekfsim.printable import in_a_line, short
+from ekfsim.printable import in_a_line, short, some
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import BLOCK
 from ekfsim.student.exposing.exposed import exposed
@@ -68,8 +68,8 @@ def graded_inputs(score: Scored, keys: InputsKeys, folder: Path) -> Scored:
         except EkfsimError as error:
             found.words.append(short(f"{in_a_line(path.name)}: {_told(error, folder)}", 300))
     got = len(found.kept if promises else found.exposed)
-    what = "files keep what they promise" if promises else "known mistakes are exposed"
-    summed = f"{got} {what}; {wanted} are worth all points"
+    what = "files that keep what they promise" if promises else "known mistakes exposed"
+    summed = f"{what}: {got}; {wanted} are worth all points"
     words = (summed, *found.words)
     return replace(score, words=words).earned(1.0 if got >= wanted else got / wanted)
 
@@ -162,5 +162,5 @@ def _expose(name: str, scene: Scene, found: Inputs) -> None:
     shown = [one for one in exposed(scene) if one.first is not None]
     new = [one.mistake.name for one in shown if one.mistake.name not in found.exposed]
     found.exposed.update(dict.fromkeys(new, name))
-    more = f", of them new: {', '.join(new)}" if new else ""
+    more = f", {len(new)} of them new: {some(new)}" if new else ""
     found.words.append(f"{in_a_line(name)}: exposes {len(shown)} known mistakes{more}")
