@@ -16,7 +16,11 @@ class Mutant:
     mistake: Mistake
 
     def begin(self, x: Array, P: Array) -> None:
-        """It keeps nothing."""
+        """It keeps no belief of its own."""
+
+    def place_of(self, given: Control | Reading) -> str:
+        """It has no file; its name tells it."""
+        return self.mistake.name
 
     def call(self, asked: Asked) -> Answer:
         """The EKF's step with the mistake, where it can be made."""

@@ -72,7 +72,7 @@ OF_GAINS = (
     Mistake(
         "K-without-inverse",
         "your K is P J_H' S, without the inverse of S",
-        "eq 11: K = P J_H' S^-1; S is a number here, and its inverse is 1/S",
+        "eq 11: K = P J_H' S^-1; the inverse of a number S is 1/S",
         readings,
         _gain(lambda s: s.cross @ s.S),
     ),
@@ -212,7 +212,7 @@ OF_GAINS = (
     Mistake(
         "P-of-ones",
         "your P is (1 − K J_H) P with a 1 in every entry, where I has them on its diagonal alone",
-        "eq 12: I is the identity, np.eye(3)",
+        "eq 12: I is the identity, np.eye",
         readings,
         _covariance(lambda s: (1 - s.K @ s.H) @ s.P),
     ),
@@ -226,7 +226,7 @@ OF_GAINS = (
     Mistake(
         "K-H-a-number",
         "your K J_H is a number, the sum of products: K and J_H are lists, not column and row",
-        "eq 12: K is a column (3 x 1), J_H a row (1 x 3), and K J_H a 3 x 3 matrix: np.outer(K, H)",
+        "eq 12: K is a column, J_H a row, and K J_H a matrix: np.outer(K, H)",
         readings,
         _covariance(
             lambda s: (1 - _number(s)) * s.P,
@@ -290,7 +290,7 @@ OF_GAINS = (
     ),
     Mistake(
         "own-first-x",
-        "your run begins at x = y = θ = 0, not at the start that it is given",
+        "your run begins at an x of 0, not at the start that it is given",
         "eq 4: the first estimate is the given start",
         first,
         ({"x": lambda s, _: np.zeros_like(s.asked.x)},),

@@ -172,15 +172,15 @@ OF_MOVES = (
     ),
     Mistake(
         "turn-sign",
-        "your turn goes the other way round: θ − a",
-        "eq 3: θ + a",
+        "your θ turns the other way round, θ − a in place of θ + a",
+        "eq 3: the last line of Φ",
         moves,
         ({"f": _entry(2, lambda before, after: 2 * before - after)},),
     ),
     Mistake(
         "turn-forgotten",
         "your θ stays as it was: the turn is not added",
-        "eq 3: θ + a",
+        "eq 3: the last line of Φ",
         moves,
         ({"f": _entry(2, lambda before, _: before)},),
     ),

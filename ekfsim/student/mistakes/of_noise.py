@@ -68,7 +68,7 @@ OF_NOISE = (
     Mistake(
         "sigma-in-P_u",
         "your P_u holds σ where σ² belongs",
-        "eq 1: the diagonal of P_u holds variances, σ_d² and σ_a²",
+        "eq 1: the diagonal of P_u holds variances, the squares of σ",
         moves,
         ({"M": deviations},),
     ),
@@ -142,7 +142,7 @@ OF_NOISE = (
     Mistake(
         "noise-uncorrelated",
         "your P is the one with the diagonal of J_u P_u J_u' alone",
-        "eq 7: J_u P_u J_u' is a whole matrix; a way along θ errs in x and y together",
+        "eq 7: J_u P_u J_u' is a whole matrix: an error of the way moves x and y together",
         moves,
         ({"noise": diagonal},),
     ),
@@ -170,7 +170,7 @@ OF_NOISE = (
     Mistake(
         "P_u-squared-twice",
         "your P_u holds σ⁴: its variances are squared once more",
-        "eq 1: the diagonal of P_u holds variances, σ_d² and σ_a²",
+        "eq 1: the diagonal of P_u holds variances, the squares of σ",
         moves,
         ({"M": squares},),
     ),

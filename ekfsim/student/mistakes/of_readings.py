@@ -126,7 +126,7 @@ OF_READINGS = (
     Mistake(
         "J_H-signs-xy",
         "your step is the one with the other sign of both ∂h/∂x and ∂h/∂y in J_H",
-        "eq 11: the derivatives of h; a step towards the wall makes the range shorter",
+        "eq 11: the derivatives of h by x and y",
         readings,
         ({"H": _columns(-1.0, 0, 1)},),
     ),
@@ -161,7 +161,7 @@ OF_READINGS = (
     Mistake(
         "sigma-in-C_v",
         "your C_v holds σ where σ² belongs",
-        "eq 11: C_v is a variance, (rangeSigmaRatio * predicted range)^2",
+        "eq 11: C_v is a variance, the square of σ",
         readings,
         ({"R": deviations},),
     ),
@@ -213,7 +213,7 @@ OF_READINGS = (
     Mistake(
         "C_v-squared-twice",
         "your C_v is σ⁴: a variance squared once more",
-        "eq 11: C_v = (rangeSigmaRatio * h)^2",
+        "eq 11: C_v is a variance, the square of σ",
         readings,
         ({"R": squares},),
     ),
