@@ -1,6 +1,6 @@
 """One call of a filter: what it is asked, from which belief; and who answers."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple, Protocol
 
 from ekfsim.commands import Plain
@@ -18,8 +18,14 @@ class Asked:
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings
     command: Plain | None = None  # what was asked of the robot; a filter is never told
     index: int = 0  # of the entry, from 1; 0 at the start, where only the belief is asked for
-    earlier: "Asked | None" = None  # the call before, of the same run, without its own earlier one
+    earlier: "Asked | None" = None  # the call before, of the same run: `as_earlier`
     t: float | None = None  # s, in drives and recorded logs
+
+    def as_earlier(self) -> "Asked":
+        """What the next call looks back at: what was asked, and before it what readings followed
+        one another, as far as the motion that led there.
+        """
+        return replace(self, earlier=self.earlier if isinstance(self.given, Reading) else None)
 
     @property
     def step(self) -> str:

@@ -81,7 +81,7 @@ def compare(
         yield found
         if found.unusable:
             return
-        belief, earlier = believed(found.theirs, layout), replace(asked, earlier=None)
+        belief, earlier = believed(found.theirs, layout), asked.as_earlier()
 
 
 def answered(

@@ -83,4 +83,4 @@ def handed_over(steps: Iterable[Step]) -> Iterator[tuple[Step, Asked]]:
             x, P, given, step.layout.headings, step.entry.command, step.entry.index, earlier
         )
         yield step, asked
-        earlier = replace(asked, earlier=None)
+        earlier = asked.as_earlier()

@@ -66,7 +66,7 @@ def _steps(scene: Scene, mistake: Mistake, numbers: Integers) -> Iterator[Step]:
                 belief.mean[run], belief.covariance[run], given, layout.headings, entry.command,
                 entry.index, earlier.get(run),
             )  # fmt: skip
-            earlier[run] = replace(asked, earlier=None)
+            earlier[run] = asked.as_earlier()
             believes = believed(wrong.call(asked), layout)
             posterior.mean[run], posterior.covariance[run] = believes
         measured = None if entry.truth is None else nees(posterior, entry.truth, layout)

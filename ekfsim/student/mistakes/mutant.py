@@ -18,10 +18,6 @@ class Mutant:
     def begin(self, x: Array, P: Array) -> None:
         """It keeps no belief of its own."""
 
-    def place_of(self, given: Control | Reading) -> str:
-        """It has no file; its name tells it."""
-        return self.mistake.name
-
     def call(self, asked: Asked) -> Answer:
         """The EKF's step with the mistake, where it can be made."""
         belief = self.mistake.applied(asked)

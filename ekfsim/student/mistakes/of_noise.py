@@ -13,12 +13,13 @@ from ekfsim.student.mistakes.working import Piece, Working
 
 def deviations(_: Working, right: Callable[[], Array]) -> Array:
     """σ where σ² belongs."""
-    return np.diag(np.sqrt(np.diag(right())))
+    M = right()
+    return np.sign(M) * np.sqrt(np.abs(M))
 
 
 def squares(_: Working, right: Callable[[], Array]) -> Array:
     """σ⁴ where σ² belongs."""
-    return np.diag(np.diag(right()) ** 2)
+    return right() ** 2
 
 
 def _variances(of: Callable[[float, float, float, float], tuple[float, float]]) -> Piece:

@@ -136,10 +136,5 @@ def behind(text):
 )
 def test_two_mistakes_in_one_step_are_named_together(pair):
     changes = (line for name in pair for line in MISTAKES[name])
-    both = {
-        tuple(sorted(guess))
-        for step in islice(compared(written(*changes), load_scene("tour")), 12)
-        for guess in named(step)
-        if step.differences
-    }
-    assert tuple(sorted(pair)) in both
+    differing = (s for s in compared(written(*changes), load_scene("tour")) if s.differences)
+    assert any(set(pair) == set(guess) for step in differing for guess in named(step))

@@ -292,7 +292,7 @@ OF_OTHERS = {  # mistake, scene → the change
     ("K-entry-by-entry", "landmarks"): ("np.linalg.inv(S)", "(1 / S)"),
     ("innovation-not-wrapped", "behind"): ("sensor.residual(z, h)", "z - h"),
     ("innovation-sign", "behind"): ("sensor.residual(z, h)", "sensor.residual(h, z)"),
-    ("sigma-in-P_u", "gnss"): ("motion.M(u)", "np.sqrt(motion.M(u))"),
+    ("sigma-in-P_u", "gnss"): ("motion.M(u)", "np.sign(motion.M(u)) * np.sqrt(abs(motion.M(u)))"),
     ("J_x-transposed", "landmarks"): ("F @ P @ F.T", "F.T @ P @ F"),
     ("J_x-after-move", "landmarks"): ("motion.F(x, u)", "motion.F(motion.f(x, u), u)"),
     ("P-not-updated", "pylon"): ("    P = (np.eye(len(x)) - K @ H) @ P\n", ""),
