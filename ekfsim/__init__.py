@@ -2,7 +2,7 @@
 
 A notebook needs no more than this module:
 
->>> import ekfsim
+>>> import dataclasses, ekfsim
 >>> scene = ekfsim.load_scene("square")   # a path, or the name of one that comes along
 >>> steps = list(ekfsim.play(scene))       # simulate and localize; a Step for each command
 >>> views = list(ekfsim.Playback(steps))   # one for each press of n; view 0 is the start
@@ -14,9 +14,23 @@ and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes.
 guard and the rest are fields of Scene, too, and so is `tuning=ekfsim.Tuning(particles=20_000)`, the
 numbers that a filter alone has. One level deeper, the two halves of `play`:
 `ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter,
-belief)` the Steps (what a filter made of them); for a filter of your own, see
-`ekfsim.filters.protocol`. Where only the beliefs matter, `ekfsim.stretch(belief, motion, U)`
-predicts thousands of inputs of planar odometry at once.
+belief)` the Steps (what a filter made of them), with `ekfsim.filter_of(scene)` and
+`ekfsim.first_belief(scene)` to begin with. A filter of your own is two functions, or a class, that
+`ekfsim.bring` makes one of them all (see docs/own-filter.md):
+
+>>> def predict(x, P, u, motion):
+...     F, G = motion.F(x, u), motion.G(x, u)
+...     return motion.f(x, u), F @ P @ F.T + G @ motion.M(u) @ G.T
+>>> def update(x, P, z, sensor):
+...     return x, P  # it learns nothing
+>>> ekfsim.bring(predict, update, name="mine")
+'mine'
+>>> mine = list(ekfsim.play(dataclasses.replace(scene, filter="mine")))
+>>> bool(abs(mine[1].posterior.mean - steps[1].posterior.mean).max() < 1e-9)  # after one move
+True
+
+Where only the beliefs matter, `ekfsim.stretch(belief, motion, U)` predicts thousands of inputs of
+planar odometry at once.
 
 Notation, letter for letter as in the code (Bar-Shalom, Särkkä, Barfoot; Thrun's book swaps Q and
 R):
@@ -66,6 +80,7 @@ if TYPE_CHECKING:
     from ekfsim.filters.stretch import stretch as stretch
     from ekfsim.filters.tuning import Tuning as Tuning
     from ekfsim.geometry.ellipse import ellipse as ellipse
+    from ekfsim.localization import filter_of as filter_of
     from ekfsim.localization import first_belief as first_belief
     from ekfsim.localization import localize as localize
     from ekfsim.localization import play as play
@@ -75,6 +90,7 @@ if TYPE_CHECKING:
     from ekfsim.records import Step as Step
     from ekfsim.scene import Scene as Scene
     from ekfsim.simulation import simulate as simulate
+    from ekfsim.student.own.bring import bring as bring
     from ekfsim.views.picture.frames import draw as draw
     from ekfsim.views.picture.look import Look as Look
     from ekfsim.views.terminal.playback import Playback as Playback
@@ -95,12 +111,13 @@ _HOMES = {
     "filters.stretch": ("stretch",),
     "filters.tuning": ("Tuning",),
     "geometry.ellipse": ("ellipse",),
-    "localization": ("first_belief", "localize", "play"),
+    "localization": ("filter_of", "first_belief", "localize", "play"),
     "models.sensors.laser": ("Laser",),
     "models.motions.move_turn": ("MoveTurn",),
     "records": ("Entry", "Step"),
     "scene": ("Scene",),
     "simulation": ("simulate",),
+    "student.own.bring": ("bring",),
     "views.words.closing": ("conclude",),
     "views.picture.frames": ("draw",),
     "views.picture.look": ("Look",),

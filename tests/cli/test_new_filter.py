@@ -2,12 +2,21 @@
 
 import io
 import tokenize
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from program import ekfsim
 
+from ekfsim.files.packaged import packaged
+from ekfsim.files.scenes.load import load_scene
+from ekfsim.files.template import template
+from ekfsim.localization import play
+
+CLASSROOM = [
+    name for name, path in packaged("commands").items() if "\ncommands:" in path.read_text("utf-8")
+]
 OPEN = {"predict": ["6", "1", "4", "7"], "update": ["8 and 9", "11", "10", "12"]}
 
 
@@ -52,6 +61,21 @@ def test_the_complete_one_has_few_lines_and_needs_no_ekfsim():
         if token.type in (tokenize.NAME, tokenize.OP, tokenize.NUMBER)
     ]
     assert len({token.start[0] for token in words}) <= 12
+
+
+@pytest.mark.parametrize("name", CLASSROOM)
+def test_the_complete_one_is_the_ekf_in_every_classroom_scene(place, name):
+    """To 1e-9 standard deviations of at least 1e-6 (m, rad): P is singular on the first moves."""
+    (place / "mine.py").write_text(template("filter-complete"))
+    scene = load_scene(name)
+    mine = play(replace(scene, filter=str(place / "mine.py")))
+    for step, ours in zip(mine, play(replace(scene, filter="ekf")), strict=True):
+        (x, P), (x0, P0) = step.posterior, ours.posterior
+        σ = np.maximum(np.sqrt(np.maximum(np.diag(P0), 0)), 1e-6)
+        off = x - x0
+        off[2] = np.arctan2(np.sin(off[2]), np.cos(off[2]))
+        assert np.abs(off / σ).max() < 1e-9
+        assert np.abs((P - P0) / np.outer(σ, σ)).max() < 1e-9
 
 
 def test_a_filter_overwrites_nothing_and_its_kind_may_be_told():

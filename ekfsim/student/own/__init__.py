@@ -10,4 +10,5 @@ derivatives.py  F, G and H, where he wrote his own
 filter.py    the filter around them
 whole.py     a class of the full protocol, looked after
 choice.py    the filter that a place stands for
+bring.py     the same of what stands in a cell of a notebook
 """

@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import sys
 import sysconfig
 from collections.abc import Iterator
@@ -20,6 +21,7 @@ INSTALLED = tuple(
     os.path.join(os.path.realpath(sysconfig.get_path(name)), "")
     for name in ("stdlib", "platstdlib", "purelib", "platlib")
 )
+CELL = re.compile(r"[/\\]ipykernel_\d+[/\\]\d+\.py$|^<ipython-input-")
 MOST_WORDS = 300  # of an exception's text
 
 
@@ -124,7 +126,8 @@ def words_of(error: BaseException) -> str:
 
 
 def shown(file: str) -> str:
-    """A file as it is told: from the folder that we are in, where it is below that.
+    """A file as it is told: from the folder that we are in, where it is below that; of a cell of a
+    notebook, whose files are numbers, no more than that.
 
     >>> shown(os.path.abspath("mine.py"))
     'mine.py'
@@ -133,4 +136,4 @@ def shown(file: str) -> str:
         here = os.path.join(os.getcwd(), "")
     except FileNotFoundError:  # somebody has deleted it
         return os.path.basename(file)
-    return file.removeprefix(here)
+    return "cell" if CELL.search(file) else file.removeprefix(here)

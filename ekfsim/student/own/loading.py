@@ -29,12 +29,19 @@ class Code:
     module: ModuleType | None = None  # all that stands in it
 
 
+# what `bring` made filters of, by their names, as long as this process lives
+BROUGHT: dict[str, Code] = {}
+
+
 def load(place: str) -> Code:
-    """The code at a place, as it stands there now: it is run from its first line.
+    """The code at a place, as it stands there now: it is run from its first line; or that which
+    was brought under a name.
 
     Raises UsageError where there is no such place or no filter in it, FaultError where its code
     fails.
     """
+    if place in BROUGHT:
+        return BROUGHT[place]
     if not is_place(place):
         place = registered(place)
     file, name = parts(place)
@@ -48,7 +55,10 @@ def registered(name: str) -> str:
         right = f"name one of them: {' or '.join(places)}"
         raise UsageError(f"{name}: {len(places)} packages register it; {right}")
     if not places:
-        raise UsageError(f"{name}: there is no such filter")
+        raise UsageError(
+            f"{name}: there is no such filter here; one that was brought is known to its own "
+            "process alone: write it to a file, and name that"
+        )
     return places[0]
 
 
