@@ -21,7 +21,8 @@ from ekfsim.student.sandbox.limits import ALONE, Limits, keep_to
 def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits) -> None:
     """Answer one request after another, until the other end closes."""
     _prepare(asked, limits)
-    from ekfsim.student.sandbox.calling import Requests  # NumPy comes after the limits
+    from ekfsim.student.own.home import words_of  # NumPy comes after the limits
+    from ekfsim.student.sandbox.calling import Requests
 
     fenced = fence(asked["folder"], [*asked["read"], sys.prefix, sys.base_prefix])
     requested = Requests(asked["place"], asked["provided"], fenced)
@@ -36,8 +37,8 @@ def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits)
             message = answered(getattr(requested, what)(*told), mark)
         except FaultError as error:
             message = faulted(error.place, limits.too_long if rung else error.wrong, mark)
-        except BaseException as error:  # sys.exit among them
-            message = faulted(label, f"{type(error).__name__}: {error}", mark)
+        except BaseException as error:  # of his, where it is called by ours: __array__ may exit
+            message = faulted(_place(error, asked["folder"]) or label, words_of(error), mark)
         finally:
             alarm(signal.ITIMER_REAL, 0)
         _flush()
@@ -46,7 +47,9 @@ def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits)
 
 def _prepare(asked: Mapping[str, Any], limits: Limits) -> None:
     """Nothing of whoever started this but the folder, no privileges, no more than the limits."""
-    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
     os.dup2(2, 1)  # what is printed does not go where answers go
     os.environ.clear()
     os.environ.update(dict.fromkeys(ALONE, "1"))
@@ -67,6 +70,18 @@ def _alarm(limits: Limits) -> list[int]:
 
     signal.signal(signal.SIGALRM, ring)
     return rung
+
+
+def _place(error: BaseException, folder: str) -> str:
+    """The deepest line in the folder that an exception went through, "" where there is none."""
+    from ekfsim.student.own.home import frames
+
+    own = [
+        f"{os.path.relpath(file, folder)}:{line}"
+        for file, line in frames(error.__traceback__)
+        if file.startswith(os.path.join(folder, ""))
+    ]
+    return own[-1] if own else ""
 
 
 def _flush() -> None:

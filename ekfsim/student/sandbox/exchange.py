@@ -10,11 +10,11 @@ The mark is drawn anew for each request: what comes without it was written befor
 or by somebody else.
 """
 
-import struct
 from collections.abc import Sequence
+from struct import Struct, pack
 from typing import NamedTuple
 
-HEAD = struct.Struct("<IB3x8s")
+HEAD = Struct("<IB3x8s")
 REQUEST, NUMBERS, WORDS, FAULT = range(4)
 MOST = {NUMBERS: 2**20, WORDS: 4000, FAULT: 4000}  # bytes of what is answered
 BETWEEN = "\0"  # where and what
@@ -40,7 +40,7 @@ def answered(answer: Numbers | str, mark: bytes) -> bytes:
     """An answer as it goes over."""
     if isinstance(answer, str):
         return packed(Message(WORDS, mark, answer.encode(errors="replace")[: MOST[WORDS]]))
-    return packed(Message(NUMBERS, mark, struct.pack(f"<{len(answer)}d", *answer)))
+    return packed(Message(NUMBERS, mark, pack(f"<{len(answer)}d", *answer)))
 
 
 def faulted(place: str, wrong: str, mark: bytes) -> bytes:

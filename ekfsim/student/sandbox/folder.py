@@ -12,6 +12,7 @@ from ekfsim.student.fault import FaultError
 
 MOST_FILES = 2000
 MOST_BYTES = 64 * 2**20
+FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_NOFOLLOW", 0)
 
 
 def copy_of(submission: Path, shared: bool = False) -> Path:
@@ -20,7 +21,7 @@ def copy_of(submission: Path, shared: bool = False) -> Path:
     shared : whether other users are to read it
     Raises FaultError where it is too much or cannot be read.
     """
-    folder = Path(tempfile.mkdtemp(prefix="ekfsim-"))
+    folder = Path(tempfile.mkdtemp(prefix="ekfsim-code-"))
     try:
         if shared:
             folder.chmod(0o755)
@@ -44,7 +45,7 @@ def _copy(submission: Path, folder: Path) -> None:
     waiting = deque([(submission, folder)])
     while waiting:
         source, target = waiting.popleft()
-        for entry in os.scandir(source):
+        for entry in list(os.scandir(source)):
             files += 1
             place = target / entry.name
             if entry.is_symlink():
@@ -62,29 +63,44 @@ def _copy(submission: Path, folder: Path) -> None:
 
 
 def remove(folder: Path) -> None:
-    """Delete a folder, however deep it is and whatever may be read in it.
+    """Delete a folder, however deep it is and whatever may be read in it; as far as that can be.
 
-    A folder in it is moved to the top before it is looked into: no path becomes long.
+    One folder is open at a time: the way down is a list of names, the way up is "..".
     """
-    number = 0
-    waiting = [str(folder)]
-    while waiting:
-        inner = waiting.pop()
-        with suppress(OSError):
-            os.chmod(inner, stat.S_IRWXU)
-            for name in os.listdir(inner):
-                path = os.path.join(inner, name)
-                if not stat.S_ISDIR(os.lstat(path).st_mode):
-                    os.unlink(path)
-                elif inner == str(folder):
-                    waiting.append(path)
-                else:
-                    number += 1
-                    moved = os.path.join(str(folder), f"{number} {os.urandom(4).hex()}")
-                    os.chmod(path, stat.S_IRWXU)
-                    os.rename(path, moved)
-                    waiting.append(moved)
-            if inner != str(folder):
-                os.rmdir(inner)
     with suppress(OSError):
+        here = os.open(folder, FOLDER)
+        levels = [("", _emptied(here))]  # the name of each folder on the way, what is left in it
+        while levels:
+            name, left = levels[-1]
+            if left:
+                down = left.pop()
+                with suppress(OSError):
+                    os.chmod(down, stat.S_IRWXU, dir_fd=here)
+                    below = os.open(down, FOLDER, dir_fd=here)
+                    os.close(here)
+                    here = below
+                    levels.append((down, _emptied(here)))
+                continue
+            levels.pop()
+            if levels:
+                above = os.open("..", FOLDER, dir_fd=here)
+                os.close(here)
+                here = above
+                with suppress(OSError):
+                    os.rmdir(name, dir_fd=here)
+        os.close(here)
         os.rmdir(folder)
+
+
+def _emptied(folder: int) -> list[str]:
+    """The folders in one, all else of which is deleted."""
+    left = []
+    with suppress(OSError):
+        os.chmod(folder, stat.S_IRWXU)
+    for name in os.listdir(folder):
+        with suppress(OSError):
+            if stat.S_ISDIR(os.lstat(name, dir_fd=folder).st_mode):
+                left.append(name)
+            else:
+                os.unlink(name, dir_fd=folder)
+    return left

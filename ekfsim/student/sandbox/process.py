@@ -33,12 +33,13 @@ from ekfsim.student.sandbox.exchange import (
     fault_of,
     packed,
 )
-from ekfsim.student.sandbox.keeper import KILLING, TOO_MANY, descendants
+from ekfsim.student.sandbox.keeper import KILLING, MOST_LEFT, TOO_MANY, descendants
 from ekfsim.student.sandbox.limits import ALONE, Limits
 
 STARTING = 60.0  # s in which Python and NumPy have started even on a busy machine
 GRACE = 0.25  # s beyond its time in which it can still say where it was
 CHUNK = 2**16
+MOST_PARTS = 64  # of what it has printed when it is not waited for
 FORGED = "writes to the exchange itself; only what a function returns counts"
 START = """\
 import json, sys
@@ -64,6 +65,7 @@ class Process:
     ) -> None:  # fmt: skip
         self._label, self._limits, self._left = os.path.basename(place), limits, STARTING
         self.ended = self._closed = False
+        self.left = 0  # processes that were still running when it was ended
         self._came = bytearray()  # of the exchange, not yet read
         self._kept, self._printed = bytearray(), 0
         asked = {
@@ -94,9 +96,6 @@ class Process:
         began = time.monotonic()
         if self._left <= 0:
             raise self.refused(self._limits.too_long)
-        self._take(0)
-        if self._came:
-            raise self.refused("answers before it was asked")
         mark = secrets.token_bytes(8)
         request = json.dumps([self._left, what, told]).encode()
         try:
@@ -114,18 +113,18 @@ class Process:
 
     def _send(self, message: bytes, began: float) -> None:
         """Hand it a request as fast as it takes it."""
-        self._wait.register(self._requests, select.POLLOUT)
-        try:
-            while message:
-                with contextlib.suppress(BlockingIOError):
-                    message = message[os.write(self._requests, message) :]
-                if message:
-                    self._take(self._remaining(began))
-        except BrokenPipeError:
-            raise self._lost() from None
-        finally:
-            if not self.ended:
-                self._wait.unregister(self._requests)
+        while message:
+            try:
+                message = message[os.write(self._requests, message) :]
+                continue
+            except BrokenPipeError:
+                raise self._lost() from None
+            except BlockingIOError:
+                self._wait.register(self._requests, select.POLLOUT)
+            self._take(self._remaining(began))
+            self._wait.unregister(self._requests)
+            if self._came:  # before it has been asked
+                raise self.refused(FORGED)
 
     def _answer(self, mark: bytes, began: float) -> Message:
         """Its answer, if it is one."""
@@ -165,10 +164,16 @@ class Process:
                 self._printed += len(part)
                 self._kept += part[: max(0, 4 * self._limits.printed - len(self._kept))]
                 continue
-            self._came += part
+            self._came += part  # not much: what is no answer is refused as soon as it is seen
             self._closed |= not part
-            if len(self._came) > HEAD.size + MOST[NUMBERS]:
-                raise self.refused(FORGED)
+
+    def _take_prints(self) -> None:
+        """Take in what it has printed, as far as that is not without end."""
+        for _ in range(0 if self.ended else MOST_PARTS):
+            before = self._printed
+            self._take(0)
+            if self._printed == before:
+                return
 
     def refused(self, wrong: str) -> FaultError:
         """What it did is no answer: it is ended, and not asked again."""
@@ -199,20 +204,24 @@ class Process:
     @property
     def printed(self) -> tuple[str, int]:
         """The beginning of what it printed, and how many bytes there were in all."""
+        self._take_prints()
         return self._kept.decode(errors="replace"), self._printed
 
     def end(self) -> None:
         """Kill it, and all that it started."""
         if self.ended:
             return
+        self._take_prints()
         self.ended, process = True, self._process
         for pipe in (process.stdin, process.stdout, process.stderr):
             if pipe is not None:
                 pipe.close()
         with contextlib.suppress(ProcessLookupError, PermissionError):
+            process.send_signal(signal.SIGCONT)  # the code may have stopped it
             process.terminate()
         try:
-            process.wait(KILLING + 1)
+            status = process.wait(KILLING + 1)
+            self.left = status if 0 < status <= MOST_LEFT and not self._closed else 0
         except subprocess.TimeoutExpired:  # the keeper has been stopped, or cannot kill
             for one in (*descendants(process.pid), process.pid):
                 with contextlib.suppress(ProcessLookupError, PermissionError):

@@ -97,6 +97,11 @@ class Sandboxed:
         return shown(kept) + (f"… and {more} bytes more" if more > 0 else "")
 
     @property
+    def left(self) -> int:
+        """How many processes it had left running when it was closed; they were killed."""
+        return 0 if self._process is None else self._process.left
+
+    @property
     def fenced(self) -> int:
         """Which version of Landlock is around it, 0 for none; see docs/safety.md."""
         return (self._process or self._begun()).fenced

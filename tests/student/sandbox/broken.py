@@ -1,7 +1,6 @@
-"""Files that a student could hand in, each broken in its own way, and what is told of each."""
+"""Files that a student could hand in, each broken in its own way, and the line that tells of it."""
 
 import re
-from typing import NamedTuple
 
 RIGHT = """\
 import numpy as np
@@ -18,37 +17,125 @@ def update(x, P, z, sensor):
     K = P @ H.T @ np.linalg.inv(S)
     return x + K @ sensor.residual(z, sensor.h(x)), (np.eye(len(x)) - K @ H) @ P
 """
+HEAD = "def predict(x, P, u, motion):\n"
+EVERY = """\
+for descriptor in range(3, 30):
+    try:
+        os.write(descriptor, {})
+    except OSError:
+        pass"""
+SECONDS = 0.5  # of the limit that they are given
+TOO_LONG = f"took longer than {SECONDS:g} s"
+FORGED = "writes to the exchange itself; only what a function returns counts"
 
 
-def doing(line: str) -> str:
+def doing(text: str) -> str:
     """The right file, whose predict does something first."""
-    head = "def predict(x, P, u, motion):\n"
-    return "import os, signal, sys, time\n" + RIGHT.replace(head, f"{head}    {line}\n")
+    lines = "".join(f"    {line}\n" for line in text.splitlines())
+    return "import os, signal, sys, threading, time\n" + RIGHT.replace(HEAD, HEAD + lines)
 
 
-LINE = RIGHT.count("\n", 0, RIGHT.index("F, G")) + 2  # where `doing` does it
+def mine(line: int | None, wrong: str) -> re.Pattern[str]:
+    """What is told of a line of it, or of the file: a pattern for the whole."""
+    place = r"mine\.py" if line is None else rf"mine\.py:{line}"
+    return re.compile(f"{place}: {wrong}" + r"\Z")
 
 
-class Broken(NamedTuple):
-    """A file, and what is told of it: a pattern for the whole line."""
-
-    text: str
-    told: str
-
-
-HERE = rf"mine\.py:{LINE}: "
-BROKEN = {
-    "endless loop": Broken(doing("while True: pass"), HERE + r"took longer than 1 s"),
-    "memory": Broken(
-        doing("rubbish = [np.empty(10**7) for _ in range(10**4)]"), HERE + r"MemoryError.*"
+BROKEN = {  # the text, and what is told
+    "endless loop": (doing("while True: pass"), mine(6, TOO_LONG)),
+    "endless loop that catches all": (
+        doing("while True:\n    try:\n        while True: pass\n    except BaseException: pass"),
+        mine(8, TOO_LONG),
     ),
-    "status 0": Broken(doing("sys.exit(0)"), HERE + r"SystemExit: 0"),
-    "status 0 at once": Broken(
-        doing("os._exit(0)"), r"mine\.py: ended its process with status 0 instead of answering"
+    "endless loop while it is read": ("while True: pass\n", mine(1, TOO_LONG)),
+    "deaf to alarms": (
+        doing("signal.signal(signal.SIGALRM, signal.SIG_IGN)\nwhile True: pass"),
+        mine(None, TOO_LONG),
+    ),
+    "stops itself": (doing("os.kill(os.getpid(), signal.SIGSTOP)"), mine(None, TOO_LONG)),
+    "memory": (
+        doing("rubbish = [np.empty(10**7) for _ in range(10**4)]"),
+        mine(6, "MemoryError: Unable to allocate.*"),
+    ),
+    "status 0": (doing("sys.exit(0)"), mine(6, r".*exit\(0\).*")),
+    "status 0 at once": (
+        doing("os._exit(0)"),
+        mine(None, "ended its process with status 0 instead of answering"),
+    ),
+    "status 0 while it is read": (
+        "import os\nos._exit(0)\n",
+        mine(None, "ended its process with status 0 instead of answering"),
+    ),
+    "exit in a thread": (
+        doing(
+            "thread = threading.Thread(target=os._exit, args=[3])\nthread.start()\nthread.join()"
+        ),
+        mine(None, "ended its process with status 3 instead of answering"),
+    ),
+    "kills itself": (doing("os.kill(os.getpid(), signal.SIGKILL)"), mine(None, "was killed: .*")),
+    "crashes": (
+        doing("import ctypes; ctypes.string_at(0)"),
+        mine(None, "crashed: Segmentation fault"),
+    ),
+    "nan": (doing("return x * np.nan, P"), mine(5, r"x\[0\] is nan")),
+    "not Python": ("def predict(:\n", mine(1, "this is not Python: invalid syntax")),
+    "no update": (RIGHT.replace("def update", "def correct"), mine(None, "has no update.*")),
+    "empty": ("", mine(None, "has no predict.* and no update.*")),
+    "large file": (
+        doing("open('big', 'wb').write(bytes(20 * 2**20))"),
+        mine(6, "OSError:.*File too large"),
+    ),
+    "recursion": (doing("predict(x, P, u, motion)"), mine(6, "RecursionError: .*")),
+    "list in list": (
+        doing("nested = []\nfor _ in range(10**5): nested = [nested]\nreturn nested, P"),
+        mine(5, "x is no array of numbers.*"),
+    ),
+    "huge array": (doing("return np.zeros(10**6), P"), mine(5, r"x has the shape \(1000000,\).*")),
+    "array that raises": (
+        doing("class Bad:\n    def __array__(self, *_, **__): raise SystemExit\nreturn Bad(), P"),
+        mine(7, ".*exit.*"),
+    ),
+    "exception that raises": (
+        doing("class Bad(Exception):\n    def __str__(self): raise Bad\nraise Bad"),
+        mine(8, "Bad"),
+    ),
+    "endless exception": (doing("raise ValueError('x' * 10**7)"), mine(6, "ValueError: x{300}.*")),
+    "controls": (
+        doing(r"raise ValueError('\x1b[31m\0\n')"),
+        mine(6, r"ValueError: \\x1b\[31m\\x00"),
+    ),
+    "junk on the exchange": (doing(EVERY.format("b'junk' * 100")), mine(None, FORGED)),
+    "much junk on the exchange": (doing(EVERY.format("bytes(2**22)")), mine(None, FORGED)),
+    "answers itself": (
+        doing(
+            "import struct\nanswer = struct.pack('<IB3x8s12d', 96, 1, bytes(8), *range(12))\n"
+            + EVERY.format("answer")
+        ),
+        mine(None, FORGED),
+    ),
+    "closes the exchange": (
+        doing("os.closerange(3, 30)"),
+        mine(None, "(ended its process with status 1|closed the exchange) instead of answering"),
+    ),
+    "closes the exchange and stays": (
+        doing("os.closerange(3, 30)\nwhile True: pass"),
+        mine(None, "closed the exchange instead of answering"),
+    ),
+    "no more of NumPy": (
+        doing("np.array = np.asarray = np.stack = np.linalg = None"),
+        re.compile(r"mine\.py(:7)?: .+\Z"),
     ),
 }
-
-
-def whole(pattern: str) -> re.Pattern[str]:
-    """The whole of one line."""
-    return re.compile(pattern + r"\Z")
+HARMLESS = {  # what is answered is right all the same
+    "prints much": doing("for _ in range(10**3): os.write(1, bytes(2**16))"),
+    "prints in colour": doing(r"print('\x1b[31mred\x07')"),
+    "prints an answer": doing("print([1.0] * 12)"),
+    "closes what it prints to": doing("os.close(1); os.close(2); sys.stdout = sys.stderr = None"),
+    "exit of a thread": doing(
+        "thread = threading.Thread(target=sys.exit)\nthread.start()\nthread.join()"
+    ),
+    "goes elsewhere": doing("os.chdir('/')"),
+    "no more of json": doing("import json, struct\njson.loads = json.dumps = struct.pack = None"),
+    "deletes its folder": doing("import shutil; shutil.rmtree('.', ignore_errors=True)"),
+    "warns": doing("np.zeros(1) / 0"),
+}
