@@ -19,6 +19,9 @@ from ekfsim.geometry.ellipse import cone_halfwidth, ellipse
 from ekfsim.localization import play
 from ekfsim.records import Step
 from ekfsim.scene import Scene
+from ekfsim.student.exposing.exposed import exposed, possible
+from ekfsim.student.mistakes.known import KNOWN
+from ekfsim.student.mistakes.mistake import Mistake
 from ekfsim.study.block import run_block
 from ekfsim.study.expectation import verified
 from ekfsim.study.plan import Case
@@ -31,6 +34,7 @@ PROOFS = [name for name in COMMANDS if name.startswith("proof-")]
 DIVERGENCES = [name for name in COMMANDS if name.startswith("diverge-")]
 K = math.sqrt(-2 * math.log(1 - 0.954))  # standard deviations to the edge of the 95.4 % ellipse
 QUARTER = math.pi / 2
+EVERY = "proof-every-mistake"
 
 
 @cache
@@ -278,6 +282,53 @@ def test_two_beams_beside_a_corner_have_mirrored_derivatives():
         assert step.entry.given.sensor.walls.name(int(step.remark.wall)) == ("boundary", edge)
 
 
+def test_a_beam_ends_at_the_nearest_wall_and_a_wall_at_its_corners():
+    ahead, past = senses("proof-nearest-wall")
+    assert ahead.correction.predicted[0] == pytest.approx(4)
+    assert past.correction.predicted[0] == pytest.approx(7 / math.cos(math.radians(20)))
+    met = [step.entry.given.sensor.walls.name(int(step.remark.wall)) for step in (ahead, past)]
+    assert met == [("desk", 0), ("boundary", 1)]
+    assert not any(step.remark.ambiguous for step in (ahead, past))
+    assert [P[0, 0] for P in covariances("proof-nearest-wall")[:2]] == pytest.approx([0.04, 0.02])
+    # nearer than what is met, were they endless: the desk's upper edge and its front
+    tilt = math.radians(20)
+    told = (
+        round(1 / math.sin(tilt), 4),
+        round(4 / math.cos(tilt), 4),
+        round(7 / math.cos(tilt), 4),
+    )
+    assert told == (2.9238, 4.2567, 7.4492)
+    assert 4 * math.tan(tilt) - 1 == pytest.approx(0.46, abs=5e-3)
+
+
+def test_the_wall_is_the_expected_one_whatever_was_read():
+    (start, last) = (step for step in steps("proof-expected-wall"))
+    assert last.remark.ambiguous
+    assert (last.correction.predicted[0], last.entry.given.z[0]) == pytest.approx((4, 7))
+    assert last.correction.nis == pytest.approx(3**2 / (0.1**2 + (0.05 * 4) ** 2))
+    assert last.correction.nis == pytest.approx(180)
+    assert last.posterior.mean == pytest.approx([1 - 3 / 5, 2.5, 0])
+    assert last.posterior.covariance[0, 0] == pytest.approx(0.008)
+    assert (start.nees.value, last.nees.value) == pytest.approx((4, 49))
+
+
+def test_an_innovation_of_an_azimuth_is_wrapped():
+    _, moved, read = steps("proof-marker-behind")
+    assert_allclose(moved.posterior.covariance, np.diag([0.1**2, 0.2**2 + 0.1**2, 0]), atol=1e-15)
+    expected = math.degrees(math.atan2(-0.2, -5))
+    azimuth, r = (
+        math.degrees(float(each[0])) for each in (read.entry.given.z, read.correction.innovation)
+    )
+    assert (abs(azimuth), r) == pytest.approx((180, -180 - expected))
+    assert (round(expected, 4), round(r, 4)) == (-177.7094, -2.2906)
+    # the azimuth alone: the elevation says next to nothing of y
+    slope = 5 / (5**2 + 0.2**2)
+    gain = 0.05 * slope / (0.05 * slope**2 + 0.01 * (0.2 / 25.04) ** 2 + math.radians(1) ** 2)
+    assert read.posterior.mean[1] == pytest.approx(0.2 + gain * math.radians(r), abs=1e-4)
+    assert round(read.posterior.mean[1], 4) == 0.0264
+    assert 0.2 + gain * math.radians(r + 360) == pytest.approx(27.31, abs=0.01)
+
+
 def test_without_noise_the_estimate_is_the_truth():
     for step in steps("proof-no-noise"):
         assert_allclose(step.posterior.mean, step.entry.truth, atol=1e-12)
@@ -353,6 +404,26 @@ def test_the_wrong_wall_is_told_before_it_is_believed():
         round(float(step.entry.given.z[0]), 2),
     ) == (1.11, 5.38)
     assert step.correction.nis == pytest.approx(82, abs=0.5)
+
+
+def shown(name: str) -> set[Mistake]:
+    return {one.mistake for one in exposed(FOUND[name]) if one.first is not None}
+
+
+def test_the_proofs_together_expose_every_known_mistake():
+    """Each by one at least that is not made to expose them all."""
+    proofs = [name for name in FOUND if name.startswith("proof-") and name != EVERY]
+    assert set(KNOWN) - set().union(*map(shown, proofs)) == set()
+
+
+def test_one_proof_exposes_every_mistake_that_its_robot_can_make():
+    assert shown(EVERY) == possible(FOUND[EVERY], KNOWN)
+    # all others need an angle that is read, two numbers at once, or a process noise
+    assert set(KNOWN) - shown(EVERY) <= shown("proof-marker-behind")
+    least = min(one.first.size for one in exposed(FOUND[EVERY]) if one.first is not None)
+    assert least > 0.01
+    assert evidence(EVERY).verdict is Verdict.CONSISTENT
+    assert not any(step.remark.ambiguous for step in senses(EVERY))
 
 
 def test_the_files_lie_where_the_wheel_takes_them_from():

@@ -59,7 +59,8 @@ def test_every_proof_gives_what_was_expected(album):
         f"proof-{name}" for name in (
             "no-noise", "turn-noise", "distance-noise", "heading-bends", "square-twice",
             "across-wall", "corner",
-            "two-beams", "dead-reckoning", "unsure-start", "coverage",
+            "nearest-wall", "expected-wall",
+            "two-beams", "dead-reckoning", "unsure-start", "coverage", "every-mistake",
         )
     }  # fmt: skip
     for _, what, expected, measured, _ in rows:

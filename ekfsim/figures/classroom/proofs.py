@@ -22,6 +22,10 @@ from ekfsim.scene import Scene
 P954 = 0.954
 K = radius_factor(P954)
 RUNS = 1000
+STUDIED = (
+    *("proof-dead-reckoning", "proof-unsure-start"),
+    *("proof-coverage", "proof-every-mistake"),
+)
 # rad, m: of each corner and side in proof-square-twice
 TURN_SIGMA, SIDE_SIGMA = 0.02 * math.pi / 2, 0.02 * 3
 
@@ -55,7 +59,7 @@ def proof_rows() -> Iterator[list[str]]:
             for value in (proof.expected, proof.measured(steps[proof.name]) + 0.0)
         )
         yield [proof.name, proof.what, *told]
-    for name in ("proof-dead-reckoning", "proof-unsure-start", "proof-coverage"):
+    for name in STUDIED:
         *_, last = play(shipped(name), np.arange(RUNS))
         assert last.entry.truth is not None
         inside = (
@@ -91,6 +95,15 @@ def _derivative(i: int, entry: int) -> Callable[[list[Step]], float]:
         return float(correction.H[0, entry])
 
     return derivative
+
+
+def _predicted(i: int) -> Callable[[list[Step]], float]:
+    def predicted(steps: list[Step]) -> float:
+        correction = steps[i].correction
+        assert correction is not None
+        return float(correction.predicted[0])
+
+    return predicted
 
 
 def _worst(steps: list[Step]) -> float:
@@ -135,6 +148,12 @@ PROOFS = (
     Proof("proof-corner", "∂h/∂θ to the right of it: mirrored",
     4 * math.tan(CORNER) / math.cos(CORNER), " m/rad",
           _derivative(2, 2)),
+    Proof("proof-nearest-wall", "range to the desk, not to the wall behind it", 4.0, " m",
+    _predicted(1)),
+    Proof("proof-nearest-wall", "past its corner, to that wall: 7/cos 20°",
+    7 / math.cos(math.radians(20)), " m", _predicted(2)),
+    Proof("proof-expected-wall", "x after a beam 3 m too long for the wall expected: 1 − 3/5",
+    0.4, " m", _mean(1, 0)),
     Proof("proof-two-beams", "x after a beam that is 0.1 m too long", 3.95, " m", _mean(1, 0)),
     Proof("proof-two-beams", "x after one the other way", 4.0008, " m", _mean(2, 0)),
 )  # fmt: skip

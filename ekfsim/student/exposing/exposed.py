@@ -80,7 +80,8 @@ def handed_over(steps: Iterable[Step]) -> Iterator[tuple[Step, Asked]]:
             continue
         x, P = step.prior
         asked = Asked(
-            x, P, given, step.layout.headings, step.entry.command, step.entry.index, earlier
-        )
+            x, P, given, step.layout.headings, step.entry.command, step.entry.index, earlier,
+            step.entry.t,
+        )  # fmt: skip
         yield step, asked
         earlier = asked.as_earlier()

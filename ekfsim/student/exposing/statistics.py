@@ -64,7 +64,7 @@ def _steps(scene: Scene, mistake: Mistake, numbers: Integers) -> Iterator[Step]:
             given = _of_run(entry.given, run, numbers)
             asked = Asked(
                 belief.mean[run], belief.covariance[run], given, layout.headings, entry.command,
-                entry.index, earlier.get(run),
+                entry.index, earlier.get(run), entry.t,
             )  # fmt: skip
             earlier[run] = asked.as_earlier()
             believes = believed(wrong.call(asked), layout)
