@@ -49,12 +49,14 @@ def guesses(asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> 
 
 def fits(mistakes: Guess, asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> bool:
     """Whether a step with these mistakes, all together, has the student's numbers."""
-    ways = [mistake.ways for mistake in mistakes]
     return (
         all(mistake.where(asked) for mistake in mistakes)
         and usable(asked)
-        and _made(ways, asked, theirs, unit, gives)
-    )
+        and _made(
+            [(*mistake.ways, *mistake.fitted(asked, theirs)) for mistake in mistakes],
+            asked, theirs, unit, gives,
+        )
+    )  # fmt: skip
 
 
 def _pairs(asked: Asked, theirs: Answer, unit: Array, gives: Gives) -> list[Guess]:

@@ -1,16 +1,21 @@
 """A mistake: what is told of it, what to read again, and what it changes in a step."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ekfsim.filters.belief import Gaussian
-from ekfsim.student.asked import Asked
+from ekfsim.student.asked import Answer, Asked
 from ekfsim.student.mistakes.working import Pieces, Working, usable
 
 Where = Callable[[Asked], bool]
+Fitted = Callable[[Asked, Answer], Iterable[Pieces]]
+
+
+def _known_beforehand(_: Asked, __: Answer) -> Iterable[Pieces]:
+    return ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +27,8 @@ class Mistake:
     read: str  # the equation to read again
     where: Where  # the steps in which it can be made
     ways: tuple[Pieces, ...]  # what it puts in the place of which symbols; the usual way first
+    # more ways, where what is put there can only be known from a student's numbers
+    fitted: Fitted = _known_beforehand
 
     def applied(self, asked: Asked) -> Gaussian | None:
         """What a filter with this mistake alone makes of the step; None where it cannot be made."""

@@ -99,6 +99,9 @@ MISTAKES = {
     "degrees-in-cosine": (NEW, NEW.replace("* c", "* np.cos(th * 180 / np.pi)").replace(
         "* s", "* np.sin(th * 180 / np.pi)")),
     "middle-heading": (C_S, "    th = th + a / 2\n" + C_S),
+    "heading-radians-twice": (NEW, NEW.replace("* c", "* np.cos(np.radians(th))").replace(
+        "* s", "* np.sin(np.radians(th))")),
+    "heading-modulo-pi": (NEW, NEW.replace("x[2] + a", "(x[2] + a) % np.pi")),
     "turn-for-heading": (C_S, "    th = a\n" + C_S),
     "sine-for-cosine": (C_S, C_S.replace("c, s", "s, c"), JX, "[[1, 0, d * s], [0, 1, -d * c], [0, 0, 1]]"),
     "y-sign": (NEW, NEW.replace("+ d * s", "- d * s")),
@@ -132,6 +135,9 @@ MISTAKES = {
     "noise-without-J_u": (NOISE, "noise = np.diag([sd**2, 0, sa**2])"),
     "command-in-P_u": (SIGMAS, SIGMAS.replace("* d", "* motion.command[0]").replace("* a", "* motion.command[1]")),
     "degrees-in-P_u": (SIGMAS, SIGMAS.replace("* a", "* a * 180 / np.pi")),
+    "noise-before-J_x": (SPREAD, "P = P + Ju @ Pu @ Ju.T\n    " + SPREAD, NOISE, "noise = 0"),
+    "P_u-of-its-own": (PU, "np.diag([0.03**2, 0.01])"),
+    "P-inflated": (SUM, SUM + " + 0.01 * np.eye(3)"),
     "no-noise": (SUM, "P = spread"),
     "P-not-predicted": (SUM, ""),
     "P-forgotten": (SUM, "P = noise"),
@@ -157,6 +163,8 @@ MISTAKES = {
     "J_H-sign-theta": (ROW, "[[hx, hy, -ht]]"),
     "J_H-without-theta": (ROW, "[[hx, hy, 0]]"),
     "J_H-theta-without-range": (ROW, "[[hx, hy, ht / r]]"),
+    "J_H-theta-of-the-reading": (ROW, "[[hx, hy, ht / r * z]]"),
+    "J_H-direction": (ROW, "[[hx, hy, r * (hy * np.cos(x[2]) - hx * np.sin(x[2]))]] / -(hx * np.cos(x[2]) + hy * np.sin(x[2]))"),
     "J_H-sign-x": (ROW, "[[-hx, hy, ht]]"),
     "J_H-sign-y": (ROW, "[[hx, -hy, ht]]"),
     "J_H-signs-xy": (ROW, "[[-hx, -hy, ht]]"),
@@ -172,6 +180,8 @@ MISTAKES = {
     "C_v-range-not-squared": (R, "R = sensor.range_ratio**2 * r"),
     "C_v-is-ratio": (R, "R = sensor.range_ratio"),
     "C_v-squared-twice": (R, "R = (sensor.range_ratio * r) ** 4"),
+    "C_v-of-its-own": (R, "R = 0.05**2"),
+    "S-inflated": (S, S + " + 1e-6"),
     "C_v-subtracted": (S, S.replace("+ R", "- R")),
     # the beam
     "endless-walls": (HITS, "if r > 0:"),
@@ -206,6 +216,8 @@ MISTAKES = {
     "x-not-updated": (X, "new = x"),
     "x-is-the-correction": (X, "new = K[:, 0] * v"),
     "x-corrected-twice": (X, X + "\n    new = new + K[:, 0] * v"),
+    "heading-not-corrected": (X, X + "\n    new[2] = x[2]"),
+    "P-is-the-decrease": (P, "P = K @ H @ P"),
     "x-by-the-new-P": (X, "", P, P + "\n    K = P @ H.T / ((H @ P @ H.T)[0, 0] + R)\n    " + X),
     "P-updated-twice": (P, P + "\n    K = P @ H.T / ((H @ P @ H.T)[0, 0] + R)\n    " + P),
     "reading-used-twice": (

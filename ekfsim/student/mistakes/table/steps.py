@@ -46,6 +46,11 @@ def readings(asked: Asked) -> bool:
     return isinstance(asked.given, Reading)
 
 
+def of_one(asked: Asked) -> bool:
+    """A reading of one number."""
+    return isinstance(asked.given, Reading) and len(asked.given.z) == 1
+
+
 def of_many(asked: Asked) -> bool:
     """A reading of more than one number."""
     return isinstance(asked.given, Reading) and len(asked.given.z) > 1

@@ -6,8 +6,8 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.of_moves import exchanged, towards
-from ekfsim.student.mistakes.steps import move_turn, moves
+from ekfsim.student.mistakes.table.moves import exchanged, towards
+from ekfsim.student.mistakes.table.steps import move_turn, moves
 from ekfsim.student.mistakes.working import Piece, Pieces, Working
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from ekfsim.geometry import Array, Booleans
 from ekfsim.raycast.walls import BOUNDARY
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.steps import after_a_move, after_a_reading, beams
+from ekfsim.student.mistakes.table.steps import after_a_move, after_a_reading, beams
 from ekfsim.student.mistakes.working import Piece, Pieces, Working
 
 AT_AN_END = 1e-9  # of a wall's length: a crossing that is this near to its end is on the wall
@@ -167,10 +167,13 @@ OF_BEAMS = (
     ),
     Mistake(
         "bearing-radians-twice",
-        "your angle of the sense command is taken to radians, but it is in radians already",
+        "your beam's angle is taken from degrees to radians, but it is in radians already",
         "eq 8: the beam's direction is θ plus the angle, both in radians",
         beams,
-        _ways(lambda θ, bearing: θ + np.radians(bearing)),
+        (
+            *_ways(lambda θ, bearing: θ + np.radians(bearing)),
+            *_ways(lambda θ, bearing: np.radians(θ + bearing)),
+        ),
     ),
     Mistake(
         "degrees-in-beam",

@@ -6,8 +6,8 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.of_noise import deviations, squares
-from ekfsim.student.mistakes.steps import beams, of_angles, readings
+from ekfsim.student.mistakes.table.noise import deviations, squares
+from ekfsim.student.mistakes.table.steps import beams, of_angles, readings
 from ekfsim.student.mistakes.working import Piece, Working
 
 DEGREE = np.pi / 180
@@ -28,6 +28,25 @@ def _theta_without_r(s: Working, right: Callable[[], Array]) -> Array:
     J = np.array(right())
     J[:, 2] /= s.h
     return J
+
+
+def _theta_of_the_reading(s: Working, right: Callable[[], Array]) -> Array:
+    J = np.array(right())
+    J[:, 2] *= s.z / s.h
+    return J
+
+
+def _along(direction: Callable[[float, float], float]) -> Piece:
+    """J_H of the same wall and range, but of a beam in another direction."""
+
+    def H(s: Working, right: Callable[[], Array]) -> Array:
+        n = right()[0, :2]
+        along = direction(s.x_H[2], s.laser.bearing)
+        d, aside = np.array([np.cos(along), np.sin(along)]), [-np.sin(along), np.cos(along)]
+        slope: Array = -np.array([[*n, s.h[0] * (n @ aside)]]) / (n @ d)
+        return slope
+
+    return H
 
 
 def _of_a_point(s: Working, _: Callable[[], Array]) -> Array:
@@ -108,6 +127,25 @@ OF_READINGS = (
         "eq 11: ∂h/∂θ grows with the range; the further the wall, the more a turn changes",
         beams,
         ({"H": _theta_without_r},),
+    ),
+    Mistake(
+        "J_H-theta-of-the-reading",
+        "your step is the one with the measured range in ∂h/∂θ of J_H",
+        "eq 11: the derivatives of h at the estimate; the reading is not in them",
+        beams,
+        ({"H": _theta_of_the_reading},),
+    ),
+    Mistake(
+        "J_H-direction",
+        "your J_H is that of a beam in another direction than θ + angle, which h is taken along",
+        "eqs 8, 11: J_H holds the derivatives of h, along the same beam",
+        beams,
+        (
+            {"H": _along(lambda θ, bearing: θ)},
+            {"H": _along(lambda θ, bearing: bearing)},
+            {"H": _along(lambda θ, bearing: θ - bearing)},
+            {"H": _along(lambda θ, bearing: np.degrees(θ + bearing))},
+        ),
     ),
     Mistake(
         "J_H-sign-x",

@@ -6,8 +6,8 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.of_moves import angle, command
-from ekfsim.student.mistakes.steps import commanded, everywhere, move_turn, moves, wandering
+from ekfsim.student.mistakes.table.moves import angle, command
+from ekfsim.student.mistakes.table.steps import commanded, everywhere, move_turn, moves, wandering
 from ekfsim.student.mistakes.working import Piece, Working
 
 
@@ -125,6 +125,13 @@ OF_NOISE = (
         "eq 7: once for each move",
         moves,
         ({"covariance": lambda s, right: s.F @ right() @ s.F.T + s.noise + s.Q},),
+    ),
+    Mistake(
+        "noise-before-J_x",
+        "your P is the one with the noise added before it is moved: J_x (P + J_u P_u J_u') J_x'",
+        "eq 7: J_x P J_x' + J_u P_u J_u'",
+        moves,
+        ({"covariance": lambda s, _: s.F @ (s.P + s.noise) @ s.F.T + s.Q},),
     ),
     Mistake(
         "noise-twice",

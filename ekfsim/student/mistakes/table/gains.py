@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from ekfsim.filters.arithmetic.algebra import gain_of_moments
-from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.steps import after_a_move, first, of_many, readings
+from ekfsim.student.mistakes.table.steps import of_many, readings
 from ekfsim.student.mistakes.working import Piece, Working
 
 
@@ -40,10 +39,10 @@ def _anew(s: Working) -> tuple[Array, Array]:
     return gain_of_moments(s.P @ H.T, H @ s.P @ H.T + R), H
 
 
-def _earlier(s: Working) -> Gaussian:
-    earlier = s.asked.earlier
-    assert earlier is not None
-    return Gaussian(earlier.x, earlier.P)
+def _heading_kept(s: Working, right: Callable[[], Array]) -> Array:
+    after, θ = np.array(right()), s.places[2]
+    after[θ] = s.x[θ]
+    return after
 
 
 def _gain(of: Callable[[Working], Array]) -> tuple[dict[str, Piece], ...]:
@@ -140,6 +139,13 @@ OF_GAINS = (
         _mean(lambda s: s.x + 2 * s.K @ s.innovation),
     ),
     Mistake(
+        "heading-not-corrected",
+        "your θ stays as it was before the reading; only x and y are corrected",
+        "eq 10: x + K r, all three entries: K has a row for θ",
+        readings,
+        ({"mean": _heading_kept},),
+    ),
+    Mistake(
         "x-by-the-new-P",
         "your x is updated after P, with the K of the new P",
         "eqs 10, 11: K is of the P before the reading; x + K r, and then (I − K J_H) P",
@@ -187,6 +193,13 @@ OF_GAINS = (
         "eq 12: (I − K J_H) P",
         readings,
         _covariance(lambda s: s.P + s.K @ s.H @ s.P),
+    ),
+    Mistake(
+        "P-is-the-decrease",
+        "your P is K J_H P, which is what the reading takes off P",
+        "eq 12: (I − K J_H) P",
+        readings,
+        _covariance(lambda s: s.K @ s.H @ s.P),
     ),
     Mistake(
         "P-wrong-side",
@@ -253,46 +266,5 @@ OF_GAINS = (
         "eq 12: (I − K J_H) P, which is P − K S K'",
         readings,
         _covariance(lambda s: s.P - s.K @ s.R @ s.K.T, lambda s: s.P - s.K @ s.K.T),
-    ),
-    Mistake(
-        "reading-refused",
-        "your step leaves the belief as it was: a gate, perhaps, refuses good readings",
-        "eqs 10, 12: a gate refuses r² / S beyond a high quantile, not below it",
-        readings,
-        ({"mean": lambda s, _: s.x, "covariance": lambda s, _: s.P},),
-    ),
-    Mistake(
-        "P-before-move",
-        "your update is the one with the P of before the move: the predicted P is not used",
-        "eqs 11, 12: P is that of eq 7",
-        after_a_move,
-        ({"P": lambda s, _: _earlier(s).covariance},),
-    ),
-    Mistake(
-        "x-before-move",
-        "your update is the one with the x of before the move: the predicted x is not used",
-        "eqs 8, 10: x is that of eq 4",
-        after_a_move,
-        (
-            {"x": lambda s, _: _earlier(s).mean},
-            {"x": lambda s, _: _earlier(s).mean, "P": lambda s, _: _earlier(s).covariance},
-        ),
-    ),
-    Mistake(
-        "own-first-P",
-        "your run begins with a P of its own, not with the one that it is given",
-        "eq 2: at the start P is what is given: 0 where the start is known exactly",
-        first,
-        (
-            {"P": lambda s, _: np.eye(len(s.x))},
-            {"P": lambda s, _: np.zeros((len(s.x), len(s.x)))},
-        ),
-    ),
-    Mistake(
-        "own-first-x",
-        "your run begins at an x of 0, not at the start that it is given",
-        "eq 4: the first estimate is the given start",
-        first,
-        ({"x": lambda s, _: np.zeros_like(s.asked.x)},),
     ),
 )

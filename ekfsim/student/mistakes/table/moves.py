@@ -7,7 +7,7 @@ import numpy as np
 from ekfsim.commands import Move
 from ekfsim.geometry import Array
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.steps import commanded, move_turn, moves
+from ekfsim.student.mistakes.table.steps import commanded, everywhere, move_turn, moves
 from ekfsim.student.mistakes.working import Piece, Pieces, Working
 
 Direction = Callable[[float, float], float]  # of the way, from θ and a
@@ -103,6 +103,12 @@ def _southward(s: Working, right: Callable[[], Array]) -> Array:
     )
 
 
+def _half_turns(s: Working, right: Callable[[], Array]) -> Array:
+    after, θ = np.array(right()), s.places[2]
+    after[θ] %= np.pi
+    return after
+
+
 OF_MOVES = (
     Mistake(
         "turn-before-move",
@@ -130,7 +136,7 @@ OF_MOVES = (
         "your turn a is taken from degrees to radians, but it is in radians already",
         "eq 3: θ + a, both in radians",
         move_turn,
-        ({"u": angle(np.radians)}, {"u_f": angle(np.radians)}),
+        ({"u": angle(np.radians)}, {"u_f": angle(np.radians)}, {"u_M": angle(np.radians)}),
     ),
     Mistake(
         "degrees-in-cosine",
@@ -138,6 +144,13 @@ OF_MOVES = (
         "eq 3: d cos θ and d sin θ, θ in radians",
         move_turn,
         _along(lambda θ, _: np.degrees(θ)),
+    ),
+    Mistake(
+        "heading-radians-twice",
+        "your θ is taken from degrees to radians in cosine and sine, but it is in radians already",
+        "eq 3: d cos θ and d sin θ, θ in radians",
+        move_turn,
+        _along(lambda θ, _: np.radians(θ)),
     ),
     Mistake(
         "middle-heading",
@@ -183,6 +196,13 @@ OF_MOVES = (
         "eq 3: the last line of Φ",
         moves,
         ({"f": _entry(2, lambda before, _: before)},),
+    ),
+    Mistake(
+        "heading-modulo-pi",
+        "your θ is brought into (0, π], and so turned round where it is negative",
+        "eq 3: θ + a may be any angle; a whole turn, 2π, may be taken off it, half a one may not",
+        everywhere,
+        ({"mean": _half_turns},),
     ),
     Mistake(
         "not-moved",

@@ -1,0 +1,72 @@
+"""Noise of other numbers than the model's: what they are, the student's own numbers tell."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ekfsim.geometry import Array
+from ekfsim.student.asked import Answer, Asked
+from ekfsim.student.mistakes.mistake import Mistake
+from ekfsim.student.mistakes.table.steps import everywhere, move_turn, of_one, readings
+from ekfsim.student.mistakes.working import Piece, Pieces, Working
+
+SMALL = tuple(10.0**-k for k in (9, 6, 12, 3, 8, 10, 4, 2, 1))
+
+
+def _instead(value: Array) -> Piece:
+    return lambda s, _: value
+
+
+def _variance(asked: Asked, theirs: Answer) -> Iterator[Pieces]:
+    """C_v from what a reading left of P: P⁻ − P = c cᵀ/S with c = P⁻ J_H'."""
+    s = Working(asked)
+    c = s.cross[:, 0]
+    less = c @ (s.P - theirs.P) @ c
+    if less > 0:
+        yield {"R": _instead(np.square(c @ c) / less - (s.S - s.R))}
+
+
+def _variances(asked: Asked, theirs: Answer) -> Iterator[Pieces]:
+    """P_u from what a move has added to P: along the way, and to the heading."""
+    s = Working(asked)
+    added = s.G.T @ (theirs.P - s.spread) @ s.G
+    yield {"M": _instead(np.diag(np.diag(added)))}
+
+
+def _more(by: float) -> Piece:
+    """With a small number on the diagonal."""
+    return lambda s, right: right() + by * np.eye(len(right()))
+
+
+OF_NUMBERS = (
+    Mistake(
+        "P-inflated",
+        "your P has a number added on its diagonal",
+        "eqs 7, 12: all noise is in P_u and C_v; P may be singular, and is so at the start",
+        everywhere,
+        tuple({"covariance": _more(by)} for by in SMALL),
+    ),
+    Mistake(
+        "S-inflated",
+        "your S has a small number added",
+        "eq 11: S = J_H P J_H' + C_v",
+        readings,
+        tuple({"S": _more(by)} for by in SMALL),
+    ),
+    Mistake(
+        "C_v-of-its-own",
+        "your C_v is another number than the model's, perhaps the same for all ranges",
+        "eq 11: C_v = (rangeSigmaRatio * h)^2",
+        of_one,
+        ({"R": _instead(np.array([[0.01]]))},),
+        _variance,
+    ),
+    Mistake(
+        "P_u-of-its-own",
+        "your P_u has other numbers than the model's, perhaps the same for all motions",
+        "eq 1: σ_d = odometryDstSigmaRatio * d, σ_a = odometryAngSigmaRatio * a",
+        move_turn,
+        ({"M": _instead(np.diag([0.01, 0.01]))},),
+        _variances,
+    ),
+)
