@@ -102,7 +102,9 @@ class InProcess:
                 kind = type(self._object).__name__
                 raise WrongError(f"{kind} has no attribute '{name}' after the call") from None
         theirs = looked_at(values[0], values[1], len(asked.x))
-        x = theirs.x - self._turned
+        # what it has wrapped itself has not turned so far
+        apart = np.abs(theirs.x - self._turned - asked.x), np.abs(theirs.x - asked.x)
+        x = theirs.x - np.where(apart[0] <= apart[1], self._turned, 0.0)
         wrapped = x.copy()
         for i in asked.headings:
             wrapped[i] = float(np.asarray(wrap(wrapped[i])))

@@ -17,6 +17,7 @@ from ekfsim.student.asked import Answer, Asked
 ASYMMETRY = 1e-9  # m², rad²: by so much may P differ from its transpose
 SLIGHT = 1e-12  # m², rad²: σ of a micrometre, a microradian; what is less is rounding
 ROUNDING = 1e-9  # of the largest variance
+LARGEST = 1e12  # m, rad; beyond, a float itself is coarser than what is told
 TURN = 2 * np.pi  # rad; a heading that leaps by more than this and what was turned is in degrees
 
 
@@ -120,6 +121,7 @@ def a_kind(value: Any) -> str:
 def judged(asked: Asked, theirs: Answer) -> Gaussian:
     """The belief that the answer is, headings wrapped. Raises WrongError where it can be none."""
     x, P = theirs.x.copy(), theirs.P.copy()
+    refuse_boundless(x, P)
     apart = np.abs(P - P.T)
     size = float(np.abs(P).max())
     if apart.max() > ASYMMETRY * max(1.0, size):
@@ -136,6 +138,17 @@ def judged(asked: Asked, theirs: Answer) -> Gaussian:
     for i in asked.headings:
         refuse_degrees(asked, i, float(x[i]))
     return Gaussian(wrapped(x, asked.headings), P)
+
+
+def refuse_boundless(x: Array, P: Array) -> None:
+    """Raise WrongError where numbers are finite, and so large that no more can be calculated."""
+    for i, (value, variance) in enumerate(zip(x.tolist(), P.diagonal().tolist(), strict=True)):
+        if abs(value) > LARGEST:
+            raise WrongError(f"x[{i}] is {value:.3g}: no robot is so far away")
+        if variance > LARGEST**2:
+            raise WrongError(f"P[{i}, {i}] is {variance:.3g}: nothing is so uncertain")
+    for i, j in np.argwhere(np.abs(P) > LARGEST**2).tolist():
+        raise WrongError(f"P[{i}, {j}] is {P[i, j]:.3g}: no covariance is so large")
 
 
 def refuse_degrees(asked: Asked, i: int, heading: float) -> None:
