@@ -26,7 +26,7 @@ def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits)
 
     fenced = fence(asked["folder"], [*asked["read"], sys.prefix, sys.base_prefix])
     requested = Requests(asked["place"], asked["provided"], fenced)
-    label, rung = os.path.basename(asked["place"]), _alarm(limits)
+    label, rung = os.path.basename(asked["place"]), _alarms(limits)
     read, write, loads, alarm = os.read, os.write, json.loads, signal.setitimer
     while True:
         length, _, mark = HEAD.unpack(_read(read, requests, HEAD.size))
@@ -36,7 +36,7 @@ def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits)
             alarm(signal.ITIMER_REAL, seconds)
             message = answered(getattr(requested, what)(*told), mark)
         except FaultError as error:
-            message = faulted(error.place, limits.too_long if rung else error.wrong, mark)
+            message = faulted(error.place, rung[0] if rung else error.wrong, mark)
         except BaseException as error:  # of his, where it is called by ours: __array__ may exit
             message = faulted(_place(error, asked["folder"]) or label, words_of(error), mark)
         finally:
@@ -60,15 +60,18 @@ def _prepare(asked: Mapping[str, Any], limits: Limits) -> None:
     give_up_privileges()
 
 
-def _alarm(limits: Limits) -> list[int]:
-    """The alarm interrupts the code where it is; the list that is returned holds that it did."""
-    rung: list[int] = []
+def _alarms(limits: Limits) -> list[str]:
+    """Interrupt the code where it is when its time is over; the list returned holds what is told
+    then.
+    """
+    rung: list[str] = []
 
     def ring(number: int, frame: FrameType | None) -> None:
-        rung.append(number)
-        raise TimeoutError(limits.too_long)
+        rung.append(limits.too_busy if number == signal.SIGXCPU else limits.too_long)
+        raise TimeoutError(rung[-1])
 
     signal.signal(signal.SIGALRM, ring)
+    signal.signal(signal.SIGXCPU, ring)
     return rung
 
 

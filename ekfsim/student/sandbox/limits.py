@@ -34,9 +34,16 @@ class Limits:
         """What is told of who took longer."""
         return f"took longer than {self.seconds:g} s"
 
+    @property
+    def too_busy(self) -> str:
+        """What is told of who calculated longer."""
+        return f"took more than {self.cpu_seconds} s of CPU"
+
 
 def keep_to(limits: Limits) -> None:
-    """Keep this process, and what it starts, to the limits. Nobody can raise them again."""
+    """Keep this process, and what it starts, to the limits. Who has no privileges cannot raise
+    them again.
+    """
     import resource
 
     def keep(what: int, soft: int, hard: int) -> None:
@@ -45,8 +52,7 @@ def keep_to(limits: Limits) -> None:
             soft, hard = min(soft, most), min(hard, most)
         resource.setrlimit(what, (soft, hard))
 
-    cpu = max(1, round(limits.cpu_seconds))
-    keep(resource.RLIMIT_CPU, cpu, cpu + 1)  # SIGXCPU, and SIGKILL for who ignores it
+    keep(resource.RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1)  # SIGXCPU, then SIGKILL
     keep(resource.RLIMIT_AS, *(limits.memory_mb * MEBI,) * 2)
     keep(resource.RLIMIT_FSIZE, *(limits.file_mb * MEBI,) * 2)
     keep(resource.RLIMIT_NOFILE, OPEN_FILES, OPEN_FILES)

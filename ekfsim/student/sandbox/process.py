@@ -104,9 +104,10 @@ class Process:
         finally:
             self._left -= time.monotonic() - began
         if answer.kind == FAULT:
-            if self._left <= 0:
+            place, wrong = fault_of(answer.content)
+            if self._left <= 0 or wrong in (self._limits.too_long, self._limits.too_busy):
                 self.end()
-            raise FaultError(*fault_of(answer.content))
+            raise FaultError(place, wrong)
         if answer.kind != kind:
             raise self.refused(FORGED)
         return answer.content
@@ -190,7 +191,7 @@ class Process:
         if status == TOO_MANY:
             wrong = f"started more than {limits.processes} processes"
         elif status == 128 + signal.SIGXCPU:
-            wrong = f"took more than {limits.cpu_seconds} s of CPU"
+            wrong = limits.too_busy
         elif status == 128 + signal.SIGKILL:
             wrong = "was killed: by itself, or for want of memory, or for what it took of CPU"
         elif status > 128:

@@ -271,6 +271,19 @@ time.sleep(60)
     assert not is_running(left)
 
 
+@pytest.mark.parametrize("ignored", [False, True])
+def test_what_it_calculates_is_limited_too(ignored, mine):
+    text = "signal.signal(signal.SIGXCPU, signal.SIG_IGN)\n" if ignored else ""
+    told = r"mine\.py: was killed: .* CPU" if ignored else r"mine\.py:6: took more than 1 s of CPU"
+    with (
+        Sandboxed(
+            mine(doing(text + "while True: pass")), limits=Limits(seconds=60, cpu_seconds=1)
+        ) as caller,
+        pytest.raises(FaultError, match=rf"\A{told}\Z"),
+    ):
+        asked_once(caller)
+
+
 def test_many_processes_are_told(mine):
     text = doing("for _ in range(20):\n    if os.fork() == 0: time.sleep(9)\ntime.sleep(9)")
     with (
