@@ -180,6 +180,19 @@ def diff_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 help="The filter of one's own, or package.module:NAME.",
             ),
             click.option(
+                "--csv",
+                type=Source(),
+                metavar="FILE",
+                help="In place of it: a table of results that a program in another language wrote "
+                "(index, x, y, theta, P_xx, P_xy, …).",
+            ),
+            click.option(
+                "--narrative",
+                type=Source(),
+                metavar="FILE",
+                help="Or what a program printed in the assignment's format, number by number.",
+            ),
+            click.option(
                 "--against",
                 metavar="NAME",
                 default="ekf",

@@ -185,7 +185,11 @@ def test_a_log_is_compared_too(folder):
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        ((), "Error: Missing option '--filter'.\n"),
+        (
+            (),
+            "ekfsim: diff: there is nothing to compare; "
+            "name one of --filter, --csv and --narrative\n",
+        ),
         (
             ("--filter", "min.py"),
             "ekfsim: min.py: there is no such file; did you mean 'mine.py'?\n",

@@ -1,5 +1,6 @@
 """What is told of students' filters.
 
 difference.py    the first wrong number, what explains it, and all that shows after it
+narrative.py     the wrong numbers of what another program printed
 exposing.py      which known mistakes an input exposes
 """

@@ -32,6 +32,7 @@ class Sides:
     reference: str  # "ekf"
     made: str  # "ekfsim 0.1.0, world worlds/room.yaml, …": what makes it again
     classroom: bool = True  # whether equations have the assignment's numbers
+    printed: bool = False  # whether theirs are the numbers of a file, with as many digits as it has
 
 
 def told(found: Found, sides: Sides) -> str:
@@ -54,10 +55,15 @@ def _headline(found: Found, sides: Sides) -> str:
     until = "" if found.fault is None else "Before its code fails, "
     if found.first is None:
         every = "all " if found.steps > 1 else ""
-        none = "" if found.readings else " No reading was compared: update was never called."
+        never = "" if sides.printed else ": update was never called"
+        none = "" if found.readings else f" No reading was compared{never}."
+        least = (
+            "that is what its digits leave open" if sides.printed
+            else f"one of {DIFFERENT:g} σ would be told"
+        )  # fmt: skip
         return (
             f"{until}{sides.theirs} equals {sides.reference} at {every}{of}. The largest "
-            f"difference is {found.largest:.1g} σ; one of {DIFFERENT:g} σ would be told.{none}"
+            f"difference is {found.largest:.1g} σ; {least}.{none}"
         )
     return f"{until}{sides.theirs} differs from {sides.reference} at {found.differing} of {of}."
 
@@ -102,7 +108,8 @@ def _guesses(found: Found, sides: Sides) -> str:
     """What explains the first wrong numbers."""
     assert found.first is not None
     if found.first.step.asked.index == 0:
-        return "Take x and P as they are given to the class: the run begins with them."
+        given = "the world tells them" if sides.printed else "they are given to the class"
+        return f"Take x and P as {given}: the run begins with them."
     if not found.guesses and sides.reference in FILTERS and sides.reference != "ekf":
         return f"It may be right, and another filter than {sides.reference}: nothing is guessed."
     if not found.guesses:
