@@ -259,7 +259,8 @@ caller.place_of(ASKED.given)
 print(caller.printed, flush=True)
 time.sleep(60)
 """
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    paths = (str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", ""))
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
     command = [sys.executable, "-c", program]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as parent:
         left = int(parent.stdout.readline())
@@ -305,7 +306,7 @@ def test_it_can_be_begun_through_a_command(mine):
 def test_a_command_that_begins_nothing_is_not_held_against_the_student(mine):
     with (
         Sandboxed(mine(RIGHT), through=("no-such-command",)) as caller,
-        pytest.raises(UsageError, match=r"\Ano-such-command: cannot be started: No such file"),
+        pytest.raises(UsageError, match=r"\Ano-such-command: cannot be started: "),
     ):
         asked_once(caller)
     with (
