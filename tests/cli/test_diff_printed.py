@@ -223,5 +223,5 @@ def test_a_sample_of_our_own_is_wrong_where_it_is():
     assert ended.status == 1
     assert "is wrong in 3 of the" in whole
     assert "line 10: the minor radius is 0.251856 m, right is 0.3125 m. Guess: this is the" in whole
-    assert "Line 11: the major radius is 0.420201 m, right is 0.521381 m. (the same)" in whole
+    assert "Line 11: the major radius is 0.420201 m, right is 0.52138 m. (the same)" in whole
     assert "2*sigma_theta is 0.2 degrees, right is 11.4592 degrees. Guess: it is in rad" in whole
