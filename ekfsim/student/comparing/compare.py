@@ -16,14 +16,13 @@ from ekfsim.scene import Guard
 from ekfsim.student.asked import Answer, Asked, Caller
 from ekfsim.student.comparing.difference import (
     DIFFERENT,
-    LEAST,
     Difference,
     differences,
     sizes,
     symbols,
     unit,
 )
-from ekfsim.student.comparing.rounding import NONE, deviations, rounding
+from ekfsim.student.comparing.rounding import LEAST, NONE, deviations, rounding
 
 NEGATIVE = 1e-9  # of a variance; so much below 0 it may be by rounding, and the square of `LEAST`
 
@@ -107,11 +106,12 @@ def compared(
     """Two answers to what was asked. made : what the reference did to come to its own"""
     in_x, in_P = sizes(theirs, right, layout)
     size = float(max(in_x.max(), in_P.max()))
-    apart: tuple[Difference, ...] = ()
-    if size > DIFFERENT:
-        allowed = NONE if made is None else rounding(asked, made)
-        apart = differences(theirs, right, allowed, layout)
-    return Compared(asked, theirs, right, size, apart, _unusable(theirs, asked, right, layout))
+    if size <= DIFFERENT:
+        return Compared(asked, theirs, right, size, ())
+    allowed = NONE if made is None else rounding(asked, made, right.covariance)
+    apart = differences(theirs, right, allowed, layout)
+    unusable = _unusable(theirs, asked, right, layout) if apart else ""
+    return Compared(asked, theirs, right, size, apart, unusable)
 
 
 def believed(theirs: Answer, layout: Layout) -> Gaussian:

@@ -10,9 +10,8 @@ from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.layout import Layout
 from ekfsim.student.asked import Answer
-from ekfsim.student.comparing.rounding import Rounding, deviations
+from ekfsim.student.comparing.rounding import LEAST, Rounding, deviations
 
-LEAST = 1e-6  # m, rad; a difference is counted in σ of at least so much
 DIFFERENT = 1e-6  # σ; what is less is no difference
 SIGNS = {"theta": "θ", "phi": "φ"}
 

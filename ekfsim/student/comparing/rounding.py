@@ -10,12 +10,17 @@ from typing import NamedTuple
 import numpy as np
 
 from ekfsim.diagnostics.nees import RANK
+from ekfsim.filters.arithmetic.algebra import inverse
+from ekfsim.filters.arithmetic.square_root import covariance
 from ekfsim.filters.belief import Correction, Prediction
 from ekfsim.geometry import Array
 from ekfsim.records import Control
 from ekfsim.student.asked import Asked
 
 DIGIT = 64 * float(np.finfo(float).eps)  # what the sums of a step may lose of their largest term
+LEAST = 1e-6  # m, rad; a difference is counted in σ of at least so much
+SLIGHT = 1e-4 * LEAST**2  # m², rad²; what P has less than this may be left of what was more
+MOST = 1e-3  # σ, of what an inverse may lose: who loses more has no right answer left
 
 
 class Rounding(NamedTuple):
@@ -28,27 +33,35 @@ class Rounding(NamedTuple):
 NONE = Rounding(0.0, 0.0)
 
 
-def rounding(asked: Asked, made: Prediction | Correction) -> Rounding:
-    """How far right answers may be apart, by the sizes of the terms whose sum they are.
+def rounding(asked: Asked, made: Prediction | Correction, right: Array) -> Rounding:
+    """How far right answers may be apart: as far as they go with what the belief before is not
+    known to, and by the sizes of the terms whose sum they are.
 
-    made : what the reference did from the same belief
+    made : what the reference did from the same belief, right : the covariance that it came to
     """
-    σ = deviations(asked.P)
+    before = doubt(asked.P)
     if isinstance(made, Prediction):
-        assert isinstance(asked.given, Control)
-        u = np.abs(asked.given.u)
-        spread = np.abs(made.F) @ σ + np.abs(made.G) @ deviations(asked.given.motion.M(u))
-        summed = np.abs(made.F) @ np.abs(asked.x) + np.abs(made.G) @ u
-        return Rounding(DIGIT * (summed + np.pi), DIGIT * np.outer(spread, spread))
-    H, K = np.abs(made.H), np.abs(made.K)
-    terms = H @ σ
-    spread = σ + K @ terms
-    heard = H @ np.abs(asked.x) + np.abs(made.predicted) + np.abs(made.innovation)
-    told, doubt = _turned_round(asked, made, σ)
-    return Rounding(
-        DIGIT * (np.abs(asked.x) + np.pi + K @ heard + spread * told),
-        DIGIT * np.outer(spread, spread) * (1 + doubt),
-    )
+        in_x, in_P = _of_a_move(asked, made, before)
+    else:
+        in_x, in_P = _of_a_reading(asked, made, before)
+    σ = deviations(right)
+    variances = np.diagonal(in_P)
+    # of a variance that is smaller by so much a covariance may be smaller, too
+    slack = np.minimum(np.sqrt(variances), 0.5 * variances / np.maximum(σ, LEAST * SLIGHT))
+    return Rounding(in_x, in_P + np.outer(slack, σ) + np.outer(σ, slack))
+
+
+def doubt(P: Array) -> Array:
+    """To what a covariance is known that came of sums : (n, n)
+
+    One that has become none by rounding tells how much that was.
+    """
+    σ = deviations(P)
+    per = _per(σ)
+    smallest = float(np.linalg.eigvalsh(P * np.outer(per, per))[0])
+    share = DIGIT + 4 * max(0.0, -smallest)
+    known: Array = share * np.outer(σ, σ) + 4 * np.abs(P - covariance(P)) + SLIGHT
+    return known
 
 
 def deviations(P: Array) -> Array:
@@ -57,14 +70,43 @@ def deviations(P: Array) -> Array:
     return σ
 
 
+def _of_a_move(asked: Asked, made: Prediction, before: Array) -> tuple[Array, Array]:
+    """In x = f(x, u) and P = F P Fᵀ + G M Gᵀ + Q."""
+    assert isinstance(asked.given, Control)
+    motion, u = asked.given.motion, asked.given.u
+    F, G = np.abs(made.F), np.abs(made.G)
+    noise = G @ deviations(motion.M(u))
+    return (
+        DIGIT * (F @ np.abs(asked.x) + G @ np.abs(u) + np.pi),
+        F @ before @ F.T + DIGIT * (np.outer(noise, noise) + np.abs(motion.Q(u))),
+    )
+
+
+def _of_a_reading(asked: Asked, made: Correction, before: Array) -> tuple[Array, Array]:
+    """In x = x⁻ + K ν and P = (I − K H) P⁻."""
+    σ = deviations(asked.P)
+    H, K, ν = np.abs(made.H), np.abs(made.K), np.abs(made.innovation)
+    kept = np.eye(len(σ)) + K @ H  # |I − K H| is no larger
+    heard = H @ np.abs(asked.x) + np.abs(made.predicted) + ν
+    in_x, in_P = _turned_round(asked, made, σ)
+    return (
+        DIGIT * (np.abs(asked.x) + np.pi + K @ heard)
+        + kept @ (before @ H.T @ np.abs(inverse(made.S)) @ ν + in_x * σ),
+        kept @ (before + in_P * np.outer(σ, σ)) @ kept.T,
+    )
+
+
 def _turned_round(asked: Asked, made: Correction, σ: Array) -> tuple[float, float]:
-    """What is lost where P⁻ is turned round : in σ of x, and of P as a share; 0 where it is
-    singular, for there it has no inverse.
-    """
-    per = np.divide(1.0, σ, out=np.zeros_like(σ), where=σ > 0)
-    smallest = float(np.linalg.eigvalsh(asked.P * np.outer(per, per))[0])
-    if smallest <= RANK:
+    """What is lost in x and in P where R, and P⁻ where it has an inverse, is turned round, in σ."""
+    R, per = np.diagonal(made.R), _per(σ)
+    if (R <= 0).any():
         return 0.0, 0.0
-    sharp = float(np.max(np.square(np.abs(made.H) @ σ) / np.diagonal(made.R)))
-    doubt = 1 / smallest + sharp
-    return doubt * float(np.sum(np.abs(asked.x) * per)), doubt
+    smallest = float(np.linalg.eigvalsh(asked.P * np.outer(per, per))[0])
+    lost = DIGIT * float(np.max(np.square(np.abs(made.H) @ σ) / R))
+    lost += DIGIT / smallest if smallest > RANK else 0.0
+    return min(lost * float(np.abs(asked.x) @ per), MOST), min(lost, MOST)
+
+
+def _per(σ: Array) -> Array:
+    """1/σ, 0 where nothing is uncertain"""
+    return np.divide(1.0, σ, out=np.zeros_like(σ), where=σ > 0)

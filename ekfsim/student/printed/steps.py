@@ -14,8 +14,8 @@ from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Control, Entry
 from ekfsim.student.asked import Answer, Asked
 from ekfsim.student.comparing.compare import Compared, believed
-from ekfsim.student.comparing.difference import LEAST, differences, sizes, symbols, unit
-from ekfsim.student.comparing.rounding import Rounding, deviations, rounding
+from ekfsim.student.comparing.difference import differences, sizes, symbols, unit
+from ekfsim.student.comparing.rounding import LEAST, Rounding, deviations, rounding
 from ekfsim.student.mistakes.guessing import LAST_DIGITS, SAME
 from ekfsim.student.mistakes.mistake import outcome
 from ekfsim.student.mistakes.working import FORMS, Pieces, Working
@@ -134,7 +134,7 @@ class PrintedSteps:
         left = self.open[asked.index] = Open(halves, row.halves, moved)
         self._spreads[asked.index] = left, unit(right)
         in_x, in_P = sizes(theirs, right, self.layout)
-        rounded = Rounding(0.0, 0.0) if made is None else rounding(asked, made)
+        rounded = Rounding(0.0, 0.0) if made is None else rounding(asked, made, right.covariance)
         allowed = Rounding(rounded.x + left.x * SLACK, rounded.P + left.P * SLACK)
         apart = differences(theirs, right, allowed, self.layout)
         return Compared(asked, theirs, right, float(max(in_x.max(), in_P.max())), apart)

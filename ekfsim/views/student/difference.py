@@ -12,9 +12,10 @@ from ekfsim.geometry import Array
 from ekfsim.printable import in_a_line, short
 from ekfsim.records import Control
 from ekfsim.student.comparing.compare import Compared
-from ekfsim.student.comparing.difference import DIFFERENT, LEAST, Difference, unit
+from ekfsim.student.comparing.difference import DIFFERENT, Difference, unit
 from ekfsim.student.comparing.found import Found
 from ekfsim.student.comparing.naming import At, Seen
+from ekfsim.student.comparing.rounding import LEAST
 from ekfsim.student.mistakes.guessing import Guess
 from ekfsim.student.mistakes.mistake import elsewhere
 from ekfsim.views.words.numbers import ROUNDING, cleared

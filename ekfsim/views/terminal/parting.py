@@ -80,5 +80,5 @@ def difference(right: Step, step: Step) -> float:
         return size
     x, P = right.prior
     asked = Asked(x, P, given)
-    found = differences(theirs, ours, rounding(asked, made), step.layout)
+    found = differences(theirs, ours, rounding(asked, made, ours.covariance), step.layout)
     return max((one.size for one in found), default=0.0)
