@@ -147,9 +147,9 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 "filter_name",
                 metavar="NAME,…",
                 help="In place of the file's filter: "
-                "kf, kf-nominal, ekf, iekf, ukf, ukf-augmented or pf. "
-                "Several are put side by side; the name of each then stands before the ending "
-                "of its files.",
+                "kf, kf-nominal, ekf, iekf, ukf, ukf-augmented or pf, or one of your own, FILE.py, "
+                "FILE.py:NAME or package.module:NAME. Several are put side by side; the name of "
+                "each then stands before the ending of its files.",
             ),
             GATE,
             GUARD,
@@ -239,7 +239,7 @@ def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 "--filter",
                 "filters",
                 metavar="NAME,…",
-                help="Filters that watch the same runs, e.g. ekf,ukf.",
+                help="Filters that watch the same runs, e.g. ekf,ukf or ekf,mine.py: see play.",
             ),
             click.option(
                 "--sweep",
@@ -294,7 +294,7 @@ def compare_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 "--filter",
                 "filters",
                 metavar="NAME",
-                help="In place of the file's filter, on both sides.",
+                help="In place of the file's filter, on both sides: see play.",
             ),
             *SETTINGS,
             *MADE_WHERE,

@@ -7,6 +7,8 @@ from ekfsim.filters.protocol import Beginning, Filter, Kind
 from ekfsim.filters.variants.by_reading import NoiseByReading
 from ekfsim.filters.variants.shadows import ShadowsAlone
 
+GROUP = "ekfsim.filters"  # of entry points
+
 
 def kind_of(name: str) -> Kind:
     """The filter of that name, built-in or registered, or at that place.
@@ -21,10 +23,12 @@ def kind_of(name: str) -> Kind:
 
 
 def registered() -> list[str]:
-    """The names under which installed packages register filters; built-in names win."""
-    from ekfsim.student.own.choice import registered_names
+    """The names under which installed packages register filters, none of which is loaded; built-in
+    names win.
+    """
+    from importlib.metadata import entry_points
 
-    return [name for name in registered_names() if name not in FILTERS]
+    return sorted({point.name for point in entry_points(group=GROUP)} - FILTERS.keys())
 
 
 def code_of(name: str) -> Mapping[str, bytes]:

@@ -42,10 +42,11 @@ ONE_COMMAND: JsonDict = {"minProperties": 1, "maxProperties": 1, "examples": [{"
 
 
 def filter_names() -> list[str]:
-    """The filters there are."""
+    """The filters there are: built-in ones, and those that installed packages register."""
     from ekfsim.filters import FILTERS
+    from ekfsim.filters.choice import registered
 
-    return list(FILTERS)
+    return [*FILTERS, *registered()]
 
 
 def known_filters(schema: dict[str, Any]) -> None:
@@ -55,9 +56,10 @@ def known_filters(schema: dict[str, Any]) -> None:
 
 def is_filter(name: str) -> bool:
     """Whether it names a filter, or a place where one may be found."""
+    from ekfsim.filters import FILTERS
     from ekfsim.filters.place import is_place
 
-    return name in filter_names() or is_place(name)
+    return name in FILTERS or is_place(name) or name in filter_names()
 
 
 class MoveKeys(Strict):

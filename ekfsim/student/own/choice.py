@@ -14,7 +14,6 @@ from ekfsim.student.own.calls import InProcess
 from ekfsim.student.own.filter import OwnFilter
 from ekfsim.student.own.forms import Whole
 from ekfsim.student.own.loading import load
-from ekfsim.student.own.loading import registered_names as registered_names
 from ekfsim.student.own.whole import WholeFilter
 
 

@@ -4,18 +4,17 @@ import difflib
 import hashlib
 import importlib
 import os
-import sys
 import warnings
 from dataclasses import dataclass
 from importlib.metadata import entry_points
+from importlib.util import find_spec
 from types import ModuleType
 
 from ekfsim.errors import UsageError
+from ekfsim.filters.choice import GROUP
 from ekfsim.filters.place import is_file, is_place, label, parts
 from ekfsim.student.own.forms import Form, form_of
 from ekfsim.student.own.home import Home, shown
-
-GROUP = "ekfsim.filters"  # of entry points
 
 
 @dataclass(frozen=True)
@@ -62,11 +61,6 @@ def registered(name: str) -> str:
     return places[0]
 
 
-def registered_names() -> list[str]:
-    """The names that installed packages register filters under; none of them is loaded."""
-    return sorted({point.name for point in entry_points(group=GROUP)})
-
-
 def _of_file(path: str, name: str) -> Code:
     source, home = _read(path), Home(os.path.dirname(path))
     # of its own, whatever another file of the same name is called
@@ -88,7 +82,7 @@ def _of_file(path: str, name: str) -> Code:
 
 def _of_module(module_name: str, name: str) -> Code:
     """The code of an installed module, which is imported as ever."""
-    home = Home()
+    home = Home(root=_root(module_name.partition(".")[0]))
     with home.entered():
         try:
             module = importlib.import_module(module_name)
@@ -100,9 +94,19 @@ def _of_module(module_name: str, name: str) -> Code:
         except BaseException as error:
             home.blame(error, module_name)
     place = f"{module_name}:{name}"
-    top = getattr(sys.modules[module_name.partition(".")[0]], "__file__", None) or ""
-    home.root = os.path.join(os.path.dirname(top), "") if "__init__" in top else top
     return Code(place, form_of(module, name, place), home, module=module)
+
+
+def _root(package: str) -> str:
+    """What the paths of an installed package's files begin with; "" where there is none."""
+    try:
+        spec = find_spec(package)
+    except (ImportError, ValueError):
+        return ""
+    if spec is None or spec.origin is None:
+        return ""
+    is_folder = spec.submodule_search_locations is not None
+    return os.path.join(os.path.dirname(spec.origin), "") if is_folder else spec.origin
 
 
 def _read(path: str) -> bytes:

@@ -7,9 +7,19 @@ import subprocess
 import sys
 import time
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+
+from ekfsim.errors import StepError
+from ekfsim.files.scenes.load_study import read_request
+from ekfsim.files.scenes.settings import filters_in
+from ekfsim.files.template import template
+from ekfsim.study.plan import Plan
+from ekfsim.study.running.cluster import cluster
+from ekfsim.study.running.doing import unkept
+from ekfsim.study.running.engines import serial as serially
 
 pytest.importorskip("distributed", reason="the cluster's tests need the extra 'cluster'")
 
@@ -23,6 +33,16 @@ world: {WORLD}
 commands:
   - repeat: {{times: 15, commands: [{{sense: {{angle: 40}}}}, {{move: {{distance: 0.5, angle: \
 100}}}}]}}
+"""
+
+FAULTY = """
+class StrangeError(Exception):
+    def __init__(self, one, two):
+        super().__init__(one)
+
+def predict(x, P, u, motion):
+    raise StrangeError("as if", 2)
+    return x, P
 """
 
 
@@ -82,9 +102,12 @@ class Cluster:
             "--local-directory",
             self.folder,
         )
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
         # the last that began is the first to end: workers before their scheduler
         for _ in range(2):
-            self.workers.append(self.stack.enter_context(running(*dask, *options, env=environment)))
+            worker = running(*dask, *options, env=environment, cwd=elsewhere)
+            self.workers.append(self.stack.enter_context(worker))
         return self
 
     def __exit__(self, *exception):
@@ -172,6 +195,32 @@ def test_a_scheduler_that_dies_leaves_what_was_done(place, serial):
     assert done("out") >= 2
     in_this_process("out", "--resume")
     check_alike(serial, "out")
+
+
+def test_workers_in_another_folder_find_a_filter_of_ones_own(place):
+    """The class of its exception is known to none but the worker, and is not sent."""
+    (place / "parts.py").write_text("from numpy import eye\n")
+    whole = template("filter-complete").replace("np.eye", "eye")
+    whole = whole.replace("import numpy as np", "import numpy as np\nfrom parts import eye")
+    (place / "mine.py").write_text(whole)
+    (place / "faulty.py").write_text(f"{whole}\n{FAULTY}")
+
+    (place / "short.yaml").write_text(COMMANDS.replace("times: 15", "times: 2"))
+
+    def made(filters, engine):
+        request = read_request("short.yaml")
+        plan = Plan.of(replace(request, runs=40, filters=filters_in(filters)))
+        return [json.dumps(one.tally.plain()) for one in unkept(plan, engine, lambda *block: None)]
+
+    with Cluster(place) as there:
+        clustered = cluster(there.ready().address, lambda told: None)
+        assert made("mine.py,ekf", clustered) == made("mine.py,ekf", serially)
+        with pytest.raises(StepError) as fault:
+            made("faulty.py", clustered)
+    number = (place / "faulty.py").read_text().count("\n") - 1
+    assert str(fault.value) == (
+        f"{place}/faulty.py:{number}: run 0, step 2 (move 0.5 m, 100°): StrangeError: as if"
+    )
 
 
 def test_a_scheduler_that_is_not_there_is_told_in_a_line(place):
