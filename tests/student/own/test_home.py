@@ -155,6 +155,7 @@ def registering(monkeypatch):
             return [one for one in points if name in (None, one.name)]
 
         monkeypatch.setattr(loading, "entry_points", found)
+        monkeypatch.setattr("importlib.metadata.entry_points", found)
 
     return register
 
