@@ -51,7 +51,7 @@ Scenes = Annotated[
     Field(title="a list of scenes", min_length=1, examples=[["tour", "square"]]),
     AfterValidator(once),
 ]
-Runs = Annotated[int, Field(ge=1, le=10_000, examples=[20])]
+Runs = Annotated[int, Field(ge=1, le=1000, examples=[20])]
 
 
 class StepsKeys(Strict):
@@ -163,8 +163,8 @@ class LimitsKeys(Strict):
     seconds: Annotated[float, Field(gt=0, le=3600, examples=[60])] = Field(
         60.0, description="For each test, by the clock on the wall."
     )
-    memory: Annotated[int, Field(ge=512, le=65536, examples=[1024])] = Field(
-        1024, description="MiB of address space."
+    memory: Annotated[int, Field(ge=512, le=65536, examples=[512])] = Field(
+        512, description="MiB of address space, of each of its processes."
     )
 
 
@@ -204,7 +204,7 @@ class HomeworkKeys(Strict):
     limits: LimitsKeys = Field(
         LimitsKeys(),
         description="What a student's code may take.",
-        examples=[{"seconds": 60, "memory": 1024}],
+        examples=[{"seconds": 60, "memory": 512}],
     )
     parts: Annotated[list[HomeworkPartKeys], Field(title="a list of parts", min_length=1)] = Field(
         description="What is graded, in this order.",

@@ -6,8 +6,10 @@ submission.
 """
 
 import multiprocessing
+import os
 import signal
 import sys
+import threading
 import time
 from collections import deque
 from collections.abc import Iterable, Iterator
@@ -21,9 +23,10 @@ from ekfsim.files.homework import Homework, read_homework
 from ekfsim.student.grading.examining import Examiner
 from ekfsim.student.grading.scores import Check, Grade, Scored, checks_of
 from ekfsim.student.grading.submissions import Submission
+from ekfsim.study.running.engines import one_thread_each
 
 SLOWER = 3  # by so much we may take longer than the student's code may
-START = 60.0  # s, until a process has begun
+START = 120.0  # s, until a process has begun
 MOST_MEMORY = 4096  # MiB of a process that grades
 ENDING = 5.0  # s
 STEPS_AT_ONCE = 1.0  # s between two looks at the clock
@@ -143,7 +146,13 @@ def _begun(homework: Homework, through: tuple[str, ...]) -> Hand:
     ours, theirs = context.Pipe()
     told = str(homework.path), homework.digest, through
     process = context.Process(target=work, args=(theirs, *told), daemon=False)
-    process.start()
+    # until it leaves Ctrl-C to us it hears none
+    heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        with one_thread_each():
+            process.start()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, heard)
     theirs.close()
     return Hand(process, ours)
 
@@ -161,6 +170,9 @@ def _end(hand: Hand, now: bool = False) -> None:
 def work(theirs: Connection, path: str, digest: str, through: tuple[str, ...]) -> None:
     """Over there: grade one submission after another, until there are no more."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # it ends with whoever asks it
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # and cleans up
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     _keep_memory()
     homework = read_homework(Path(path))
     if homework.digest != digest:
@@ -173,6 +185,14 @@ def work(theirs: Connection, path: str, digest: str, through: tuple[str, ...]) -
             for number in left:
                 score = examiner.examine(examiner.checks[number], submission)
                 theirs.send((number, score.plain()))
+
+
+def _end_with_parent() -> None:
+    """A student's code that never ends must not outlive whoever wanted to know of it."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait([parent.sentinel])
+        os.kill(os.getpid(), signal.SIGTERM)
 
 
 def _keep_memory() -> None:

@@ -134,14 +134,14 @@ def pool(workers: int) -> Engine:
     def engine(work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
         before, threads = set(active_children()), set(threading.enumerate())
         waiting, parcels = iter(tasks), Parcels(work)
-        with _one_thread_each():
+        with one_thread_each():
             executor = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_begin_worker)
         running: dict[Future[T | Failed], Task] = {}
 
         def hand_out(many: int) -> None:
             for task in itertools.islice(waiting, many):
                 # processes are made as blocks come
-                with _heeding_signals_later(), _one_thread_each():
+                with _heeding_signals_later(), one_thread_each():
                     running[executor.submit(do_packed, *parcels(task))] = task
 
         try:
@@ -168,7 +168,7 @@ def pool(workers: int) -> Engine:
 
 
 @contextlib.contextmanager
-def _one_thread_each() -> Iterator[None]:
+def one_thread_each() -> Iterator[None]:
     """Processes that begin in this block calculate with one thread each: there are as many as there
     are cores.
     """

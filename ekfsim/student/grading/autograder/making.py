@@ -29,6 +29,7 @@ BEGUN = (
 FAILED = "The grader itself failed. Nothing was judged, by no fault of yours; ask your instructor."
 SPARE = 60  # s, to begin and to write
 MOST_SECONDS = 2400  # that Gradescope gives at most
+MOST_MEMORY = 512  # MiB of a student's process, beside which the grader fits into 768 MB
 USUAL_SECONDS = 600  # that it gives where nobody asks for more
 
 
@@ -59,6 +60,13 @@ def _remarks(homework: Homework) -> Iterator[str]:
             f"a submission whose code never ends takes {seconds} s; Gradescope stops after "
             f"{USUAL_SECONDS} s unless its settings say more (at most {MOST_SECONDS}): lower "
             "limits.seconds, or raise it there"
+        )
+
+    if homework.keys.limits.memory > MOST_MEMORY:
+        yield (
+            f"limits.memory is {homework.keys.limits.memory} MiB; Gradescope's usual container has "
+            f"768 MB: where a student's code takes all of it, the grader may be killed; "
+            f"{MOST_MEMORY} fits"
         )
 
 

@@ -37,6 +37,7 @@ def graded_honesty(score: Scored, keys: HonestyKeys, bench: Bench, pupil: Pupil)
     """Half of the points for the end of the runs, half for the way there."""
     scene = bench.scene(score.check.about)
     try:
+        pupil.begin(*first_belief(scene))  # what cannot be loaded fails at no step
         tally = tally_of(scene, keys.runs, pupil)
     except FaultError as fault:
         told = f"the code failed: {fault}"
