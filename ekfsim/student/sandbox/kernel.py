@@ -6,6 +6,8 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 
+from ekfsim.student.sandbox.limits import CLOSED_SIGNALS, CLOSED_TCP
+
 SET_PDEATHSIG, SET_CHILD_SUBREAPER, SET_NO_NEW_PRIVS = 1, 36, 38  # of prctl(2)
 CAPABILITIES = 0x20080522  # the form in which capset(2) is told them: two times three words of 32
 
@@ -16,7 +18,6 @@ EXECUTE, WRITE_FILE, READ_FILE, READ_DIR, TRUNCATE = (1 << bit for bit in (0, 1,
 ACCESSES = (0, 13, 14, 15, 15, 16)  # how many bits each version knows
 OF_FILES = EXECUTE | WRITE_FILE | READ_FILE | TRUNCATE | 1 << 15
 READING = EXECUTE | READ_FILE | READ_DIR
-TCP, SIGNALS = 4, 6  # the versions that first keep from connections, and from signals
 SYSTEM = ("/usr", "/lib", "/lib64", "/bin", "/sbin", "/etc/ld.so.cache", "/etc/localtime")
 DEVICES = ("/dev/urandom", "/dev/zero", "/proc/cpuinfo", "/proc/meminfo", "/sys/devices/system/cpu")
 
@@ -61,8 +62,8 @@ def fence(own: str, read: Sequence[str]) -> int:
     if not version:
         return 0
     known = (1 << ACCESSES[min(version, len(ACCESSES) - 1)]) - 1
-    kept = Ruleset(known, 3 if version >= TCP else 0, 3 if version >= SIGNALS else 0)
-    size = ctypes.c_size_t(8 if version < TCP else 16 if version < SIGNALS else 24)
+    kept = Ruleset(known, 3 if version >= CLOSED_TCP else 0, 3 if version >= CLOSED_SIGNALS else 0)
+    size = ctypes.c_size_t(8 if version < CLOSED_TCP else 16 if version < CLOSED_SIGNALS else 24)
     rules = libc.syscall(CREATE_RULESET, ctypes.byref(kept), size, 0)
     if rules < 0:
         return 0

@@ -1,11 +1,15 @@
 """What a student's code may take, and how a process is kept to it."""
 
+import os
 import sys
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 
 LEAST_MEMORY = 512  # MiB; with less NumPy itself does not start everywhere
 OPEN_FILES = 128
 MEBI = 2**20
+LINUX = sys.platform == "linux"
+CLOSED_TCP, CLOSED_SIGNALS = 4, 6  # the versions of Landlock that first keep from them
 # One thread: each of OpenBLAS's takes its share of the memory, and waits for the others. To be set
 # before NumPy is imported.
 ALONE = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -50,7 +54,8 @@ def keep_to(limits: Limits) -> None:
         _, most = resource.getrlimit(what)
         if most != resource.RLIM_INFINITY:  # only the superuser can raise what is set already
             soft, hard = min(soft, most), min(hard, most)
-        resource.setrlimit(what, (soft, hard))
+        with nullcontext() if LINUX else suppress(ValueError, OSError):  # see `lacking`
+            resource.setrlimit(what, (soft, hard))
 
     keep(resource.RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1)  # SIGXCPU, then SIGKILL
     keep(resource.RLIMIT_AS, *(limits.memory_mb * MEBI,) * 2)
@@ -61,12 +66,29 @@ def keep_to(limits: Limits) -> None:
         keep(resource.RLIMIT_NPROC, *(_tasks() + limits.processes,) * 2)
 
 
+def lacking(fenced: int, linux: bool = LINUX) -> tuple[str, ...]:
+    """What is not kept from on this machine, a sentence each; see docs/safety.md.
+
+    fenced : the version of Landlock that is around the code, 0 for none
+    """
+    told = []
+    if not linux:
+        told.append(
+            "on this system memory may have no limit, and what leaves its session is not found"
+        )
+    if not fenced:
+        told.append("this kernel fences no process in: the code can read and write what you can")
+    if fenced < CLOSED_TCP:
+        told.append("the code can open connections to the network")
+    if fenced < CLOSED_SIGNALS:
+        told.append("the code can send signals to your processes")
+    return tuple(told)
+
+
 def _tasks() -> int:
     """Processes and threads that this user has already: they are counted in the limit, too."""
-    import os
-
     tasks, user = 0, os.getuid()
-    for name in os.listdir("/proc") if sys.platform == "linux" else ():
+    for name in os.listdir("/proc") if LINUX else ():
         if name.isdigit():
             try:
                 told = os.stat(f"/proc/{name}/task")

@@ -17,7 +17,7 @@ from ekfsim.student.asked import Answer, Asked, Caller
 from ekfsim.student.fault import FaultError
 from ekfsim.student.sandbox.exchange import NUMBERS, WORDS
 from ekfsim.student.sandbox.folder import copy_of, remove
-from ekfsim.student.sandbox.limits import Limits
+from ekfsim.student.sandbox.limits import Limits, lacking
 from ekfsim.student.sandbox.process import Process
 from ekfsim.student.sandbox.told import Teller
 
@@ -102,9 +102,9 @@ class Sandboxed:
         return 0 if self._process is None else self._process.left
 
     @property
-    def fenced(self) -> int:
-        """Which version of Landlock is around it, 0 for none; see docs/safety.md."""
-        return (self._process or self._begun()).fenced
+    def lacks(self) -> tuple[str, ...]:
+        """What it is not kept from on this machine, a sentence each; see docs/safety.md."""
+        return lacking((self._process or self._begun()).fenced)
 
     def close(self) -> None:
         """End the process and all that it started, and delete its folder."""
