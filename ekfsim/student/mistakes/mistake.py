@@ -30,6 +30,11 @@ class Mistake:
     # more ways, where what is put there can only be known from a student's numbers
     fitted: Fitted = _known_beforehand
 
+    @property
+    def general(self) -> bool:
+        """Whether it fits itself to numbers, and so explains what a plainer mistake explains."""
+        return self.fitted is not _known_beforehand
+
     def applied(self, asked: Asked) -> Gaussian | None:
         """What a filter with this mistake alone makes of the step; None where it cannot be made."""
         return outcome(asked, self.ways[0]) if self.where(asked) and usable(asked) else None
@@ -51,5 +56,5 @@ def elsewhere(text: str) -> str:
     >>> elsewhere("eqs 6, 7: J_x is taken at the estimate before the move")
     'F is taken at the estimate before the move'
     """
-    text = re.sub(r"^eqs? [\d, ]+: ", "", text)
+    text = re.sub(r"^eqs? [\d, ]+(to \d+)?: ", "", text)
     return re.sub(r"J_x|J_u|P_u|J_H|C_v", lambda name: ELSEWHERE[name[0]], text)

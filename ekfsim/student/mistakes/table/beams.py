@@ -72,8 +72,10 @@ def _follow(s: Working, x: Array, heading: Heading, choice: Choice) -> Seen:
     return Seen(float(r[i]), -np.array([n[0], n[1], turned]) / n_d[i])
 
 
-def _ways(heading: Heading = _straight, choice: Choice = _first_wall) -> tuple[Pieces, ...]:
-    """h and all that follows from it; h with J_H or with C_v from it; h alone."""
+def ways_to(heading: Heading = _straight, choice: Choice = _first_wall) -> tuple[Pieces, ...]:
+    """Ways to look at another wall: h and all that follows from it; h with J_H or with C_v from it;
+    h alone.
+    """
     h: Piece = lambda s, _: np.array([_look(s, s.x_h, heading, choice).r])  # noqa: E731
     H: Piece = lambda s, _: _look(s, s.x_H, heading, choice).slope[None]  # noqa: E731
     R: Piece = lambda s, _: np.diag((s.laser.range_ratio * s.h) ** 2)  # noqa: E731
@@ -135,35 +137,35 @@ OF_BEAMS = (
         "your walls are endless lines: your beam meets one where no wall is",
         "eq 8: h is the distance to the first wall; a wall ends at its two points",
         beams,
-        _ways(choice=lambda crossed, _: crossed.first(crossed.r >= 0)),
+        ways_to(choice=lambda crossed, _: crossed.first(crossed.r >= 0)),
     ),
     Mistake(
         "bearing-forgotten",
         "your beam looks straight ahead, whatever the angle of the sense command",
         "eq 8: the beam's direction is θ plus the angle at which it is sensed",
         beams,
-        _ways(lambda θ, _: θ),
+        ways_to(lambda θ, _: θ),
     ),
     Mistake(
         "heading-forgotten",
         "your beam looks along the angle of the sense command, without the heading θ",
         "eq 8: the beam's direction is θ plus the angle at which it is sensed",
         beams,
-        _ways(lambda _, bearing: bearing),
+        ways_to(lambda _, bearing: bearing),
     ),
     Mistake(
         "bearing-sign",
         "your beam looks to the other side: θ minus the angle of the sense command",
         "eq 8: the beam's direction is θ plus the angle at which it is sensed",
         beams,
-        _ways(lambda θ, bearing: θ - bearing),
+        ways_to(lambda θ, bearing: θ - bearing),
     ),
     Mistake(
         "degrees-in-bearing",
         "your angle of the sense command is in degrees where θ in radians is added",
         "eq 8: the beam's direction is θ plus the angle, both in radians",
         beams,
-        _ways(lambda θ, bearing: θ + np.degrees(bearing)),
+        ways_to(lambda θ, bearing: θ + np.degrees(bearing)),
     ),
     Mistake(
         "bearing-radians-twice",
@@ -171,8 +173,8 @@ OF_BEAMS = (
         "eq 8: the beam's direction is θ plus the angle, both in radians",
         beams,
         (
-            *_ways(lambda θ, bearing: θ + np.radians(bearing)),
-            *_ways(lambda θ, bearing: np.radians(θ + bearing)),
+            *ways_to(lambda θ, bearing: θ + np.radians(bearing)),
+            *ways_to(lambda θ, bearing: np.radians(θ + bearing)),
         ),
     ),
     Mistake(
@@ -180,49 +182,49 @@ OF_BEAMS = (
         "your cosine and sine of the beam's direction are given degrees",
         "eq 8: the beam's direction is θ plus the angle, both in radians",
         beams,
-        _ways(lambda θ, bearing: np.degrees(θ + bearing)),
+        ways_to(lambda θ, bearing: np.degrees(θ + bearing)),
     ),
     Mistake(
         "obstacles-ignored",
         "your beam goes through the obstacles, to the room's own wall",
         "eq 8: h is the distance to the first wall, be it the room's or an obstacle's",
         beams,
-        _ways(choice=lambda c, _: c.first(c.on & (c.r >= 0) & c.boundary)),
+        ways_to(choice=lambda c, _: c.first(c.on & (c.r >= 0) & c.boundary)),
     ),
     Mistake(
         "far-wall",
         "your beam goes on to the last wall on its way",
         "eq 8: h is the distance to the first wall",
         beams,
-        _ways(choice=_far),
+        ways_to(choice=_far),
     ),
     Mistake(
         "wall-of-the-list",
         "your beam takes the last or the first wall of your list that it crosses, not the nearest",
         "eq 8: h is the distance to the first wall on the beam's way",
         beams,
-        (*_ways(choice=_listed_last), *_ways(choice=_listed_first)),
+        (*ways_to(choice=_listed_last), *ways_to(choice=_listed_first)),
     ),
     Mistake(
         "wall-behind",
         "your beam looks backwards as well: it meets a wall behind the robot that is nearer",
         "eq 8: h is the distance to the first wall ahead, r ≥ 0",
         beams,
-        _ways(choice=_either_way),
+        ways_to(choice=_either_way),
     ),
     Mistake(
         "nearest-line",
         "your beam takes the wall whose line is nearest to the robot, not the one it meets first",
         "eq 8: h is the distance along the beam, to the first wall",
         beams,
-        _ways(choice=_nearest_line),
+        ways_to(choice=_nearest_line),
     ),
     Mistake(
         "wall-by-reading",
         "your wall is the one whose distance is nearest to the reading, not the one that h meets",
         "eq 8: h is the distance to the first wall; it is predicted without the reading",
         beams,
-        _ways(choice=_likeliest),
+        ways_to(choice=_likeliest),
     ),
     Mistake(
         "shortest-distance",

@@ -156,6 +156,13 @@ OF_GAINS = (
         ),
     ),
     Mistake(
+        "Joseph-without-noise",
+        "your P is (I − K J_H) P (I − K J_H)', without K C_v K'",
+        "eq 12: (I − K J_H) P; Joseph's form of it has + K C_v K'",
+        readings,
+        _covariance(lambda s: _I_KH(s) @ s.P @ _I_KH(s).T),
+    ),
+    Mistake(
         "P-updated-twice",
         "your P is updated twice",
         "eq 12: once for each reading",
@@ -245,13 +252,6 @@ OF_GAINS = (
             lambda s: (1 - _number(s)) * s.P,
             lambda s: (np.eye(len(s.x)) - _number(s)) @ s.P,
         ),
-    ),
-    Mistake(
-        "Joseph-without-noise",
-        "your P is (I − K J_H) P (I − K J_H)', without K C_v K'",
-        "eq 12: (I − K J_H) P; Joseph's form of it has + K C_v K'",
-        readings,
-        _covariance(lambda s: _I_KH(s) @ s.P @ _I_KH(s).T),
     ),
     Mistake(
         "Joseph-sign",
