@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from ekfsim.student.comparing.compare import Compared
 from ekfsim.student.comparing.difference import unit
-from ekfsim.student.mistakes.guessing import Gives, Guess, fits, gives, guesses
+from ekfsim.student.mistakes.guessing import Gives, Guess, alone, fits, gives, pairs, special
 from ekfsim.student.mistakes.known import KNOWN
 from ekfsim.student.mistakes.mistake import Mistake
 
@@ -15,6 +15,7 @@ SEARCHED = 6  # differing steps at which all single mistakes are looked for, wha
 IN_VAIN = 20  # searches without a find, after which no more are made
 IN_PAIRS = 3  # searches among all pairs, which take seconds: no more after one in vain
 WITNESSES = 24  # steps without a difference, at which a mistake that is there must not show
+FITTED = 0.5  # what a step counts for a mistake that fits itself to its numbers
 CLEAN = 1e-10  # σ; a witness is nearer to the reference than this
 
 
@@ -103,12 +104,12 @@ class Naming:
 
     def _searched(self, step: Compared) -> list[Guess]:
         σ = unit(step.right)
-        alone = [(one,) for one in KNOWN if fits((one,), step.asked, step.theirs, σ, self.gives)]
-        if alone or self._searches["pairs"] >= IN_PAIRS:
-            return list(alone)
-        pairs = guesses(step.asked, step.theirs, σ, self.gives)
-        self._searches["pairs"] += 1 if pairs else IN_PAIRS
-        return pairs
+        found = alone(step.asked, step.theirs, σ, self.gives)
+        if special(found) or self._searches["pairs"] >= IN_PAIRS:
+            return found
+        together = pairs(step.asked, step.theirs, σ, self.gives)
+        self._searches["pairs"] += 1 if together else IN_PAIRS
+        return together + found
 
     def _best(self, alike: Iterable[Guess]) -> list[Guess]:
         """The guesses that are believed most, in the order of the table."""
@@ -119,15 +120,19 @@ class Naming:
             key=lambda guess: [order[mistake] for mistake in guess],
         )
 
-    def _worth(self, guess: Guess) -> tuple[bool, int]:
-        """Whether nothing speaks against a guess, and how many steps speak for it."""
+    def _worth(self, guess: Guess) -> tuple[bool, float]:
+        """Whether nothing speaks against a guess, and how many steps speak for it; for one that
+        fits itself to each of them, half as many.
+        """
         silent = all(
             fits((mistake,), one.asked, one.theirs, unit(one.right), self.gives)
             for mistake in guess
             for one in self._witnesses
             if mistake.where(one.asked)
         )
-        return silent, min(self._support(mistake) for mistake in guess)
+        return silent, min(
+            self._support(mistake) * (FITTED if mistake.general else 1) for mistake in guess
+        )
 
     def _support(self, mistake: Mistake) -> int:
         return sum(

@@ -39,12 +39,22 @@ def gives(asked: Asked, changes: tuple[Pieces, ...], theirs: Answer, unit: Array
 
 def guesses(asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> list[Guess]:
     """The mistakes that reproduce a student's numbers, the most common first; only where no single
-    one does, the pairs that do.
+    one does, or none but a general one, the pairs that do.
 
     unit : (n,) σ of each entry of the state, at least 1e-6 m or rad
     """
-    alone = [(one,) for one in KNOWN if fits((one,), asked, theirs, unit, gives)]
-    return list(alone) or _pairs(asked, theirs, unit, gives)
+    found = alone(asked, theirs, unit, gives)
+    return found if special(found) else pairs(asked, theirs, unit, gives) + found
+
+
+def alone(asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> list[Guess]:
+    """Each mistake that reproduces the numbers by itself."""
+    return [(one,) for one in KNOWN if fits((one,), asked, theirs, unit, gives)]
+
+
+def special(found: list[Guess]) -> bool:
+    """Whether one is among them that does not fit itself to the numbers."""
+    return any(not mistake.general for guess in found for mistake in guess)
 
 
 def fits(mistakes: Guess, asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> bool:
@@ -59,7 +69,7 @@ def fits(mistakes: Guess, asked: Asked, theirs: Answer, unit: Array, gives: Give
     )  # fmt: skip
 
 
-def _pairs(asked: Asked, theirs: Answer, unit: Array, gives: Gives) -> list[Guess]:
+def pairs(asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> list[Guess]:
     """The pairs of mistakes that show in this step, each made in one of its most usual ways."""
     if not usable(asked):
         return []
@@ -67,7 +77,7 @@ def _pairs(asked: Asked, theirs: Answer, unit: Array, gives: Gives) -> list[Gues
     showing = {
         mistake: [way for way in mistake.ways[:USUAL] if not _shows_nothing(asked, way, same, unit)]
         for mistake in KNOWN
-        if mistake.where(asked)
+        if mistake.where(asked) and not mistake.general
     }
     return [
         pair
