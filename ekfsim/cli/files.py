@@ -12,7 +12,7 @@ from ekfsim.cli.asked import scene_of
 from ekfsim.cli.kinds import Result, Seed, Source, Word
 from ekfsim.cli.options import DOCUMENTS, FORCE, PLAIN, READING
 from ekfsim.cli.process import say, shown, warn
-from ekfsim.errors import MOST_TOLD, Mistake, UsageError, told
+from ekfsim.errors import MOST_TOLD, EkfsimError, Mistake, UsageError, told
 from ekfsim.printable import in_a_line
 
 if TYPE_CHECKING:
@@ -26,20 +26,26 @@ WORDS = {"world": "world", "command": "commands", "homework": "homework"}
 @click.command(short_help="Validate FILES: every mistake with its place, or ok.")
 @click.argument("files", nargs=-1, required=True)
 def check(files: tuple[str, ...]) -> None:
-    """Validate world and command FILES: every mistake with its place, or `ok`."""
+    """Validate world and command FILES, and filters of your own: every mistake with its place,
+    or `ok`.
+    """
     from ekfsim.files.packaged import packaged, resolve
     from ekfsim.files.scenes.check_study import check as mistakes_in
+    from ekfsim.filters.place import is_place
 
     # of a world that other files name, too, told once
-    wrong, before, warned = False, set[Mistake](), set[str]()
+    status, before, warned = 0, set[Mistake](), set[str]()
     for file in files:
+        if is_place(file):
+            status = max(status, _check_filter(file))
+            continue
         try:
             found = mistakes_in(
                 resolve(file, "worlds" if file in packaged("worlds") else "commands")
             )
         except UsageError as missing:
             say(str(missing))
-            wrong = True
+            status = UsageError.status
             continue
         new = [
             mistake
@@ -55,9 +61,24 @@ def check(files: tuple[str, ...]) -> None:
             f"{file}: {'what is wrong with it is told above' if found.mistakes else 'ok'}"
         )
         click.echo("\n".join(told(new)) or all_told)
-        wrong = wrong or bool(found.mistakes)
-    if wrong:
-        sys.exit(UsageError.status)
+        status = UsageError.status if found.mistakes else status
+    if status:
+        sys.exit(status)
+
+
+def _check_filter(place: str) -> int:
+    """Say what is found of a filter of one's own, or what is wrong with it; the status of that."""
+    from ekfsim.filters.place import absolute
+    from ekfsim.student.own.choice import quietly
+    from ekfsim.student.own.forms import told as found
+
+    try:
+        form = quietly(absolute(place)).form
+    except EkfsimError as wrong:
+        say(str(wrong))
+        return wrong.status
+    click.echo(in_a_line(f"{place}: ok: {found(form)}"))
+    return 0
 
 
 @click.command(short_help="Print the JSON Schema by which editors check a file.")

@@ -11,15 +11,20 @@ GROUP = "ekfsim.filters"  # of entry points
 
 
 def kind_of(name: str) -> Kind:
-    """The filter of that name, built-in or registered, or at that place.
-
-    Raises UsageError where there is none, FaultError where its code fails.
-    """
+    """The filter of that name, built-in or registered, or at that place; see `verify`."""
     if name in FILTERS:
         return FILTERS[name]
-    from ekfsim.student.own.choice import own  # the door to filters of one's own
+    from ekfsim.student.own.choice import Own  # the door to filters of one's own
 
-    return own(name)
+    return Own(name)
+
+
+def verify(name: str) -> None:
+    """Raises UsageError where there is no such filter, FaultError where its code fails."""
+    if name not in FILTERS:
+        from ekfsim.student.own.choice import quietly
+
+        quietly(name)
 
 
 def registered() -> list[str]:
@@ -33,7 +38,7 @@ def registered() -> list[str]:
 
 def code_of(name: str) -> Mapping[str, bytes]:
     """The files that a filter of one's own is made of, by their names from its own folder; none
-    of a built-in one. Raises what `kind_of` does.
+    of a built-in one. Raises what `verify` does.
     """
     if name in FILTERS:
         return {}

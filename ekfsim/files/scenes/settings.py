@@ -105,14 +105,14 @@ def filters_in(text: str, option: str = "--filter") -> tuple[str, ...]:
 def filter_in(name: str, option: str) -> str:
     """The filter that a name or a place means. Raises UsageError where it means none."""
     from ekfsim.filters import FILTERS
-    from ekfsim.filters.choice import kind_of, registered
+    from ekfsim.filters.choice import registered, verify
 
     if name in FILTERS:
         return name
     known = [*FILTERS, *registered()]
     if is_place(name) or name in known:
         name = absolute(name)
-        kind_of(name)
+        verify(name)
         return name
     if os.path.isdir(name):
         raise UsageError(f"{option} {short(name)}: is a folder; name a file in it: FILE.py")

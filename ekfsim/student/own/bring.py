@@ -8,7 +8,7 @@ from typing import Any
 
 from ekfsim.errors import UsageError
 from ekfsim.filters import FILTERS
-from ekfsim.filters.choice import kind_of, registered
+from ekfsim.filters.choice import registered, verify
 from ekfsim.filters.place import absolute, is_place
 from ekfsim.student.own.forms import RIGHT, STEPS, form_of
 from ekfsim.student.own.home import Home
@@ -60,7 +60,7 @@ def _at(place: str) -> str:
     """The same of a place. Raises UsageError where there is none, FaultError where it fails."""
     if not is_place(place):
         raise UsageError(f"bring: {place!r} is no place of a filter; write FILE.py or FILE.py:Name")
-    kind_of(absolute(place))
+    verify(absolute(place))
     return absolute(place)
 
 

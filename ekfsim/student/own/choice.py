@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 from io import StringIO
 from pathlib import Path
-from typing import ClassVar
 
 from ekfsim.filters.protocol import Beginning, Filter
 from ekfsim.student.own.calls import InProcess
 from ekfsim.student.own.filter import OwnFilter
 from ekfsim.student.own.forms import Whole
-from ekfsim.student.own.loading import load
+from ekfsim.student.own.loading import Code, load
 from ekfsim.student.own.whole import WholeFilter
 
 
@@ -21,8 +20,13 @@ from ekfsim.student.own.whole import WholeFilter
 class Own:
     """A filter of one's own, loaded anew for each run that it begins."""
 
-    remark: ClassVar[str] = OwnFilter.remark
     place: str
+
+    @property
+    def remark(self) -> str:
+        """Of its filters. Raises UsageError or FaultError where there are none."""
+        form = quietly(self.place).form
+        return OwnFilter.remark if not isinstance(form, Whole) else WholeFilter.remark
 
     def begin(self, beginning: Beginning) -> Filter:
         """The filter for a run that begins so. Raises UsageError or FaultError."""
@@ -32,8 +36,8 @@ class Own:
         return OwnFilter.around(partial(InProcess, code), beginning)
 
 
-def own(name: str) -> Own:
-    """The filter at a place, or that of a registered name. What it prints as it is loaded it prints
+def quietly(name: str) -> Code:
+    """The code at a place, or that of a registered name. What it prints as it is loaded it prints
     again as its run begins.
 
     Raises UsageError where there is none, FaultError where it fails.
@@ -41,19 +45,17 @@ def own(name: str) -> Own:
     printed = StringIO()
     try:
         with redirect_stderr(printed):
-            load(name)
+            return load(name)
     except BaseException:
         sys.stderr.write(printed.getvalue())
         raise
-    return Own(name)
 
 
 def contents(name: str) -> dict[str, bytes]:
     """The file at a place, and the modules beside it that it imports, by their names from its
-    folder; of an installed one its package, as far as it is imported. Raises what `own` does.
+    folder; of an installed one its package, as far as it is imported. Raises what `quietly` does.
     """
-    with redirect_stderr(StringIO()):
-        home = load(name).home
+    home = quietly(name).home
     modules = home.modules if home.folder else sys.modules
     below = os.path.join(home.folder, "") if home.folder else home.root
     files = {getattr(module, "__file__", None) or "" for module in list(modules.values())}

@@ -27,7 +27,9 @@ class OwnFilter:
     are calculated here, as an EKF has them at the same prior; by them gate and guard refuse.
     """
 
-    remark: ClassVar[str] = "F, G, ν, S, H and K are not its own: they are told as at its estimate"
+    remark: ClassVar[str] = (
+        "derivatives, innovation and gain are calculated at its own estimate, not by it"
+    )
     new_caller: Callable[[], Caller]
     gate: float | None = None
     headings: tuple[int, ...] = (2,)

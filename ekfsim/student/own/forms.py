@@ -67,6 +67,19 @@ def form_of(module: ModuleType, name: str, told: str) -> Form:
     raise UsageError(f"{told}: has no {missing}; {RIGHT}")
 
 
+def told(form: Form) -> str:
+    """What was found, for a person: "predict in line 3, update in line 7"."""
+    if isinstance(form, Functions):
+        return f"{_in_line('predict', form.predict)}, {_in_line('update', form.update)}"
+    what = "of the full protocol" if isinstance(form, Whole) else "with x and P"
+    return f"the class {form.kind.__name__}, {what}"
+
+
+def _in_line(step: str, function: Any) -> str:
+    _, _, line = where(function).rpartition(":")
+    return f"{step} in line {line}" if line else step
+
+
 def _named(module: ModuleType, name: str, told: str) -> Form:
     """The filter of that name. Raises UsageError where there is none, or where it is none."""
     found: Any = module

@@ -8,15 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from ekfsim.filters.arithmetic.algebra import wrapped
+from ekfsim.filters.arithmetic.algebra import inverse, wrapped
 from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array
+from ekfsim.geometry.angles import wrap
 from ekfsim.records import Control
 from ekfsim.student.asked import Answer, Asked
 
 ASYMMETRY = 1e-9  # m², rad²: by so much may P differ from its transpose
 SLIGHT = 1e-12  # m², rad²: σ of a micrometre, a microradian; what is less is rounding
 ROUNDING = 1e-9  # of the largest variance
+ALIKE = 1e-3  # rad
 LARGEST = 1e12  # m, rad; beyond, a float itself is coarser than what is told
 TURN = 2 * np.pi  # rad; a heading that leaps by more than this and what was turned is in degrees
 
@@ -152,19 +154,26 @@ def refuse_boundless(x: Array, P: Array) -> None:
 
 
 def refuse_degrees(asked: Asked, i: int, heading: float) -> None:
-    """Raise WrongError where a heading leaps as if it were told in degrees."""
+    """Raise WrongError where a heading leaps as if it were told in degrees: by more than was turned
+    and a full turn, and not by full turns alone.
+    """
     leap, most = abs(heading - float(asked.x[i])), 2 * TURN
     if isinstance(asked.given, Control):
-        turned = (
-            abs(value)
-            for value, quantity in zip(
-                asked.given.u.tolist(), asked.given.motion.inputs, strict=True
-            )
-            if quantity.unit == "rad"
-        )
-        most = TURN + sum(turned)
-    if leap > most:
-        raise WrongError(
-            f"x[{i}] goes from {asked.x[i]:.6g} to {heading:.6g} in one step: headings are in "
-            "radians; this looks like degrees"
-        )
+        inputs = zip(asked.given.u.tolist(), asked.given.motion.inputs, strict=True)
+        most = TURN + sum(abs(value) for value, quantity in inputs if quantity.unit == "rad")
+    if leap <= most or abs(wrap(heading - expected(asked)[i])) < ALIKE:
+        return
+    raise WrongError(
+        f"x[{i}] goes from {asked.x[i]:.6g} to {heading:.6g} in one step: headings are in "
+        "radians; this looks like degrees"
+    )
+
+
+def expected(asked: Asked) -> Array:
+    """What an EKF makes of the mean : (n,)"""
+    x, P = asked.x, asked.P
+    if isinstance(asked.given, Control):
+        return asked.given.motion.f(x, asked.given.u)
+    h, H, R = asked.given.sensor.linearize(x)
+    K = P @ H.mT @ inverse(H @ P @ H.mT + R)
+    return x + K @ asked.given.sensor.residual(asked.given.z, h)
