@@ -188,10 +188,17 @@ def mutants(
         found.append(exposed(scene))
     right, statistics = None, {}
     if runs is not None:
+        if scenes[0].log is not None:
+            raise UsageError(
+                f"--runs: {scenes[0].commands_source} is a recording, which is one run"
+            )
         right = without_mistake(scenes[0], runs)
-        for mistake in KNOWN:
-            heed()
-            statistics[mistake] = with_mistake(scenes[0], mistake, runs)
+        with click.progressbar(
+            KNOWN, label="mistakes", file=sys.stderr, hidden=not sys.stderr.isatty()
+        ) as bar:
+            for mistake in bar:
+                heed()
+                statistics[mistake] = with_mistake(scenes[0], mistake, runs)
     if csv is not None:
         with whole_text(csv, force) as file:
             write_exposed(file, scenes, found, statistics)

@@ -84,6 +84,20 @@ def test_statistics_stand_beside(place):
         assert {row["runs"] for row in csv.DictReader(file)} == {"10"}
 
 
+def test_a_log_exposes_as_much_as_the_run_that_it_is_of_but_what_the_command_tells(place):
+    ekfsim("record", "proof-every-mistake", "-o", "log")
+    Path("log.yaml").write_text(
+        "world: log/world.yaml\nrecording: {format: classroom, path: log}\n"
+    )
+    told, simulated = ekfsim("mutants", "log.yaml"), ekfsim("mutants", "proof-every-mistake")
+    assert (told.status, told.err) == (0, "")
+    assert rows(simulated).keys() - rows(told).keys() == {"command-for-odometry", "command-in-P_u"}
+    again = ekfsim("mutants", "log.yaml", "--runs", "5")
+    assert (again.status, again.err) == (
+        2, "ekfsim: --runs: log.yaml is a recording, which is one run\n",
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("args", "line"),
     [

@@ -4,7 +4,7 @@ column each.
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from ekfsim.printable import in_a_line
+from ekfsim.printable import in_a_line, some
 from ekfsim.student.exposing.exposed import Exposed
 from ekfsim.student.exposing.statistics import seen
 from ekfsim.student.mistakes.mistake import Mistake
@@ -13,6 +13,7 @@ from ekfsim.views.words.numbers import number
 from ekfsim.views.words.text_table import aligned, folded
 
 SURELY = 1000  # σ; how many more it is matters to nobody
+MOST = 24  # names in a sentence; the table has them all
 RIGHT = "(no mistake)"
 FIRST = ("mistake", "shows first at", "in", "it says", "right is", "σ")
 STATISTICS = ("> 50 %", "lost", "NIS", "statistics say")
@@ -109,7 +110,7 @@ def _not_exposed(found: Sequence[Sequence[Exposed]], width: int | None) -> Itera
     beyond = [one.mistake.name for one in together if not one.possible]
     if beyond:
         yield ""
-        yield from folded(f"Cannot be made here: {', '.join(beyond)}", width)
+        yield from folded(f"Cannot be made here: {some(beyond, MOST)}", width)
 
 
 def _unseen(
@@ -120,5 +121,5 @@ def _unseen(
     exposed = [one.mistake for one in found if one.first is not None]
     unseen = [one.name for one in exposed if seen(statistics[one]) == seen(right)]
     told = f"Of {right.tally.runs} runs statistics alone say of {len(unseen)} of these what they "
-    told += f"say of the right filter{': ' if unseen else ''}{', '.join(unseen)}"
+    told += f"say of the right filter{': ' if unseen else ''}{some(unseen, MOST)}"
     yield from ("", *folded(told, width))

@@ -13,11 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ekfsim.commands import Move
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import ellipse
-from ekfsim.records import Step
+from ekfsim.records import Control, Step
 from ekfsim.scene import Scene
 from ekfsim.views.terminal.playback import View, views
 from ekfsim.views.words.narrative import narrate
@@ -101,7 +100,7 @@ def _makes_a_belief(view: View) -> bool:
     """Whether the belief after it is another than the one before."""
     correction = view.step.correction
     if correction is None:
-        return isinstance(view.step.entry.command, Move)
+        return isinstance(view.step.entry.given, Control)
     return not view.beam and int(correction.refused) == Refused.NOT
 
 
@@ -178,8 +177,8 @@ def tolerance(
             if name == "orientation":
                 return 1.0 if drawn.minor < ROUND * drawn.major else 0.0
             return SHARE * abs(value) if name == "cone" else SHARE * float(drawn.major)
-    if c is None:  # P_u, J_x, J_u
-        return SHARE * abs(value)
+    if c is None:  # P_u; J_x and J_u, whose sines and cosines are small beside 1
+        return max(SHARE * abs(value), 1e-4 if what in CONSTANT else 0.0)
     sd = math.sqrt(float(c.S[0, 0]))
     match what, name:
         case ("predicted range", _) | ("innovation", ""):

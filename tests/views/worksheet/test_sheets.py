@@ -7,9 +7,11 @@ import pytest
 from solver import GAP, Solver
 
 from ekfsim.errors import UsageError
+from ekfsim.files.logs import write_log
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.load import read_scene
 from ekfsim.localization import play
+from ekfsim.simulation import simulate
 from ekfsim.views.terminal.playback import views
 from ekfsim.views.words.narrative import narrate
 from ekfsim.views.worksheet.sheets import sheets
@@ -44,6 +46,18 @@ def test_every_gap_can_be_filled_from_the_sheet_alone(name, share, explain):
     # and not whatever one answers: a wrong sign is wrong
     passing = [gap for gap, (_, value, within) in right.items() if 2 * abs(value) <= within]
     assert len(passing) <= 0.05 * len(right)
+
+
+def test_a_recorded_run_has_the_numbers_of_the_run_that_it_is_of(tmp_path):
+    played = scene("tour")
+    write_log(played, simulate(played), tmp_path / "log", False)
+    (tmp_path / "log.yaml").write_text(
+        "world: log/world.yaml\nrecording: {format: classroom, path: log}\n"
+    )
+    made = sheets(read_scene(tmp_path / "log.yaml").get(), 1)
+    right, answers = solution(made), Solver(made.sheet).solved()
+    assert list(right.values()) == list(solution(sheets(played, 1)).values())
+    assert all(abs(answers[gap] - value) <= within for gap, (_, value, within) in right.items())
 
 
 def test_the_share_is_what_is_asked_for():
