@@ -276,6 +276,19 @@ def test_a_fault_is_told_with_its_run_and_its_step_wherever_it_comes(place):
     assert alone.err == here.err.replace(f"run {run}, ", "")
 
 
+def test_nothing_is_heard_of_what_many_runs_print(place):
+    noisy = "import sys\nprint('loaded')\ndef noisy(*given):\n"
+    noisy += "    print('moved')\n    print('moved', file=sys.stderr)\n    return predict(*given)\n"
+    text = BESIDE.replace("def predict", "def moved") + noisy
+    text = text.replace("predict(*given)", "moved(*given)") + "predict = noisy\n"
+    (place / "code/mine.py").write_text(text)
+    told = ekfsim("study", "short.yaml", "--runs", 9, "--filter", "code/mine.py")
+    assert "loaded" not in told.out + told.err
+    assert "moved" not in told.out + told.err
+    alone = ekfsim("run", "short.yaml", "--filter", "code/mine.py", "-q")
+    assert alone.err == "loaded\nmoved\nmoved\n"
+
+
 def test_workers_make_the_same_tables(place):
     args = ("study", "short.yaml", "--runs", 1030, "--filter", "code/mine.py")
     done(*args, "-o", "one")

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from contextlib import redirect_stderr
+from contextlib import nullcontext, redirect_stderr
 from dataclasses import dataclass
 from functools import partial
 from io import StringIO
@@ -12,6 +12,7 @@ from ekfsim.filters.protocol import Beginning, Filter
 from ekfsim.student.own.calls import InProcess
 from ekfsim.student.own.filter import OwnFilter
 from ekfsim.student.own.forms import Whole
+from ekfsim.student.own.home import NOWHERE
 from ekfsim.student.own.loading import Code, load
 from ekfsim.student.own.whole import WholeFilter
 
@@ -29,8 +30,14 @@ class Own:
         return OwnFilter.remark if not isinstance(form, Whole) else WholeFilter.remark
 
     def begin(self, beginning: Beginning) -> Filter:
-        """The filter for a run that begins so. Raises UsageError or FaultError."""
-        code = load(self.place)
+        """The filter for a run that begins so; of many runs nothing is heard of what they print.
+
+        Raises UsageError or FaultError.
+        """
+        many = beginning.runs is not None
+        with redirect_stderr(NOWHERE) if many else nullcontext():
+            code = load(self.place)
+        code.home.mute = many
         if isinstance(code.form, Whole):
             return WholeFilter.around(code, beginning)
         return OwnFilter.around(partial(InProcess, code), beginning)

@@ -6,7 +6,7 @@ import re
 import sys
 import sysconfig
 from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType, TracebackType
@@ -25,6 +25,17 @@ CELL = re.compile(r"[/\\]ipykernel_\d+[/\\]\d+\.py$|^<ipython-input-")
 MOST_WORDS = 300  # of an exception's text
 
 
+class Nowhere(io.TextIOBase):
+    """Where what is printed is lost."""
+
+    def write(self, text: str) -> int:
+        """As if it were written."""
+        return len(text)
+
+
+NOWHERE = Nowhere()
+
+
 @dataclass
 class Home:
     """Where a student's code may import from, as if it were run there, and which lines are its.
@@ -36,6 +47,7 @@ class Home:
     folder: str | None = None  # None: code that is installed, or stands in no file
     root: str = ""  # what the paths of installed code begin with
     modules: dict[str, ModuleType] = field(default_factory=dict)
+    mute: bool = False  # what is printed is told nobody: ten thousand runs would all say it
 
     @contextmanager
     def entered(self) -> Iterator[None]:
@@ -43,7 +55,8 @@ class Home:
         printed here goes to standard error, and there is nothing to be read: a narrative is being
         told.
         """
-        with redirect_stdout(sys.stderr), np.errstate(all="ignore"):
+        heard = NOWHERE if self.mute else sys.stderr
+        with redirect_stdout(heard), redirect_stderr(heard), np.errstate(all="ignore"):
             outside = sys.stdin, sys.dont_write_bytecode
             sys.stdin, sys.dont_write_bytecode = io.StringIO(), True
             if self.folder is not None:
