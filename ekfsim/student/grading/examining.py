@@ -74,7 +74,8 @@ class Examiner:
             else:
                 assert part.honesty is not None
                 score = graded_honesty(score, part.honesty, self.bench, pupil)
-            return replace(score, words=(*score.words, *_printed(pupil.printed)))
+        beside = *_printed(pupil.printed), *_left(pupil.left)
+        return replace(score, words=(*score.words, *beside))
 
     def _sandboxed(self, submission: Submission, file: str) -> Sandboxed:
         asked = self.homework.keys.limits
@@ -92,6 +93,14 @@ def _printed(text: str) -> Sequence[str]:
     """What the code printed, a line of it; it costs nothing and earns nothing."""
     told = " ".join(text.split())
     return [f"it printed: {short(told, MOST_PRINTED)}"] if told else []
+
+
+def _left(processes: int) -> Sequence[str]:
+    """What the code had not ended itself, a line of it; it costs nothing either."""
+    if not processes:
+        return []
+    told = "a process" if processes == 1 else f"{processes} processes"
+    return [f"it left {told} running, which the grader ended"]
 
 
 def _part_of(homework: Homework, check: Check) -> HomeworkPartKeys:
