@@ -77,7 +77,7 @@ def _diff_filter(
     found = found_in(heeded(runs_of(scene, caller, reference, runs)))
     if not found.steps and found.fault is None:
         raise UsageError(f"{scene.commands_source}: has no move and no reading to be compared")
-    made = f"{told_in_a_line(scene)}, against {label(reference)}"
+    made = f"{told_in_a_line(scene)}, runs {runs}, against {label(reference)}"
     sides = Sides(label(name), label(reference), made, scene.world.system == "classroom")
     click.echo(shown(told(found, sides)), nl=False)
     if found.fault is not None:

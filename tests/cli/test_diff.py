@@ -41,7 +41,7 @@ class Mine:
 """
 MADE = f"""
 ekfsim {VERSION}, world world.yaml, commands short.yaml, filter mine.py, guard warn,
-seed 0, run 0, against ekf
+seed 0, run 0, runs 1, against ekf
 """
 
 
@@ -223,3 +223,16 @@ def test_nothing_to_compare_is_no_agreement():
     assert (ended.status, ended.out, ended.err) == (
         2, "", "ekfsim: still.yaml: has no move and no reading to be compared\n"
     )  # fmt: skip
+
+
+def test_the_example_of_the_docs_is_what_is_said():
+    page = (Path(__file__).parents[2] / "docs/own-filter.md").read_text(encoding="utf-8")
+    code = page.partition("```python\n")[2].partition("```")[0]
+    told = page.partition("<!-- diff -->\n```\n")[2].partition("```")[0]
+    assert "Guess: " in told
+    wrong = code.replace("motion.F(x, u)", "motion.F(motion.f(x, u), u)")
+    assert wrong != code
+    ended = diff(code=wrong, commands="tour")
+    assert (ended.status, ended.err) == (1, "")
+    assert ended.out.startswith(f"{told}\nekfsim {VERSION}, world ")
+    assert diff(code=code, commands="tour").status == 0
