@@ -19,7 +19,7 @@ from ekfsim.student.mistakes.table.steps import (
 )
 from ekfsim.student.mistakes.working import Piece, Pieces, Working
 
-SMALL = tuple(10.0**-k for k in (9, 6, 12, 3, 8, 10, 4, 2, 1))
+SMALL = tuple(10.0**-k for k in (2, 6, 9, 12, 3, 8, 10, 4, 1))
 
 
 def _instead(value: Array) -> Piece:
