@@ -58,6 +58,7 @@ def grade(
     from ekfsim.student.grading.scores import checks_of
     from ekfsim.student.grading.sound import refuse_unsound
     from ekfsim.student.grading.submissions import submissions as handed_in
+    from ekfsim.student.sandbox.kernel import lacking, landlock
 
     part_with()
     wanted, asked = formats_in(formats), read_homework(Path(homework))
@@ -65,6 +66,10 @@ def grade(
     found = handed_in([Path(path) for path in submissions])
     refuse_existing_folder(out, *FILES, force=force)
     refuse_unsound(asked)
+    lacks = () if through else lacking(landlock())
+    if lacks:
+        told = "; ".join(lacks)
+        warn([f"students' code is not kept from everything here: {told}; see docs/safety.md"])
     work = grading.work_of(out)
     with keeping.kept_in(work, out, checks_of(asked.keys)) as kept:
         with submissions_bar(len(found), work) as done:

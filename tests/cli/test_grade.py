@@ -166,6 +166,19 @@ def test_wrong_usage_is_told_and_leaves_nothing(place, args, told):
     assert not list(place.glob("out*"))
 
 
+@pytest.mark.parametrize("fenced", [0, 6])
+def test_what_this_machine_cannot_keep_from_is_told_once(place, monkeypatch, fenced):
+    monkeypatch.setattr("ekfsim.student.sandbox.kernel.landlock", lambda: fenced)
+    told = ekfsim("grade", "steps.yaml", "cleo.py", "-o", "out", "--workers", "1")
+    ways = "read and write", "connections", "signals"
+    assert [way in told.err for way in ways] == [fenced == 0, fenced < 4, fenced < 6]
+    assert told.err.count("see docs/safety.md") == (fenced < 6)
+    through = ekfsim(
+        "grade", "steps.yaml", "cleo.py", "-o", "out", "--force", "--through", "env A=B"
+    )
+    assert (through.status, through.err) == (0, "")
+
+
 # the autograder
 
 

@@ -7,7 +7,7 @@
     exchange.py    what goes over, to the byte
     told.py        motions, sensors and walls in plain numbers
     keeper.py      over there: who kills whatever the code started
-    kernel.py      over there: what Linux alone can do
+    kernel.py      what Linux alone can do, and what a machine lacks
     answering.py   over there: who answers, whatever the code does
     calling.py     over there: the code, and what may be asked of it
 

@@ -9,7 +9,6 @@ LEAST_MEMORY = 512  # MiB; with less NumPy itself does not start everywhere
 OPEN_FILES = 128
 MEBI = 2**20
 LINUX = sys.platform == "linux"
-CLOSED_TCP, CLOSED_SIGNALS = 4, 6  # the versions of Landlock that first keep from them
 # One thread: each of OpenBLAS's takes its share of the memory, and waits for the others. To be set
 # before NumPy is imported.
 ALONE = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -54,7 +53,7 @@ def keep_to(limits: Limits) -> None:
         _, most = resource.getrlimit(what)
         if most != resource.RLIM_INFINITY:  # only the superuser can raise what is set already
             soft, hard = min(soft, most), min(hard, most)
-        with nullcontext() if LINUX else suppress(ValueError, OSError):  # see `lacking`
+        with nullcontext() if LINUX else suppress(ValueError, OSError):  # see kernel.lacking
             resource.setrlimit(what, (soft, hard))
 
     keep(resource.RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1)  # SIGXCPU, then SIGKILL
@@ -64,25 +63,6 @@ def keep_to(limits: Limits) -> None:
     keep(resource.RLIMIT_CORE, 0, 0)
     if hasattr(resource, "RLIMIT_NPROC"):
         keep(resource.RLIMIT_NPROC, *(_tasks() + limits.processes,) * 2)
-
-
-def lacking(fenced: int, linux: bool = LINUX) -> tuple[str, ...]:
-    """What is not kept from on this machine, a sentence each; see docs/safety.md.
-
-    fenced : the version of Landlock that is around the code, 0 for none
-    """
-    told = []
-    if not linux:
-        told.append(
-            "on this system memory may have no limit, and what leaves its session is not found"
-        )
-    if not fenced:
-        told.append("this kernel fences no process in: the code can read and write what you can")
-    if fenced < CLOSED_TCP:
-        told.append("the code can open connections to the network")
-    if fenced < CLOSED_SIGNALS:
-        told.append("the code can send signals to your processes")
-    return tuple(told)
 
 
 def _tasks() -> int:

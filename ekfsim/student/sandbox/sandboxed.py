@@ -17,7 +17,8 @@ from ekfsim.student.asked import Answer, Asked, Caller
 from ekfsim.student.fault import FaultError
 from ekfsim.student.sandbox.exchange import NUMBERS, WORDS
 from ekfsim.student.sandbox.folder import copy_of, remove
-from ekfsim.student.sandbox.limits import Limits, lacking
+from ekfsim.student.sandbox.kernel import lacking
+from ekfsim.student.sandbox.limits import Limits
 from ekfsim.student.sandbox.process import Process
 from ekfsim.student.sandbox.told import Teller
 
@@ -103,7 +104,7 @@ class Sandboxed:
 
     @property
     def lacks(self) -> tuple[str, ...]:
-        """What it is not kept from on this machine, a sentence each; see docs/safety.md."""
+        """What it is not kept from on this machine; see docs/safety.md."""
         return lacking((self._process or self._begun()).fenced)
 
     def close(self) -> None:

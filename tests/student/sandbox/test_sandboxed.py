@@ -22,7 +22,8 @@ from ekfsim.student.fault import FaultError
 from ekfsim.student.own.calls import InProcess
 from ekfsim.student.own.loading import load
 from ekfsim.student.sandbox import process, sandboxed
-from ekfsim.student.sandbox.limits import Limits, lacking
+from ekfsim.student.sandbox.kernel import lacking
+from ekfsim.student.sandbox.limits import Limits
 from ekfsim.student.sandbox.sandboxed import Sandboxed
 
 SHORT = Limits(seconds=SECONDS)
