@@ -94,6 +94,8 @@ def _diff_table(scene: "Scene", csv: str, reference: str, made: str) -> None:
     held = held_table(scene, Path(csv), reference)
     warn(held.remarks)
     click.echo(shown(told(held.found, Sides(csv, label(reference), made, printed=True))), nl=False)
+    if held.found.fault is not None:
+        raise held.found.fault
     if not held.found.equal:
         sys.exit(RunError.status)
 

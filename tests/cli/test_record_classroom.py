@@ -2,6 +2,7 @@
 
 import csv
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from program import ekfsim, left_in
 
 from ekfsim.files.packaged import packaged
 
+PAGE = Path(__file__).parents[2] / "docs" / "own-filter.md"
 # all that may happen to a robot, and all that it may not know
 WORLD = """\
 name: a secret name
@@ -136,6 +138,19 @@ def test_every_packaged_classroom_can_be_handed_out_and_read_again(place):
             assert [row[:2] for row in one] == [row[:2] for row in two]
             for a, b in zip(one, two, strict=True):
                 assert np.float64(b[2:11]) == pytest.approx(np.float64(a[2:11]), abs=1e-12)
+
+
+def test_the_rows_in_the_docs_are_those_of_the_tour(place):
+    told = PAGE.read_text(encoding="utf-8").partition("index,kind,distance,angle,bearing,range\n")[
+        2
+    ]
+    ekfsim("record", "tour", "-o", "log")
+    written = rows_of(place / "log" / "entries.csv")[1:6]
+    shown = list(csv.reader(told.split("```")[0].splitlines()))
+    assert [row[:2] for row in shown] == [row[:2] for row in written]
+    for a, b in zip(shown, written, strict=True):
+        for one, other in zip(a[2:], b[2:], strict=True):
+            assert (float(one or "nan")) == pytest.approx(float(other or "nan"), nan_ok=True)
 
 
 def test_no_echo_is_an_empty_field(place):

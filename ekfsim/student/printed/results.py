@@ -24,6 +24,7 @@ FEW = 5  # steps that are named; of more only their number is told
 class Results:
     """The beliefs of a file by the index of the entry, in m and rad, and what was made of it."""
 
+    file: str
     rows: Mapping[int, Row]
     remarks: tuple[str, ...]
 
@@ -38,6 +39,7 @@ def results(table: Table, given: Sequence[int], expected: Mapping[int, Gaussian]
     """
     rows, remarks = _aligned(table, given)
     known = [index for index in rows if index in expected]
+    known = [index for index in known if np.isfinite(rows[index].x[2])]
     θ = np.array([rows[index].x[2] for index in known])
     right = np.array([expected[index].mean[2] for index in known])
     unit = table.unit or _nearer(θ, right)
@@ -50,7 +52,9 @@ def results(table: Table, given: Sequence[int], expected: Mapping[int, Gaussian]
     if missing:
         remarks.append(f"{table.file}: no row of {steps_told(missing)}: not compared, nor is what "
                        "follows each of them")  # fmt: skip
-    return Results({i: _scaled(row, factor, spread) for i, row in rows.items()}, tuple(remarks))
+    return Results(
+        table.file, {i: _scaled(row, factor, spread) for i, row in rows.items()}, tuple(remarks)
+    )
 
 
 def steps_told(indices: Sequence[int]) -> str:

@@ -16,6 +16,7 @@ from ekfsim.student.asked import Answer, Asked
 from ekfsim.student.comparing.compare import Compared, believed
 from ekfsim.student.comparing.difference import differences, sizes, symbols, unit
 from ekfsim.student.comparing.rounding import LEAST, Rounding, deviations, rounding
+from ekfsim.student.fault import FaultError
 from ekfsim.student.mistakes.guessing import LAST_DIGITS, SAME
 from ekfsim.student.mistakes.mistake import outcome
 from ekfsim.student.mistakes.working import FORMS, Pieces, Working
@@ -123,7 +124,8 @@ class PrintedSteps:
         self, asked: Asked, row: Row, right: Gaussian, made: Prediction | Correction | None,
         halves: Halves,
     ) -> Compared:  # fmt: skip
-        """What a row says beside the reference."""
+        """What a row says beside the reference. Raises FaultError where it says no number."""
+        self._refuse_nan(asked, row)
         theirs = Answer(row.x, row.P)
         moved = carried(
             lambda belief: right if made is None and asked.index == 0 else Gaussian(
@@ -136,8 +138,22 @@ class PrintedSteps:
         in_x, in_P = sizes(theirs, right, self.layout)
         rounded = Rounding(0.0, 0.0) if made is None else rounding(asked, made, right.covariance)
         allowed = Rounding(rounded.x + left.x * SLACK, rounded.P + left.P * SLACK)
-        apart = differences(theirs, right, allowed, self.layout)
+        with np.errstate(over="ignore"):  # numbers may be absurd
+            apart = differences(theirs, right, allowed, self.layout)
         return Compared(asked, theirs, right, float(max(in_x.max(), in_P.max())), apart)
+
+    def _refuse_nan(self, asked: Asked, row: Row) -> None:
+        names = symbols(self.layout)
+        known = [*zip(names, row.x.tolist(), strict=True)]
+        known += [
+            (f"P_{a}{b}", value)
+            for a, values in zip(names, row.P.tolist(), strict=True)
+            for b, value in zip(names, values, strict=True)
+        ]
+        for name, value in known:
+            if not np.isfinite(value):
+                place = f"{self.results.file}:{row.line}"
+                raise FaultError(place, f"{name} is no number", asked.step)
 
     def _reference(self, asked: Asked) -> tuple[Gaussian, Prediction | Correction]:
         prior = Gaussian(asked.x, asked.P)

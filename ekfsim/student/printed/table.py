@@ -15,6 +15,9 @@ from ekfsim.geometry import Array
 from ekfsim.student.printed.columns import LIKE, Columns, columns_of
 from ekfsim.student.printed.digits import NUMBER, Digits, Halves
 
+NONE = ("nan", "inf", "1.#")  # how names begin of what is no number
+LARGEST = 1e60  # of numbers; of larger ones a square or two are no numbers any more
+MOST = 10**7  # steps
 SEPARATORS = ";\t,"  # the first that a header has; else white space
 
 
@@ -96,15 +99,15 @@ def _rows(
     spreads = Digits.of([fields[at] for _, fields in texts for at in entries])
     rows, mistakes = dict[int, Row](), list[Mistake]()
     for order, (line, fields) in enumerate(texts):
-        number = float(order if columns.index is None else fields[columns.index])
-        index = int(number) if number == int(number) else -1
+        counted = float(order) if columns.index is None else number(fields[columns.index])
+        index = int(counted) if counted in range(MOST) else -1
         if index < 0 or index in rows:
             wrong = "stands twice" if index in rows else "is no whole number from 0 on"
             told = f"the index {fields[columns.index or 0]} {wrong}"
             mistakes.append(Mistake(Place(file, line, 1), "", told, "each step has one row"))
             continue
-        x = np.array([float(fields[at]) for at in columns.x])
-        P = np.array([[float(fields[columns.P[i, j]]) for j in range(3)] for i in range(3)])
+        x = np.array([number(fields[at]) for at in columns.x])
+        P = np.array([[number(fields[columns.P[i, j]]) for j in range(3)] for i in range(3)])
         halves = Halves(
             np.array([places.half(x[0]), places.half(x[1]), headings.half(x[2])]),
             np.array([[spreads.half(value) for value in row] for row in P.tolist()]),
@@ -143,10 +146,21 @@ def _dotted(text: str) -> str:
 
 
 def _is_number(text: str) -> bool:
-    """Whether a text is a number that a belief may hold."""
+    """Whether a text is a number, or what programs print where none came out."""
     text = _dotted(text)
-    return (
-        any(letter.isdigit() for letter in text)
-        and NUMBER.fullmatch(text) is not None
-        and math.isfinite(float(text.replace("d", "e").replace("D", "e")))
+    digits = any(letter.isdigit() for letter in text)
+    return text.lower().strip("-+()").startswith(NONE) or (
+        digits and NUMBER.fullmatch(text) is not None
     )
+
+
+def number(text: str) -> float:
+    """A number as any language prints it; nan where it is none, or larger than any.
+
+    >>> number("1.5D-3"), number("-nan(ind)")
+    (0.0015, nan)
+    """
+    if NUMBER.fullmatch(text) is None:
+        return math.nan
+    value = float(text.lower().replace("d", "e"))
+    return value if abs(value) <= LARGEST else math.nan

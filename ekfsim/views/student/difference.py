@@ -53,7 +53,8 @@ def told(found: Found, sides: Sides) -> str:
 def _headline(found: Found, sides: Sides) -> str:
     moves, readings = _counted(found.moves, "move"), _counted(found.readings, "reading")
     of = f"{_counted(found.steps, 'step')} ({moves}, {readings}) of {_counted(found.runs, 'run')}"
-    until = "" if found.fault is None else "Before its code fails, "
+    ends = "its numbers end" if sides.printed else "its code fails"
+    until = "" if found.fault is None else f"Before {ends}, "
     if found.first is None:
         every = "all " if found.steps > 1 else ""
         never = "" if sides.printed else ": update was never called"

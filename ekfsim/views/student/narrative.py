@@ -1,5 +1,6 @@
 """What is found in a narrative that another program printed, in words."""
 
+import math
 import textwrap
 from collections.abc import Iterator, Sequence
 
@@ -56,6 +57,8 @@ def _others(first: Wrong, others: Sequence[Wrong]) -> Iterator[str]:
 
 
 def _sentence(one: Wrong) -> str:
+    if math.isnan(one.right):
+        return f"line {one.line}: {one.what} is {one.theirs:g}, and no number."
     theirs, right = _apart(one)
     unit = f" {one.unit}" if one.unit else ""
     bound = f" {one.bound}" if one.bound else ""

@@ -14,7 +14,15 @@ from ekfsim.filters.protocol import Filter
 from ekfsim.geometry import Array
 from ekfsim.records import Control, Entry, Reading
 from ekfsim.student.printed.digits import Halves
-from ekfsim.student.printed.narrative.hanging import COMMANDED, RADIAN, Due, Numbers, Printed
+from ekfsim.student.printed.narrative.hanging import (
+    COMMANDED,
+    RADIAN,
+    Due,
+    Numbers,
+    Printed,
+    finite,
+    turned,
+)
 from ekfsim.student.printed.narrative.numbers import Check, Formula, Guess
 from ekfsim.student.printed.narrative.reading import Block, Narrative, Number
 from ekfsim.student.printed.table import Row
@@ -77,7 +85,7 @@ def rows_of(pairs: Sequence[tuple[Block, Entry]], start: Block | None) -> dict[i
     ]
     for block, which, index in (*first, *after):
         state, P = block.facts.get(f"{which} state"), block.facts.get(f"{which} covariance")
-        if state is not None and P is not None:
+        if state is not None and P is not None and finite((*state, *P)):
             values, halves = _numbers(state, P)
             rows[index] = Row(state[0].line, values.mean, values.covariance, halves)
     return rows
@@ -108,6 +116,8 @@ def predicted(block: Block, entry: Entry, before: Printed, reference: Filter) ->
     if before.state is None or before.P is None or not isinstance(entry.given, Reading):
         return
     numbers: Numbers = (*before.state, *before.P)
+    if not finite(numbers):
+        return
     made = Corrections(entry.given, reference)
     facts = block.facts
     if (ranged := facts.get("predicted range")) is not None:
@@ -145,8 +155,7 @@ def _is_of(block: Block, entry: Entry) -> bool:
         case Move(distance, angle) if (told := block.facts.get("commanded")) is not None:
             return _near(told[0], distance) and _near(told[1], angle / RADIAN)
         case Sense(angle) if (told := block.facts.get("bearing")) is not None:
-            apart = math.remainder(told[0].value - angle / RADIAN, 360.0)
-            return abs(apart) <= told[0].half + ALIKE
+            return abs(turned(told[0].value - angle / RADIAN)) <= told[0].half + ALIKE
     return True
 
 
@@ -182,7 +191,7 @@ def _driven_way(block: Block) -> list[float]:
         return []
     x, y = (after[i].value - before[i].value for i in (0, 1))
     θ = before[2].value * RADIAN
-    turn = math.remainder(after[2].value - before[2].value, 360.0)
+    turn = turned(after[2].value - before[2].value)
     return [x * math.cos(θ) + y * math.sin(θ), turn]
 
 

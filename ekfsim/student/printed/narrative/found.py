@@ -65,6 +65,7 @@ def examined(
         _compare(found, told, run, given, first, reference)
     before = Printed()
     for block in told.blocks:
+        found.note(hanging.no_numbers(block))
         entry = entry_of.get(id(block))
         _hang_together(found, block, before, entry if run.same_run else None)
         if entry is not None:
@@ -97,7 +98,7 @@ def _hang_together(found: Examined, block: Block, before: Printed, entry: Entry 
             found.note(hanging.grown(before.P, after.P))
         if entry is None:
             found.look(hanging.revised(block, before))
-    if after.P is not None and block.kind != "other":
+    if after.P is not None and block.kind != "other" and hanging.finite(after.P):
         found.look(hanging.shape(after.P))
         found.note(hanging.impossible(after.P))
         found.look(uncertainty(block, after.P))
@@ -110,7 +111,7 @@ def _compare(
     """State and covariance after each step beside the reference, from the belief before it."""
     start = told.blocks[0] if told.blocks[0].kind == "start" else None
     rows = rows_of(run.entries, start)
-    steps = PrintedSteps(Results(rows, ()), reference)
+    steps = PrintedSteps(Results(told.file, rows, ()), reference)
     compared = list(steps.compared(given[: len(run.entries)], first))
     block_of = {entry.index: block for block, entry in run.entries}
     if start is not None:

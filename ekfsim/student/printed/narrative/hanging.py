@@ -100,6 +100,19 @@ def shape(P: Numbers) -> Iterator[Due]:
         yield check, (P[3 * j + i],)
 
 
+def finite(numbers: Numbers) -> bool:
+    """Whether all of them are numbers."""
+    return all(math.isfinite(one.value) for one in numbers)
+
+
+def no_numbers(block: Block) -> Iterator[Wrong]:
+    """What is printed and is none."""
+    for name, numbers in block.facts.items():
+        for one in numbers:
+            if not math.isfinite(one.value):
+                yield Wrong(one.line, f"the {name}", one.value, math.nan)
+
+
 def impossible(P: Numbers) -> Iterator[Wrong]:
     """Variances below 0, and correlations beyond 1."""
     for i, name in enumerate(AXES):
@@ -161,6 +174,11 @@ def moved_covariance(block: Block, begun: Printed) -> Iterator[Due]:
 COMMANDED = "the command stands here in place of what the odometry measured"
 
 
+def turned(degrees: float) -> float:
+    """An angle in (−180, 180], nan where it is none."""
+    return math.remainder(degrees, 360.0) if math.isfinite(degrees) else math.nan
+
+
 def _driven(n: Array, heading: float) -> Array:
     """x, y, θ, d, a → the pose after it, along a heading in degrees."""
     x, y, θ, d, a = n[:5]
@@ -205,7 +223,7 @@ def _along_gain(n: Array) -> Array:
     P, H = n[3:12].reshape(3, 3), n[12:15]
     g = P @ H
     apart = n[15:18] - n[:3]
-    apart[2] = math.remainder(apart[2], 360.0) * RADIAN
+    apart[2] = turned(float(apart[2])) * RADIAN
     σ = np.sqrt(np.maximum(np.diagonal(P), 1e-12))
     size = float((g / σ) @ (g / σ))
     t = float((apart / σ) @ (g / σ)) / size if size else 0.0

@@ -49,8 +49,11 @@ class Check:
 
         numbers : those that it follows from
         """
-        right = float(self.formula(np.array([one.value for one in numbers])))
-        if self._fits(self.formula, numbers):
+        try:
+            right = float(self.formula(np.array([one.value for one in numbers])))
+            if self._fits(self.formula, numbers):
+                return None
+        except (ArithmeticError, np.linalg.LinAlgError):  # a number before it is none
             return None
         near = (told for told, formula in self.guesses if self._comes_of(formula, numbers))
         value, line = self.printed.value, self.printed.line
@@ -60,7 +63,7 @@ class Check:
         """The same of a mistake, which may come to no number."""
         try:
             return self._fits(formula, numbers)
-        except ArithmeticError:
+        except (ArithmeticError, np.linalg.LinAlgError):
             return False
 
     def _fits(self, formula: Formula, numbers: Sequence[Number]) -> bool:

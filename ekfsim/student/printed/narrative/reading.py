@@ -9,6 +9,7 @@ from typing import Literal
 from ekfsim.files.logs.text import Lines, lines_of
 from ekfsim.files.source import mistake
 from ekfsim.student.printed.digits import Digits
+from ekfsim.student.printed.table import number
 
 N = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|[-+]?nan\b|[-+]?inf(?:inity)?\b)"
 POSE = rf"\(\s*{N}[\s,;]+{N}[\s,;]+{N}\s*\)"
@@ -98,7 +99,7 @@ def narrative(path: Path) -> Narrative:
         one.block.facts.setdefault(
             one.name,
             tuple(
-                Number(float(text), digits[_digits_of(one, i)].half(float(text)), line)
+                Number(number(text), digits[_digits_of(one, i)].half(number(text)), line)
                 for i, (text, line) in enumerate(one.texts)
             ),
         )
@@ -112,19 +113,19 @@ def narrative(path: Path) -> Narrative:
 def _facts(lines: Lines, blocks: list[Block]) -> Iterator[_Found]:
     """All facts, and a block for each step that begins."""
     rows = zip(lines.numbers, lines.texts, strict=True)
-    for number, text in rows:
+    for line, text in rows:
         if "==>" in text:
-            blocks.append(Block(_kind(text), number))
+            blocks.append(Block(_kind(text), line))
         block = blocks[-1]
         block.unused |= UNUSED.search(text) is not None
         block.no_echo |= NO_ECHO.search(text) is not None
         block.no_wall |= NO_WALL.search(text) is not None
         for name, kind, pattern in PATTERNS:
             if match := pattern.search(text):
-                yield _Found(block, name, kind, tuple((one, number) for one in match.groups()))
+                yield _Found(block, name, kind, tuple((one, line) for one in match.groups()))
         if heading := COVARIANCE.search(text):
             told = (heading[1] or ("revised" if block.kind == "sense" else "new")).lower()
-            yield from _matrix(block, f"{told} covariance", text[heading.end() :], number, rows)
+            yield from _matrix(block, f"{told} covariance", text[heading.end() :], line, rows)
 
 
 def _matrix(
@@ -135,10 +136,10 @@ def _matrix(
     if ROW.fullmatch(rest):
         texts += [(one, line) for one in ONE.findall(rest)]
     while len(texts) < MATRIX:
-        number, text = next(rows, (0, ""))
+        below, text = next(rows, (0, ""))
         if ROW.fullmatch(text) is None:
             return
-        texts += [(one, number) for one in ONE.findall(text)]
+        texts += [(one, below) for one in ONE.findall(text)]
     if len(texts) == MATRIX:
         yield _Found(block, name, "covariance", tuple(texts))
 
