@@ -7,6 +7,8 @@ file is absolute, so that whoever calculates in another folder finds it too.
 import os
 import re
 
+from ekfsim.filters import FILTERS
+
 FILE = re.compile(r"(?P<file>.*\.py)(?::(?P<name>\w*))?", re.DOTALL)
 MODULE = re.compile(r"(?P<module>[^\W\d][\w.]*):(?P<name>[^\W\d][\w.]*)")
 
@@ -60,12 +62,13 @@ def label(filter: str) -> str:
 
 
 def stem(filter: str) -> str:
-    """The same in the name of a file.
+    """The same in the name of a file, and another than that of any built-in one.
 
-    >>> stem("/home/anna/mine.py:MyEKF"), stem("my.filters:MyEKF"), stem("ekf")
-    ('mine-MyEKF', 'my.filters-MyEKF', 'ekf')
+    >>> stem("/home/anna/mine.py:MyEKF"), stem("my.filters:MyEKF"), stem("ekf"), stem("ekf.py")
+    ('mine-MyEKF', 'my.filters-MyEKF', 'ekf', 'ekf-own')
     """
-    if is_file(filter):
-        file, name = parts(filter)
-        filter = os.path.basename(file).removesuffix(".py") + (f":{name}" if name else "")
-    return filter.replace(":", "-")
+    if not is_file(filter):
+        return filter.replace(":", "-")
+    file, name = parts(filter)
+    own = os.path.basename(file).removesuffix(".py") + (f"-{name}" if name else "")
+    return f"{own}-own" if own in FILTERS else own

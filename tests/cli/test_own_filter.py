@@ -40,7 +40,8 @@ def test_it_is_narrated_as_the_ekf_is(place):
     assert (own.status, own.err) == (0, "")
     remark = (
         "The filter mine.py: derivatives, innovation and gain are calculated at its own estimate, "
-        "not by it\n"
+        "not by it; it is not handed a reading without echo or wall, nor one where nothing is "
+        "uncertain\n"
     )
     assert own.out.replace(remark, "").replace("filter mine.py,", "filter ekf,") == ekf.out
 

@@ -28,7 +28,8 @@ class OwnFilter:
     """
 
     remark: ClassVar[str] = (
-        "derivatives, innovation and gain are calculated at its own estimate, not by it"
+        "derivatives, innovation and gain are calculated at its own estimate, not by it; it is "
+        "not handed a reading without echo or wall, nor one where nothing is uncertain"
     )
     new_caller: Callable[[], Caller]
     gate: float | None = None

@@ -5,6 +5,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from ekfsim.filters.arithmetic.algebra import wrapped
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans
@@ -16,7 +17,10 @@ from ekfsim.student.own.forms import where
 from ekfsim.student.own.loading import Code
 from ekfsim.student.own.returned import WrongError, judged, looked_at
 
-FIELDS = ("predicted", "innovation", "R", "S", "H", "K", "nis", "refused")
+SHAPES = {
+    "predicted": "k", "innovation": "k", "R": "kk", "S": "kk", "H": "kn", "K": "nk", "nis": "",
+    "refused": "",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,8 @@ class WholeFilter:
         """As the student's filter."""
         returned = self._run("predict", self.filter.predict, belief, motion, u)
         after, told = self._two("predict", returned, Prediction, "Prediction(F, G)")
+        shapes = {"F": "nn", "G": "nm"}
+        self._refuse_misshapen("predict", told, shapes, belief.mean, m=len(motion.inputs))
         return self._believed("predict", belief, after, Control(motion, u)), told
 
     def update(
@@ -50,8 +56,9 @@ class WholeFilter:
     ) -> tuple[Belief, Correction]:
         """As the student's filter."""
         returned = self._run("update", self.filter.update, prior, sensor, z, skip)
-        fields = ", ".join(FIELDS)
+        fields = ", ".join(SHAPES)
         after, told = self._two("update", returned, Correction, f"Correction({fields})")
+        self._refuse_misshapen("update", told, SHAPES, prior.mean, k=len(sensor.outputs))
         return self._believed("update", prior, after, Reading(sensor, z)), told
 
     def _run(self, step: str, function: Any, *args: Any) -> Any:
@@ -69,6 +76,17 @@ class WholeFilter:
             f"{step} returns no belief and {kind.__name__}; write `return Gaussian(x, P), {right}`"
         )
         raise FaultError(self._place(step), wrong)
+
+    def _refuse_misshapen(
+        self, step: str, told: Any, shapes: dict[str, str], x: Array, **sizes: int
+    ) -> None:
+        """Raise FaultError where what is told of a step is of another shape than the protocol's."""
+        *axes, sizes["n"] = x.shape
+        for name, letters in shapes.items():
+            value, shape = getattr(told, name), (*axes, *(sizes[letter] for letter in letters))
+            if np.shape(value) != shape or np.asarray(value).dtype.kind not in "iuf":
+                wrong = f"{type(told).__name__}.{name} has the shape {np.shape(value)}, not {shape}"
+                raise FaultError(self._place(step), wrong)
 
     def _believed(self, step: str, before: Belief, after: Any, given: Control | Reading) -> Belief:
         """The same belief. Raises FaultError where it can be none."""
@@ -88,7 +106,10 @@ class WholeFilter:
         except (TypeError, ValueError):
             wrong_kind = f"{type(after).__name__} is no belief; write Gaussian(x, P)"
             raise FaultError(self._place(step), wrong_kind) from None
-        return after if hasattr(after, "mean") else Gaussian(*after)
+        if isinstance(after, Gaussian) or not hasattr(after, "mean"):
+            return Gaussian(wrapped(np.array(x, float), self.headings), np.array(P, float))
+        theirs: Belief = after
+        return theirs
 
     def _place(self, step: str) -> str:
         kind = self.code.form.kind  # type: ignore[union-attr]

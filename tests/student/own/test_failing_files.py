@@ -144,6 +144,39 @@ def test_a_class_is_told_at_its_line(place, old, new, told):
     assert str(fault(place, CLASS.replace(old, new, 1))).startswith(f"mine.py:{told.format(MOVE)}")
 
 
+WHOLE = """\
+import ekfsim
+from ekfsim.filters.belief import Correction, Gaussian, Prediction
+
+class Mine(ekfsim.EKF):
+    def predict(self, belief, motion, u):
+        (x, P), told = super().predict(belief, motion, u)
+        return Gaussian(x, P), told
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("return x, P",
+         "predict returns no belief and Prediction; write `return Gaussian(x, P), "
+         "Prediction(F, G)`"),
+        ("return x, told", "ndarray is no belief; write Gaussian(x, P)"),
+        ("return Gaussian(x[:2], P), told",
+         "x and P have the shapes (2,) and (3, 3), not (3,) and (3, 3)"),
+        ("return Gaussian(x, -P), told", "P[0, 0] is -0.0187059: no variance is negative"),
+        ("return Gaussian(x, P), Prediction(told.F, told.F)",
+         "Prediction.G has the shape (3, 3), not (3, 2)"),
+        ("return Gaussian(x, P), Prediction(None, told.G)",
+         "Prediction.F has the shape (), not (3, 3)"),
+        ("raise ValueError(u.shape)", "ValueError: (2,)"),
+    ],
+)  # fmt: skip
+def test_a_class_of_the_full_protocol_is_told_at_its_line(place, line, told):
+    wrong = WHOLE.replace("return Gaussian(x, P), told", line)
+    assert str(fault(place, wrong)) == f"mine.py:7: {MOVE}: {told}"
+
+
 def test_a_helper_of_the_students_own_is_told_as_theirs(place):
     (place / "helper.py").write_text("def half(S):\n    return S / 'two'\n")
     error = fault(
