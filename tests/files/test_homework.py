@@ -51,9 +51,20 @@ def test_the_file_to_start_from_names_its_scenes_and_their_files(tmp_path):
         *("square.yaml", "room.yaml"),
     ]
     assert found.scenes["tour"].seed == 2
-    path.write_text(template("homework").replace("# seed: 2027", "seed: 2027  "))
+    path.write_text(template("homework").replace("# seed: 2027", "seed: 2027"))
     assert read_homework(path).scenes["tour"].seed == 2027
     assert read_homework(path).digest != found.digest
+
+
+def test_the_part_that_stands_there_in_comments_can_be_switched_on(tmp_path):
+    path, lines = tmp_path / "homework.yaml", template("homework").split("\n")
+    first = lines.index("  # - name: Derivatives")
+    lines[first : first + 5] = [line.replace("# ", "", 1) for line in lines[first : first + 5]]
+    path.write_text("\n".join(lines).replace("total: 100", "total: 130"))
+    assert "is handed out" in told(path)[0]
+    path.write_text(path.read_text().replace("# provided", "provided"))
+    assert told(path) == []
+    assert read_homework(path).keys.parts[1].jacobians.functions == ["F", "G", "H"]
 
 
 def test_a_scene_beside_the_file_is_found_and_counts(homework, tmp_path):
