@@ -68,7 +68,7 @@ class InProcess:
 
     def place_of(self, given: Control | Reading) -> str:
         """file:line of the function: of its only return, else of its head."""
-        return where(self._called(_step(given)), self._code.source) or self._code.label
+        return self._code.place_of(self._called(_step(given)))
 
     def _run(self, step: str, *args: Any) -> Any:
         function = getattr(self._form if self._object is None else self._object, step)

@@ -6,7 +6,6 @@ from typing import Any
 from ekfsim.geometry import Array
 from ekfsim.records import Control, Reading
 from ekfsim.student.fault import FaultError
-from ekfsim.student.own.forms import where
 from ekfsim.student.own.handed import HandedMotion, HandedSensor
 from ekfsim.student.own.loading import Code
 from ekfsim.student.own.returned import WrongError, numbers
@@ -29,7 +28,7 @@ def derivative(
             args, taken, shape = (HandedSensor(sensor, n, provided),), "x, sensor", (len(z), n)
     if not callable(function):
         raise FaultError(code.label, f"there is no function {name}({taken})")
-    place = where(function, code.source) or code.label
+    place = code.place_of(function)
     with code.home.entered():
         try:
             returned = function(x.copy(), *args)

@@ -156,8 +156,11 @@ def _signature(function: Callable[..., Any]) -> str:
         return ""
 
 
-def where(function: Any, source: str | None = None) -> str:
-    """file:line of a function: of its only return, else of its head; "" where none is known."""
+def where(function: Any, source: bytes | None = None) -> str:
+    """file:line of a function: of its only return, else of its head; "" where none is known.
+
+    source : of the file that it stands in, where its return is wanted
+    """
     code = getattr(inspect.unwrap(getattr(function, "__func__", function)), "__code__", None)
     if code is None:
         return ""
@@ -168,7 +171,7 @@ def where(function: Any, source: str | None = None) -> str:
     return f"{shown(code.co_filename)}:{line}"
 
 
-def _returns(source: str, line: int) -> Iterator[int]:
+def _returns(source: bytes, line: int) -> Iterator[int]:
     """The lines at which the function that begins on a line returns something."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.FunctionDef) and line in (

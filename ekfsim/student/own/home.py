@@ -57,7 +57,7 @@ class Home:
         """
         heard = NOWHERE if self.mute else sys.stderr
         with redirect_stdout(heard), redirect_stderr(heard), np.errstate(all="ignore"):
-            outside = sys.stdin, sys.dont_write_bytecode
+            outside, here = (sys.stdin, sys.dont_write_bytecode), _here()
             sys.stdin, sys.dont_write_bytecode = io.StringIO(), True
             if self.folder is not None:
                 sys.path.insert(0, self.folder)
@@ -68,6 +68,8 @@ class Home:
                 yield
             finally:
                 sys.stdin, sys.dont_write_bytecode = outside
+                if here is not None and _here() != here:
+                    os.chdir(here)
                 if self.folder is not None:
                     self._leave(hidden, len(sys.modules) != known)
 
@@ -145,8 +147,15 @@ def shown(file: str) -> str:
     >>> shown(os.path.abspath("mine.py"))
     'mine.py'
     """
-    try:
-        here = os.path.join(os.getcwd(), "")
-    except FileNotFoundError:  # somebody has deleted it
+    here = _here()
+    if here is None:
         return os.path.basename(file)
-    return "cell" if CELL.search(file) else file.removeprefix(here)
+    return "cell" if CELL.search(file) else file.removeprefix(os.path.join(here, ""))
+
+
+def _here() -> str | None:
+    """The folder that we are in; None where somebody has deleted it."""
+    try:
+        return os.getcwd()
+    except FileNotFoundError:
+        return None

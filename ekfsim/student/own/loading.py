@@ -9,11 +9,12 @@ from dataclasses import dataclass
 from importlib.metadata import entry_points
 from importlib.util import find_spec
 from types import ModuleType
+from typing import Any
 
 from ekfsim.errors import UsageError
 from ekfsim.filters.choice import GROUP
 from ekfsim.filters.place import is_file, is_place, label, parts
-from ekfsim.student.own.forms import Form, form_of
+from ekfsim.student.own.forms import Form, form_of, where
 from ekfsim.student.own.home import Home, shown
 
 
@@ -24,8 +25,14 @@ class Code:
     label: str  # what people see of it
     form: Form
     home: Home
-    source: str | None = None  # the text of its file
+    source: bytes | None = None  # its file
     module: ModuleType | None = None  # all that stands in it
+
+    def place_of(self, function: Any) -> str:
+        """file:line of one of its functions: of its only return, else of its head."""
+        own = getattr(self.module, "__file__", None)
+        here = where(function).rpartition(":")[0] == shown(own or "")
+        return where(function, self.source if here else None) or self.label
 
 
 # what `bring` made filters of, by their names, as long as this process lives
@@ -75,9 +82,8 @@ def _of_file(path: str, name: str) -> Code:
         except BaseException as error:
             home.blame(error, f"{shown(path)}:1")
     told = f"{shown(path)}:{name}" if name else shown(path)
-    text = source.decode(errors="replace")
     shown_as = label(f"{path}:{name}" if name else path)
-    return Code(shown_as, form_of(module, name, told), home, text, module)
+    return Code(shown_as, form_of(module, name, told), home, source, module)
 
 
 def _of_module(module_name: str, name: str) -> Code:

@@ -13,7 +13,6 @@ from ekfsim.models.protocols import Motion, Sensor
 from ekfsim.records import Control, Reading
 from ekfsim.student.asked import Asked
 from ekfsim.student.fault import FaultError
-from ekfsim.student.own.forms import where
 from ekfsim.student.own.loading import Code
 from ekfsim.student.own.returned import WrongError, judged, looked_at
 
@@ -113,4 +112,4 @@ class WholeFilter:
 
     def _place(self, step: str) -> str:
         kind = self.code.form.kind  # type: ignore[union-attr]
-        return where(getattr(kind, step), self.code.source) or self.code.label
+        return self.code.place_of(getattr(kind, step))

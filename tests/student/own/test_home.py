@@ -3,6 +3,7 @@
 import sys
 import types
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from ekfsim.errors import UsageError
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.files.scenes.settings import filters_in
 from ekfsim.localization import play
+from ekfsim.student.fault import FaultError
 from ekfsim.student.own import loading
 
 TOUR = load_scene("tour")
@@ -61,6 +63,44 @@ def test_a_file_that_is_called_as_a_module_of_pythons_disturbs_nobody(tmp_path, 
     import statistics
 
     assert statistics.mean([1, 3]) == 2
+
+
+def test_whatever_signs_a_file_begins_with(tmp_path):
+    """A byte order mark, and lines that end as on Windows."""
+    wrong = FUNCTIONS.replace("    return motion.f(x, u)", "    return 'σ', motion.f(x, u)")
+    (tmp_path / "mine.py").write_bytes(b"\xef\xbb\xbf" + wrong.replace("\n", "\r\n").encode())
+    with pytest.raises(FaultError, match=r"mine\.py:5: step 2 .* predict returns 3 values"):
+        last(tmp_path / "mine.py")
+
+
+def test_the_folder_that_we_are_in_stays_ours(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "there").mkdir()
+    (tmp_path / "mine.py").write_text(
+        FUNCTIONS.replace("    H = ", "    import os; os.chdir('/')\n    H = ")
+    )
+    last(tmp_path / "mine.py")
+    assert Path.cwd() == tmp_path
+
+
+def test_a_class_as_dataclasses_make_it(tmp_path):
+    (tmp_path / "mine.py").write_text(
+        "from __future__ import annotations\nfrom dataclasses import dataclass\n"
+        + CLASS.replace(
+            "class Mine:\n    def __init__(self, x, P):\n        self.x, self.P = x, P\n",
+            "@dataclass\nclass Mine:\n    x: np.ndarray\n    P: np.ndarray\n",
+        )
+    )
+    assert np.allclose(last(tmp_path / "mine.py").mean, last("ekf").mean, rtol=0, atol=1e-12)
+
+
+def test_a_function_of_a_helper_is_told_at_its_own_line(tmp_path):
+    (tmp_path / "helper.py").write_text("\n\ndef update(x, P, z, sensor):\n    return x\n")
+    (tmp_path / "mine.py").write_text(
+        f"{FUNCTIONS[: FUNCTIONS.index('def update')]}\nfrom helper import update\n"
+    )
+    with pytest.raises(FaultError, match=r"/helper\.py:3: step 6 .* one array of shape"):
+        last(tmp_path / "mine.py")
 
 
 def test_what_is_handed_over_is_theirs_to_spoil(tmp_path):
