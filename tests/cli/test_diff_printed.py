@@ -28,6 +28,16 @@ Uncertainty ellipse is:
   orientation is 22.5 degrees
   2*sigma_theta is 0.2 degrees
 """
+WRONG = """\
+def predict(x, P, u, motion):
+    F, G = motion.F(motion.f(x, u), u), motion.G(x, u)
+    return motion.f(x, u), F @ P @ F.T + G @ motion.M(u) @ G.T
+
+def update(x, P, z, sensor):
+    H = sensor.H(x)
+    K = P @ H.T / (H @ P @ H.T + sensor.R(x))
+    return x + K @ (z - sensor.h(x)), P - K @ H @ P
+"""
 NAMES = "index,x,y,theta,P_xx,P_xy,P_xtheta,P_yy,P_ytheta,P_thetatheta"
 
 
@@ -139,7 +149,9 @@ def test_the_results_of_a_handed_out_log_are_held_against_it():
     written(table(options=("--log", "log")))
     ended = ekfsim("diff", "tour", "--log", "log", "--csv", "theirs.csv")
     assert (ended.status, ended.out[:32]) == (0, "theirs.csv equals ekf at all 23 ")
-    assert ekfsim("diff", "tour", "--csv", "theirs.csv").status == 1  # of another seed
+    ended = ekfsim("diff", "tour", "--csv", "theirs.csv")  # of another seed
+    assert ended.status == 1
+    assert "nearly every step differs: is it of this --seed, --run, --log?" in ended.err
 
 
 @pytest.mark.parametrize(
@@ -197,6 +209,21 @@ def test_the_narrative_of_a_log_is_right():
     ekfsim("record", "tour", "-o", "log")
     Path("told.txt").write_text(ekfsim("run", "tour", "--log", "log").out)
     assert ekfsim("diff", "tour", "--log", "log", "--narrative", "told.txt").status == 0
+
+
+def test_the_narrative_of_a_wrong_filter_is_named():
+    """By the equations of its own, in the assignment's lines alone."""
+    Path("mine.py").write_text(WRONG)
+    lines = ekfsim("run", "tour", "--filter", "mine.py").out.split("\n")
+    ours = ("odometry", "innovation", "gain", "First", "It was expected", "NIS", "NEES")
+    lines = [line for line in lines[lines.index("==>The robot moved: distance=2.6, angle=0") :]
+             if not any(word in line for word in ours)]  # fmt: skip
+    Path("told.txt").write_text("\r\n".join(lines))
+    ended = ekfsim("diff", "tour", "--narrative", "told.txt")
+    whole = " ".join(ended.out.split())
+    assert (ended.status, ended.err) == (1, "")
+    assert "Guess: your P is the one with J_x taken after the move." in whole
+    assert "Line 38: " not in whole  # the first moves go straight ahead
 
 
 @pytest.mark.skipif(not SAMPLE.exists(), reason="the documents are not here")

@@ -16,6 +16,7 @@ from ekfsim.student.printed.results import results
 from ekfsim.student.printed.steps import PrintedSteps
 from ekfsim.student.printed.table import table
 
+MANY = 0.8  # of the steps
 EVERY = float("inf")  # σ; whatever agrees as far as its digits go is a witness
 
 
@@ -37,7 +38,10 @@ def held_table(scene: Scene, path: Path, against: str) -> Held:
     read = results(table(path), list(expected), expected)
     steps = PrintedSteps(read, filter_of(scene))
     seen = found([(scene.run, steps.compared(entries, first))], steps.gives, EVERY)
-    return Held(seen, (*read.remarks, *steps.unjudged()))
+    remarks = [*read.remarks, *steps.unjudged()]
+    if seen.differing > MANY * seen.steps:
+        remarks.append(f"{path}: nearly every step differs: is it of this --seed, --run, --log?")
+    return Held(seen, tuple(remarks))
 
 
 def held_narrative(scene: Scene, path: Path, against: str) -> NarrativeFound:

@@ -98,6 +98,7 @@ def _hang_together(found: Examined, block: Block, before: Printed, entry: Entry 
             found.note(hanging.grown(before.P, after.P))
         if entry is None:
             found.look(hanging.revised(block, before))
+            found.look(hanging.revised_covariance(block, before))
     if after.P is not None and block.kind != "other" and hanging.finite(after.P):
         found.look(hanging.shape(after.P))
         found.note(hanging.impossible(after.P))

@@ -14,6 +14,7 @@ from ekfsim.student.printed.narrative.reading import Block, Number
 
 AXES = ("x", "y", "θ")
 UNITS = ("m", "m", "degrees")
+PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 PERIODS = (math.inf, math.inf, 360.0)
 RADIAN = math.pi / 180
 
@@ -154,6 +155,32 @@ def revised(block: Block, before: Printed) -> Iterator[Due]:
         "of the revised state", new, (*before.state, *before.P, *H, *new), _along_gain,
         read="eqs 10, 11: x + K r, K along P J_H'",
     )  # fmt: skip
+
+
+def revised_covariance(block: Block, before: Printed) -> Iterator[Due]:
+    """The revised P is P − s g gᵀ, g = P J_Hᵀ, in any run; s is what its diagonal tells."""
+    H, P = block.facts.get("derivatives"), block.facts.get("revised covariance")
+    if H is None or P is None or before.P is None or block.unused or any(grown(before.P, P)):
+        return
+    numbers = (*before.P, *H, *P)
+    for i, j in PAIRS:
+        yield Check(
+            f"P_{AXES[i]}{AXES[j]}", P[3 * i + j], _revised_entry(i, j), least=1e-9,
+            read="eqs 11, 12: P - K J_H P, K along P J_H'",
+        ), numbers  # fmt: skip
+
+
+def _revised_entry(i: int, j: int) -> Formula:
+    """n : P (9), J_H (3), the printed P (9)"""
+
+    def entry(n: Array) -> float:
+        P, after = n[:9].reshape(3, 3), n[12:21].reshape(3, 3)
+        g, σ = P @ n[9:12], np.sqrt(np.maximum(np.diagonal(P), 1e-12))
+        size = float(np.sum(np.square(g / σ)))
+        less = float(np.sum(np.diagonal(P - after) / np.square(σ)))
+        return float(P[i, j] - (less / size * g[i] * g[j] if size else 0.0))
+
+    return entry
 
 
 def moved_covariance(block: Block, begun: Printed) -> Iterator[Due]:
