@@ -168,8 +168,20 @@ def test_another_file_may_be_the_reference():
 def test_a_filter_of_another_nature_is_no_mistake():
     ended = diff("--against", "ukf")
     assert ended.status == 1
-    assert "\nIt may be right, and another filter than ukf: nothing is guessed.\n" in ended.out
+    assert (
+        """
+These are an EKF's numbers, with the equations of motion and sensor as they are
+handed out; ukf is another filter here. Nothing is guessed.
+"""
+        in ended.out
+    )
     assert "Guess" not in ended.out
+
+
+def test_nor_one_beside_a_reference_that_is_set_otherwise():
+    ended = diff("--set", "filter.rangeVariance=reading", commands="tour")
+    assert ended.status == 1
+    assert "handed out; ekf is another filter here. Nothing is guessed.\n" in ended.out
 
 
 def test_a_log_is_compared_too(folder):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from ekfsim.records import Control
 from ekfsim.student.comparing.compare import Compared
-from ekfsim.student.comparing.naming import CLEAN, At, Naming, Seen
+from ekfsim.student.comparing.naming import CLEAN, At, Naming, Seen, textbook
 from ekfsim.student.fault import FaultError
 from ekfsim.student.mistakes.guessing import Gives, Guess, gives
 from ekfsim.student.mistakes.mistake import Mistake
@@ -27,6 +27,9 @@ class Found:
     ended: At | None  # the first step after which no belief was left to go on from
     fault: FaultError | None  # of the student's code, which ended it all
     fault_run: int = 0
+    # the first wrong numbers are an EKF's of the models as they are handed out, and the reference
+    # is another filter
+    textbook: bool = False
 
     @property
     def steps(self) -> int:
@@ -77,4 +80,5 @@ def found(
     return Found(
         begun, steps - read, read, differing, largest, first, tuple(guesses),
         moves.named() | readings.named(), unnamed, ended, fault, run,
+        first is not None and textbook(first.step, gives),
     )  # fmt: skip

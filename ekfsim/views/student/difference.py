@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ekfsim.diagnostics.nees import squared_mahalanobis
-from ekfsim.filters import FILTERS
 from ekfsim.geometry import Array
 from ekfsim.printable import in_a_line, short
 from ekfsim.records import Control
@@ -112,8 +111,11 @@ def _guesses(found: Found, sides: Sides) -> str:
     if found.first.step.asked.index == 0:
         given = "the world tells them" if sides.printed else "they are given to the class"
         return f"Take x and P as {given}: the run begins with them."
-    if not found.guesses and sides.reference in FILTERS and sides.reference != "ekf":
-        return f"It may be right, and another filter than {sides.reference}: nothing is guessed."
+    if found.textbook:
+        return (
+            "These are an EKF's numbers, with the equations of motion and sensor as they are "
+            f"handed out; {sides.reference} is another filter here. Nothing is guessed."
+        )
     if not found.guesses:
         none = "No known mistake, alone or with another, gives these numbers."
         return none + _singular(found.first.step)
@@ -138,7 +140,8 @@ def _each(found: Found, sides: Sides) -> Iterator[str]:
         )
     for seen in found.unnamed:
         what = "moves" if isinstance(seen.first.step.asked.given, Control) else "readings"
-        yield _shows(found, f"A difference of {what} that no known mistake gives", seen) + "."
+        unknown = "" if found.textbook else " that no known mistake gives"
+        yield _shows(found, f"A difference of {what}{unknown}", seen) + "."
 
 
 def _shows(found: Found, what: str, seen: Seen) -> str:
