@@ -16,12 +16,12 @@ ALONE = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 @dataclass(frozen=True)
 class Limits:
-    """What one process with a student's code may take, from its start to its end.
+    """What one process with a student's code may take until it ends.
 
     The defaults leave a parent 200 MB in a container of 768 MB.
     """
 
-    seconds: float = 60.0  # on the wall, while it is waited for; its start is among them
+    seconds: float = 60.0  # on the wall, while it is waited for, once it has started
     cpu_seconds: int = 60  # of each process
     memory_mb: int = LEAST_MEMORY  # MiB of address space, of each process
     file_mb: int = 16  # MiB, of each file that it writes

@@ -85,10 +85,13 @@ class Process:
         try:
             _, self.fenced = map(int, np.frombuffer(self.ask("hello")))
         except FaultError as fault:  # none of the student's: his code has not been read yet
-            self.end()
+            wrong = fault.wrong if self._left > 0 else f"did not start within {STARTING:g} s"
             told = short(in_a_line(" ".join(self.printed[0].split()[-30:])), 200)
             begun = f"the process for a student's code, through {' '.join(through) or 'nothing'}"
-            raise RunError(f"{begun}: {fault.wrong}{told and f'; it says: {told}'}") from None
+            raise RunError(f"{begun}: {wrong}{told and f'; it says: {told}'}") from None
+        except BaseException:
+            self.end()
+            raise
         self._left = limits.seconds
 
     def ask(self, what: str, *told: Any, kind: int = NUMBERS) -> bytes:

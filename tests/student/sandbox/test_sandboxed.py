@@ -9,12 +9,23 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from student.sandbox.broken import BROKEN, HARMLESS, RIGHT, SECONDS, doing
+from student.sandbox.broken import (
+    BROKEN,
+    EVERY,
+    FORGED,
+    HARMLESS,
+    MARKED,
+    RIGHT,
+    SECONDS,
+    TOO_LONG,
+    doing,
+)
 
 import ekfsim
 from ekfsim.commands import Say
 from ekfsim.errors import RunError, UsageError
 from ekfsim.models.motions.move_turn import MoveTurn
+from ekfsim.models.sensors.echo import Echo
 from ekfsim.models.sensors.position import Position
 from ekfsim.records import Control, Reading
 from ekfsim.student.asked import Asked
@@ -74,7 +85,8 @@ def test_what_comes_back_is_what_the_same_code_answers_here(name, mine):
 
 @pytest.mark.parametrize(("text", "told"), BROKEN.values(), ids=BROKEN)
 def test_a_broken_file_is_told_in_a_line_and_costs_no_more_than_its_limit(text, told, mine):
-    with Sandboxed(mine(text), limits=SHORT) as caller:
+    limits = SHORT if TOO_LONG in told.pattern else AMPLE
+    with Sandboxed(mine(text), limits=limits) as caller:
         for _ in range(2):  # nor is it better when it is asked again
             with pytest.raises(FaultError, match=told) as raised:
                 asked_once(caller)
@@ -92,6 +104,24 @@ def test_what_disturbs_nobody_costs_nothing(text, mine):
         assert np.array_equal(theirs.x, right.x)
         assert np.array_equal(theirs.P, right.P)
     assert file.read_text(encoding="utf-8") == text  # his own is never touched
+
+
+def test_who_answers_for_itself_is_judged_by_it_and_not_asked_again(mine):
+    text = doing(MARKED + EVERY.format("head + struct.pack('<12d', *numbers)"))
+    with Sandboxed(mine(text), limits=AMPLE) as caller:
+        assert asked_once(caller).x.tolist() == [0, 1, 2]
+        with pytest.raises(FaultError, match=FORGED):
+            caller.call(ASKED)
+
+
+def test_who_does_not_listen_is_not_waited_for(mine):
+    stop = "threading.Timer(1, os.kill, [os.getpid(), signal.SIGSTOP]).start()"
+    long = Reading(Echo(np.zeros(10**5), 1.0), np.zeros(1))
+    with Sandboxed(mine(doing(stop)), limits=Limits(seconds=1.5)) as caller:
+        asked_once(caller)
+        time.sleep(1.2)
+        with pytest.raises(FaultError, match=r"\Amine\.py: took longer than 1.5 s\Z"):
+            caller.call(Asked(ASKED.x, ASKED.P, long))
 
 
 def test_what_it_prints_is_shortened_and_inert(mine):
@@ -304,7 +334,7 @@ def test_it_can_be_begun_through_a_command(mine):
         asked_once(caller)
 
 
-def test_a_command_that_begins_nothing_is_not_held_against_the_student(mine):
+def test_a_command_that_begins_nothing_is_not_held_against_the_student(mine, monkeypatch):
     with (
         Sandboxed(mine(RIGHT), through=("no-such-command",)) as caller,
         pytest.raises(UsageError, match=r"\Ano-such-command: cannot be started: "),
@@ -313,6 +343,12 @@ def test_a_command_that_begins_nothing_is_not_held_against_the_student(mine):
     with (
         Sandboxed(mine(RIGHT), through=("sh", "-c", "echo sorry >&2; exit 3", "sh")) as caller,
         pytest.raises(RunError, match=r"ended its process with status 3 .*; it says: sorry\Z"),
+    ):
+        asked_once(caller)
+    monkeypatch.setattr(process, "STARTING", 0.1)
+    with (
+        Sandboxed(mine(RIGHT), through=("sh", "-c", "sleep 9", "sh")) as caller,
+        pytest.raises(RunError, match=r"did not start within 0\.1 s\Z"),
     ):
         asked_once(caller)
 
