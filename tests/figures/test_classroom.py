@@ -59,7 +59,7 @@ def test_every_proof_gives_what_was_expected(album):
         f"proof-{name}" for name in (
             "no-noise", "turn-noise", "distance-noise", "heading-bends", "square-twice",
             "across-wall", "corner",
-            "nearest-wall", "expected-wall",
+            "nearest-wall", "expected-wall", "one-after-another",
             "two-beams", "dead-reckoning", "unsure-start", "coverage", "every-mistake",
         )
     }  # fmt: skip

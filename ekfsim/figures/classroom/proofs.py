@@ -154,6 +154,9 @@ PROOFS = (
     7 / math.cos(math.radians(20)), " m", _predicted(2)),
     Proof("proof-expected-wall", "x after a beam 3 m too long for the wall expected: 1 − 3/5",
     0.4, " m", _mean(1, 0)),
+    Proof("proof-one-after-another", "range from where a move led: 4/cos 30°",
+    4 / math.cos(math.radians(30)), " m", _predicted(2)),
+    Proof("proof-one-after-another", "from where a beam led", 4.5849, " m", _predicted(3)),
     Proof("proof-two-beams", "x after a beam that is 0.1 m too long", 3.95, " m", _mean(1, 0)),
     Proof("proof-two-beams", "x after one the other way", 4.0008, " m", _mean(2, 0)),
 )  # fmt: skip
