@@ -231,6 +231,13 @@ MISTAKES = {
     "J_H-after-update": (P, "H = np.array([meet(new, sensor.bearing, sensor.walls, z)[1:]])\n"
         "    R = (sensor.range_ratio * meet(new, sensor.bearing, sensor.walls, z)[0]) ** 2\n"
         "    K = P @ H.T / ((H @ P @ H.T)[0, 0] + R)\n    " + P),
+    "iterated-update": (P, "new = x\n"
+        "    for _ in range(3):\n"
+        "        h, *H = meet(new, sensor.bearing, sensor.walls, z)\n"
+        "        H = np.array([H])\n"
+        "        K = P @ H.T / ((H @ P @ H.T)[0, 0] + R)\n"
+        "        new = x + K[:, 0] * (z - h - H[0] @ (x - new))\n    " + P),
+    "P-is-zero": (P, "P = 0 * P"),
     "P-plus": (P, P.replace("-", "+")),
     "P-wrong-side": (P, "P = P @ (np.eye(3) - K @ H)"),
     "P-without-P": (P, "P = np.eye(3) - K @ H"),

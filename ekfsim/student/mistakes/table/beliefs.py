@@ -4,7 +4,7 @@ import numpy as np
 
 from ekfsim.filters.belief import Gaussian
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.table.steps import after_a_move, first, readings
+from ekfsim.student.mistakes.table.steps import after_a_move, everywhere, first, readings
 from ekfsim.student.mistakes.working import Working
 
 
@@ -38,6 +38,13 @@ OF_BELIEFS = (
             {"x": lambda s, _: _earlier(s).mean},
             {"x": lambda s, _: _earlier(s).mean, "P": lambda s, _: _earlier(s).covariance},
         ),
+    ),
+    Mistake(
+        "P-is-zero",
+        "your P is 0: your filter is certain of everything",
+        "eqs 7, 12: P grows with every move, and no reading makes all of it 0",
+        everywhere,
+        ({"covariance": lambda s, _: np.zeros((len(s.x), len(s.x)))},),
     ),
     Mistake(
         "own-first-P",

@@ -39,6 +39,25 @@ def _anew(s: Working) -> tuple[Array, Array]:
     return gain_of_moments(s.P @ H.T, H @ s.P @ H.T + R), H
 
 
+def _iterated(times: int) -> dict[str, Piece]:
+    """The update whose h and J_H are taken again at the estimate that comes of it."""
+
+    def last(s: Working) -> tuple[Array, Array, Array]:
+        x = s.x
+        for _ in range(times):
+            H = s.model.H(x)
+            K = gain_of_moments(s.P @ H.T, H @ s.P @ H.T + s.R)
+            at = x
+            x = s.x + K @ (s.model.residual(s.z, s.model.h(at)) - H @ (s.x - at))
+        return x, K, H
+
+    def covariance(s: Working) -> Array:
+        _, K, H = last(s)
+        return s.P - K @ H @ s.P
+
+    return {"mean": lambda s, _: last(s)[0], "covariance": lambda s, _: covariance(s)}
+
+
 def _heading_kept(s: Working, right: Callable[[], Array]) -> Array:
     after, θ = np.array(right()), s.places[2]
     after[θ] = s.x[θ]
@@ -193,6 +212,13 @@ OF_GAINS = (
             lambda s: s.P - _anew(s)[0] @ _anew(s)[1] @ s.P,
             lambda s: s.P - s.K @ _anew(s)[1] @ s.P,
         ),
+    ),
+    Mistake(
+        "iterated-update",
+        "your update is iterated: h and J_H are taken again at the estimate that comes of it",
+        "eqs 8 to 12: once for each reading; the filter iekf is the iterated one",
+        readings,
+        tuple(_iterated(times) for times in (5, 2, 3, 4, 10, 20)),
     ),
     Mistake(
         "P-plus",
