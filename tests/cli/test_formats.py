@@ -36,3 +36,8 @@ def test_tables_of_a_study_and_of_a_comparison():
     assert ekfsim("compare", "short.yaml", "--b", "gate=0.9", *RUNS, "-o", "c").status == 0
     for table in ("s/summary.csv", "s/steps.csv", "c/compare.csv"):
         assert formats_of(table) == ("format", {"1"})
+
+
+def test_the_table_of_what_inputs_expose():
+    assert ekfsim("mutants", "short.yaml", "tour", "--csv", "m.csv").status == 0
+    assert formats_of("m.csv") == ("format", {"1"})

@@ -21,6 +21,7 @@ WRITING = [  # {} is where a result is to go
         "new {} --from tour",
         "show tour -o {}",
         "worksheet short.yaml -o {}",
+        "mutants short.yaml --csv {}",
     ),
 ]
 READING = [  # {} is what is to be read
@@ -30,6 +31,9 @@ READING = [  # {} is what is to be read
         "check {}",
         "study {} --runs 1 -o out",
         "compare {} --runs 1 --b guard=skip",
+        "mutants {}",
+        "worksheet {} -o out",
+        "show {}",
     ),
     ("run short.yaml --world {}", "study short.yaml --runs 1 -o out --world {}"),
     tuple(f"run {log}_log.yaml --log {{}}" for log in LOGS),

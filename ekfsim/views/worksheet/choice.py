@@ -3,14 +3,17 @@
 import random
 from collections.abc import Iterable, Iterator
 
-from ekfsim.views.worksheet.gaps import COVARIANCE, ELLIPSE, Block, Number, Told
+from ekfsim.views.worksheet.gaps import COVARIANCE, ELLIPSE, POSE, STATE, Block, Number, Told
 
-# a later number of the same command that would give an earlier one away by a line of arithmetic
+DRAWN = tuple((ELLIPSE, name) for name in ("minor radius", "major radius", "orientation"))
+# later numbers of the same command that would give an earlier one away, reckoned backwards
 GIVEN_AWAY = {
     ("predicted range", ""): (("innovation", ""), ("C_v", "")),
     ("C_v", ""): (("S", ""),),
     ("S", ""): (("innovation", "standard deviation"),),
     ("innovation", "standard deviation"): (("innovation", "NIS"),),
+    **{("gain", name): ((STATE, name),) for name in POSE},
+    **{(COVARIANCE, f"row {i}, column {j}"): DRAWN for i, j in ((1, 1), (1, 2), (2, 2))},
     (COVARIANCE, "row 3, column 3"): ((ELLIPSE, "cone"),),
 }
 TERMS = ("J_u P_u J_u'", "J_x P J_x'")  # of a new covariance: less the one it is the other

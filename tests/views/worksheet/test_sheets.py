@@ -63,7 +63,7 @@ def test_a_recorded_run_has_the_numbers_of_the_run_that_it_is_of(tmp_path):
 def test_the_share_is_what_is_asked_for():
     for share in (0.1, 0.3, 0.8):
         made = sheets(scene("tour"), share)
-        assert made.gaps == pytest.approx(share * made.numbers, abs=5)
+        assert made.gaps == pytest.approx(share * made.numbers, abs=6)
     assert sheets(scene("tour"), 1).gaps == sheets(scene("tour"), 1).numbers
 
 
@@ -112,6 +112,26 @@ def test_what_would_give_a_gap_away_is_a_gap_too():
             ν, sd, nis = (re.fullmatch(GAP, each) is not None for each in r.groups())
             assert ν or not re.search(rf"predicted range was {GAP}", block)
             assert nis or not sd
+
+
+def gone(block, what):
+    """Whether each number of a line was left out."""
+    found = re.search(rf"^{what}(.*)$", block, re.MULTILINE)
+    return [bool(re.search(GAP, part)) for part in found[1].split(", ")] if found else None
+
+
+def test_the_ellipse_goes_with_what_is_drawn_and_the_state_with_the_gain():
+    seen = 0
+    for block in sheets(scene("tour"), 0.2).sheet.split("## Step")[1:]:
+        matrix = re.search(r"covariance matrix is:\n\[\[(.*)\]\n \[(.*)\]\n", block)
+        if matrix and any(re.search(GAP, row.rsplit(maxsplit=1)[0]) for row in matrix.groups()):
+            seen += 1
+            for radius in re.findall(r"^  m....r radius is (.*)$", block, re.MULTILINE):
+                assert radius == "0" or re.fullmatch(GAP, radius)
+        gain, state = gone(block, "The Kalman gain is .* = "), gone(block, "Revised state .* = ")
+        for left, given in zip(gain or (), state or (), strict=True):
+            assert given or not left
+    assert seen > 5
 
 
 def test_an_entry_and_its_mirror_image_are_one_gap():
