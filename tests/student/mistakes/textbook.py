@@ -309,6 +309,20 @@ def written_for_others(*changes):
     return text
 
 
+ONE_AFTER_THE_OTHER = (
+    """    S = H @ P @ H.T + R
+    K = P @ H.T @ np.linalg.inv(S)
+    x = x + K @ v
+    P = (np.eye(len(x)) - K @ H) @ P
+""",
+    """    before = x
+    for i, row in enumerate(H):
+        k = P @ row / (row @ P @ row + R[i, i])
+        x = x + k * (v[i] - row @ (x - before))
+        P = P - np.outer(k, row @ P)
+""",
+)
+
 OF_OTHERS = {  # mistake, scene → the change
     ("no-process-noise", "mower"): (" + motion.Q(u)", ""),
     ("K-entry-by-entry", "landmarks"): ("np.linalg.inv(S)", "(1 / S)"),
