@@ -33,7 +33,7 @@ from ekfsim.student.fault import FaultError
 from ekfsim.student.own.calls import InProcess
 from ekfsim.student.own.loading import load
 from ekfsim.student.sandbox import process, sandboxed
-from ekfsim.student.sandbox.kernel import lacking
+from ekfsim.student.sandbox.kernel import lacking, landlock
 from ekfsim.student.sandbox.limits import Limits
 from ekfsim.student.sandbox.sandboxed import Sandboxed
 
@@ -212,19 +212,24 @@ for one in range(200):
         held.append(os.fstat(one)[0] and one)
     except OSError:
         pass
-print(len(held))"""
+print(len(held))
+try:
+    os.chown(__file__, 12345, 12345)
+except PermissionError:
+    print("no privileges")"""
     spare = os.open(os.devnull, os.O_RDONLY)
     os.set_inheritable(spare, True)
     limits = Limits(seconds=20, cpu_seconds=7, memory_mb=700, file_mb=3)
     try:
         with Sandboxed(mine(doing(told)), limits=limits) as caller:
             asked_once(caller)
-            first, second, third = caller.printed.splitlines()
+            first, second, third, fourth = caller.printed.splitlines()
     finally:
         os.close(spare)
     assert first == str([700 * 2**20, 3 * 2**20, 7, 128, 0])
     own = ["HOME", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "TMPDIR"]
     assert second == f"{own} True ['mine.py'] 1"
+    assert fourth == "no privileges"  # not even root has them
     assert third == "5"  # nothing to read, what it prints to twice, the exchange's two
 
 
@@ -330,8 +335,9 @@ def test_it_can_be_begun_through_a_command(mine):
     with Sandboxed(file, limits=AMPLE, through=("env", "SECRET=1")) as caller:
         assert np.array_equal(asked_once(caller).P, InProcess(load(str(file))).call(ASKED).P)
         assert caller.printed == "HOME None\n"
-    with Sandboxed(file, limits=AMPLE, through=("env", sys.executable)) as caller:
+    with Sandboxed(file, limits=AMPLE, through=("env", "SECRET=1", sys.executable)) as caller:
         asked_once(caller)
+        assert caller.printed == "HOME None\n"
 
 
 def test_a_command_that_begins_nothing_is_not_held_against_the_student(mine, monkeypatch):
@@ -384,6 +390,7 @@ def test_where_the_kernel_can_it_is_fenced_in(mine, tmp_path):
         asked_once(caller)
         *files, own, tcp, signals = caller.printed.splitlines()
         lacks = " ".join(caller.lacks)
+        assert caller.lacks == lacking(landlock())  # what the kernel can is done
     if "read and write" not in lacks:
         assert files == ["PermissionError"] * 4
         assert other.read_text() == "theirs"
