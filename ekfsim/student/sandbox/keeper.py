@@ -3,7 +3,8 @@
 It holds no number of a student's and calls nothing of his. On Linux all that loses its parent below
 it becomes its child (PR_SET_CHILD_SUBREAPER), whatever session it has gone to: when it has no child
 left, nothing is left. It ends when the code's process does, when it is told to (SIGTERM), or when
-the other end of the exchange is closed, be it because the parent was killed.
+the other end of the exchange is closed, be it because the parent was killed: then it deletes the
+folder, too.
 """
 
 import os
@@ -13,6 +14,7 @@ import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from ekfsim.student.sandbox.kernel import SET_CHILD_SUBREAPER, SET_PDEATHSIG, prctl
@@ -32,7 +34,7 @@ def main(asked: Mapping[str, Any]) -> None:
     """
     requests, answers, limits = os.dup(0), os.dup(1), Limits(**asked["limits"])
     prctl(SET_CHILD_SUBREAPER, 1)
-    keeper = os.getpid()
+    parent, keeper = os.getppid(), os.getpid()
     student = os.fork()
     if student == 0:
         try:
@@ -55,6 +57,10 @@ def main(asked: Mapping[str, Any]) -> None:
     except InterruptedError:
         status = _left(student)
     _end_all(student)
+    if os.getppid() != parent:  # it can delete no more what it has made
+        from ekfsim.student.sandbox.folder import remove
+
+        remove(Path(asked["folder"]))
     os._exit(status)
 
 

@@ -284,7 +284,7 @@ def test_what_it_started_ends_with_it_wherever_it_has_gone(mine):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="nobody takes in orphans elsewhere")
-def test_all_ends_when_the_parent_is_killed(mine):
+def test_all_ends_when_the_parent_is_killed(mine, tmp_path):
     program = f"""
 import sys, time
 from pathlib import Path
@@ -296,16 +296,18 @@ print(caller.printed, flush=True)
 time.sleep(60)
 """
     paths = (str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", ""))
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "TMPDIR": str(tmp_path)}
     command = [sys.executable, "-c", program]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as parent:
         left = int(parent.stdout.readline())
         assert is_running(left)
+        assert any(tmp_path.glob("ekfsim-*"))
         parent.send_signal(signal.SIGKILL)
     until = time.monotonic() + 10
-    while is_running(left) and time.monotonic() < until:
+    while (is_running(left) or any(tmp_path.glob("ekfsim-*"))) and time.monotonic() < until:
         time.sleep(0.02)
     assert not is_running(left)
+    assert not any(tmp_path.glob("ekfsim-*"))  # nor is its folder left
 
 
 @pytest.mark.parametrize("ignored", [False, True])
