@@ -25,7 +25,7 @@ class Limits:
     cpu_seconds: int = 60  # of each process
     memory_mb: int = LEAST_MEMORY  # MiB of address space, of each process
     file_mb: int = 16  # MiB, of each file that it writes
-    processes: int = 16  # and threads, itself among them
+    processes: int = 64  # and threads, itself among them; see `_tasks`
     printed: int = 2000  # characters that are kept of what it prints
 
     def __post_init__(self) -> None:
@@ -66,7 +66,9 @@ def keep_to(limits: Limits) -> None:
 
 
 def _tasks() -> int:
-    """Processes and threads that this user has already: they are counted in the limit, too."""
+    """Processes and threads that this user has already: they are counted in the limit, too, and
+    those that he starts afterwards.
+    """
     tasks, user = 0, os.getuid()
     for name in os.listdir("/proc") if LINUX else ():
         if name.isdigit():

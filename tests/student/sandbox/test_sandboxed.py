@@ -324,7 +324,7 @@ def test_what_it_calculates_is_limited_too(ignored, mine):
 
 
 def test_many_processes_are_told(mine):
-    text = doing("for _ in range(20):\n    if os.fork() == 0: time.sleep(9)\ntime.sleep(9)")
+    text = doing("for _ in range(60):\n    if os.fork() == 0: time.sleep(9)\ntime.sleep(9)")
     with (
         Sandboxed(mine(text), limits=Limits(seconds=2, processes=8)) as caller,
         pytest.raises(FaultError, match=r"started more than 8 processes|BlockingIOError"),
