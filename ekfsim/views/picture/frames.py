@@ -99,6 +99,8 @@ class Picture:
             frameon=False,
             handler_map=HANDLERS,
         )  # fmt: skip
+        for words_of in self.legend.get_texts():
+            words_of.set(family=families(), parse_math=False)
         self.names: list[Text] = []
 
     def label(self) -> None:
@@ -192,6 +194,8 @@ def _legend(handles: Iterable[Artist | tuple[Artist, ...]]) -> tuple[list[Any], 
     and their words.
     """
     shown = list(handles)
-    return shown, [
+    words = [
         str((handle[0] if isinstance(handle, tuple) else handle).get_label()) for handle in shown
     ]
+    # matplotlib leaves out what begins with _, as the name of a file may
+    return shown, [drawable(f" {word}" if word.startswith("_") else word) for word in words]

@@ -25,7 +25,7 @@ from ekfsim.views.picture.sight_artists import BeamArtists, FixArtists, SightArt
 from ekfsim.views.picture.sights import Sight, kinds, sight
 from ekfsim.views.terminal.playback import View
 from ekfsim.views.words.beams import Beam, beam, length
-from ekfsim.views.words.captions import away
+from ekfsim.views.words.captions import away, watching
 
 BODY = 0.022  # of the picture's longer side: the robot's radius
 # of the close-up's width: what the cone and the true heading are measured by there
@@ -63,7 +63,7 @@ class Main:
             true=_true(scene),
         )
         self.others = others(axes, scene, probability)
-        self.belief.call(scene.watching[0] if self.others else "")
+        self.belief.call(watching(scene)[0] if self.others else "")
         self.beam = BeamArtists(axes)
         self._sensors = sensors(scene)
         self.sight = SightArtists(axes, self._sensors)
@@ -168,7 +168,7 @@ def others(axes: Axes, scene: Scene, probability: float) -> list[OtherArtists]:
     """What is drawn of each filter that watches beside the first."""
     return [
         OtherArtists(axes, name, number, probability)
-        for number, name in enumerate(scene.watching[1:])
+        for number, name in enumerate(watching(scene)[1:])
     ]
 
 

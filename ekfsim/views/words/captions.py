@@ -66,7 +66,9 @@ def _measured(entry: Entry, inputs: int) -> str:
 
 def notes(view: View, scene: Scene, read: Beam | Sight | None) -> list[str]:
     """What is to be seen in this view, a paragraph each."""
-    parted = [apart.told for apart in view.apart if apart.since is not None]
+    if view.beam:  # there is much to say of it
+        return _notes(view, scene, read)
+    parted = (apart.told for apart in view.apart if apart.since is not None)
     return [*_notes(view, scene, read), *parted]
 
 
@@ -171,13 +173,18 @@ def source(scene: Scene) -> str:
         f"seed {scene.seed}, run {scene.run}" if scene.log is None or scene.filter == "pf" else ""
     )
     log = "recorded" if scene.log is not None else ""
-    origin = ", ".join(filter(None, (log, drawn, *scene.watching)))
+    origin = ", ".join(filter(None, (log, drawn, *watching(scene))))
     return f"{shortened(scene.world.name, 30)} — {origin}{gate}{guard}{reading}"
+
+
+def watching(scene: Scene) -> list[str]:
+    """What the filters are called in a picture, of which a person may have named some."""
+    return [shortened(name, 24) for name in scene.watching]
 
 
 def texts(scene: Scene) -> Iterator[str]:
     """Whatever of a person's own words a scene's pictures show."""
-    yield scene.world.name
+    yield from (scene.world.name, *scene.watching)
     yield from (
         obstacle.name for obstacle in (*scene.world.map.obstacles, *scene.world.told.map.obstacles)
     )

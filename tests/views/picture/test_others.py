@@ -123,3 +123,38 @@ def test_the_terminal_shows_the_first_letter_of_each():
     text = terminal.draw(view, run, 0.954, (100, 40), box, False, True)
     assert "u ukf  k kf" in text.splitlines()[-1]
     assert "u" in "".join(text.splitlines()[1:-1])
+
+
+def test_from_where_on_filters_differ_is_noted():
+    names = (RUN.filter, *RUN.beside)
+    told = together(play(RUN), [play(one) for one in RUN.alone()[1:]], names)
+    made, since = picture(RUN), 0
+    for view in told:
+        made.show(view)
+        noted = made.notes.get_text()
+        one = view.apart[0]
+        assert one.names == ("ekf", "ukf")
+        assert (one.told in noted) == (one.since is not None and not view.beam)
+        if view.apart[0].since is not None:
+            since = since or (view.number, view.apart[0].since)
+            assert view.apart[0].since == since[1]
+    first, *_ = [view for view in EVERY if view.step.entry.index == since[1] and not view.beam]
+    assert since[0] == first.number
+    x, P = first.step.posterior
+    other_x, other_P = first.others[0].step.posterior
+    assert max(abs(x - other_x).max(), abs(P - other_P).max()) > 1e-9
+
+
+def test_the_same_twice_does_not_differ():
+    twice = together(play(RUN), [play(RUN)], ("ekf", "ekf.py"))
+    *_, last = twice
+    assert last.apart[0].told == "ekf.py and ekf do not differ, at no step by a millionth of σ"
+
+
+@pytest.mark.parametrize("name", ["_mine.py", "a $very$ long name of a file of somebody.py"])
+def test_the_legend_names_a_file_as_it_is_called(name):
+    made = picture(replace(RUN, filter="ekf", beside=("ukf",)))
+    own = Picture(made.figure, replace(RUN, beside=(f"/tmp/{name}",)), made.main.limits)
+    words = [text.get_text().strip() for text in own.legend.get_texts()]
+    assert any(word.startswith(name[:15]) and "estimate, ellipse" in word for word in words)
+    made.figure.canvas.draw()
