@@ -105,12 +105,14 @@ def missing(file: str | Path, named: str) -> tuple[str, str] | None:
     return f"{quoted(named)}: there is no such file", "write its path relative to this file"
 
 
-def alike(filters: Sequence[str]) -> Iterator[tuple[int, str, str]]:
-    """Which of some filters cannot be told from one before it, what is wrong, and what would be
-    right.
+def alike(filters: Sequence[str]) -> Iterator[tuple[str, str] | None]:
+    """Of each filter, whether it cannot be told from one before it: what is wrong, and what would
+    be right; None where it can.
     """
     for n, one in enumerate(filters):
         if one in filters[:n]:
-            yield n, f"{quoted(label(one))} stands twice", "delete one"
+            yield f"{quoted(label(one))} stands twice", "delete one"
         elif stem(one) in map(stem, filters[:n]):
-            yield n, f"two filters are called {label(one)}", "give one of the files another name"
+            yield f"two filters are called {label(one)}", "give one of the files another name"
+        else:
+            yield None

@@ -148,8 +148,9 @@ def read_request(name: str) -> Request:
     fixed = tuple(one for route, values in told if route[0] != SWEEP for one in values)
     sweep = tuple(tuple(values) for route, values in told if route[0] == SWEEP)
     a, b = (tuple(side_of(root, side, str(path))) for side in SIDES)
+    watching = tuple(filters_of(root, str(path)).values())
     return Request(
-        commands, world, keys.runs, keys.seed, filters_of(root, str(path)), fixed, sweep,
+        commands, world, keys.runs, keys.seed, watching, fixed, sweep,
         keys.reading, keys.fast, a, b,
         keys.ekfsim, name, commands_name, world_name,
     )  # fmt: skip
@@ -216,23 +217,22 @@ def keys_of(root: Node, name: str) -> Iterator[str]:
     yield from node.keys if (node := root.at((name,))) is not None else ()
 
 
-def filters_of(root: Node, file: str) -> tuple[str, ...]:
-    """The filters that watch; what is no text is left out."""
+def filters_of(root: Node, file: str) -> dict[int, str]:
+    """The filters that watch, by their places in the list; what is no text is left out."""
     node = root.at((FILTERS_KEY,))
     listed = node.value if node is not None and isinstance(node.value, list) else []
-    return tuple(filter_beside(file, one.written) for one in listed if one.written)
+    return {n: filter_beside(file, one.written) for n, one in enumerate(listed) if one.written}
 
 
 def filter_mistakes(root: Node, file: str) -> Iterator[Mistake]:
     """Filters that stand twice, and those of one's own that are not there."""
     filters = filters_of(root, file)
-    for n, wrong, right in alike(filters):
+    told = dict(zip(filters, alike(tuple(filters.values())), strict=True))
+    for n in filters:
         route: Route = (FILTERS_KEY, n)
-        yield at(file, root.nearest(route).mark, route, wrong, right)
-    for n in range(len(filters)):
-        route = (FILTERS_KEY, n)
-        if fault := missing(file, root.nearest(route).written):
-            yield at(file, root.nearest(route).mark, route, *fault)
+        node = root.nearest(route)
+        if fault := told[n] or missing(file, node.written):
+            yield at(file, node.mark, route, *fault)
 
 
 def side_of(root: Node, side: str, file: str) -> Iterator[Setting]:
