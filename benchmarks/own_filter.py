@@ -23,14 +23,14 @@ from ekfsim.twins import taking
 from ekfsim.views.words.closing import conclude_all
 
 SCENES = ("tour", "square", "diverge-01-wrong-wall")
-BLOCK = 1024  # runs, as many as a study makes side by side
+BLOCK = 512  # runs side by side; a study makes twice as many
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer rounds, smaller blocks")
     quick = parser.parse_args().quick
-    runs = BLOCK // 8 if quick else BLOCK
+    runs = BLOCK // 4 if quick else BLOCK
     with TemporaryDirectory() as folder:
         file = Path(folder, "mine.py")
         file.write_text(template("filter-complete"), encoding="utf-8")
@@ -39,7 +39,7 @@ def main() -> None:
             own = replace(scene, filter=str(file))
             peers = {"as `run --plain --quiet` of the ekf": alone(scene)}
             (found,) = ratios(
-                lambda own=own: run_block(own, 0, runs), peers, 3 if quick else 7, parts=runs,
+                lambda own=own: run_block(own, 0, runs), peers, 3 if quick else 5, parts=runs,
                 calls=dict.fromkeys(peers, runs),
             )  # fmt: skip
             print(
