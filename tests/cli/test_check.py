@@ -262,11 +262,8 @@ def test_a_recording_without_a_path_is_ok_and_cannot_be_run():
 def test_a_log_where_nothing_was_recorded():
     told = ekfsim("run", "short.yaml", "--log", "log.csv")
     assert (told.status, told.out) == (2, "")
-    line = (
-        "short.yaml:3:3: commands: the file has 'commands', not a recording; --log has nothing "
-        "to replace\n"
-    )
-    assert told.err == line
+    holds = "the one that holds entries.csv, world.yaml and, where it is known, truth.csv"
+    assert told.err == f"ekfsim: log.csv: no such folder; name {holds}\n"
     told = ekfsim("run", "short.yaml", "--reading", "spoken")
     assert told.status == 2
     assert "'printed', 'coded', 'corrected'" in told.err

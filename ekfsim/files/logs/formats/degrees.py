@@ -15,12 +15,12 @@ BEYOND = 21  # digits that always lead back
 def degrees(angle: float) -> str:
     """The fewest digits that are read back as this angle in rad.
 
-    >>> degrees(math.radians(-86)), degrees(math.pi / 2)
-    ('-86', '90')
+    >>> degrees(math.radians(-86)), degrees(math.radians(33.3))
+    ('-86', '33.3')
     """
     told = (f"{math.degrees(angle):.{digits}g}" for digits in range(FEWEST, MOST + 1))
     exact = f"{Decimal(angle) / RADIAN:.{BEYOND}g}"
-    return next((text for text in told if radians(text) == angle), exact)
+    return next((text for text in told if math.radians(float(text)) == angle), exact)
 
 
 def radians(text: str) -> float:
@@ -29,4 +29,5 @@ def radians(text: str) -> float:
     >>> radians("180") == math.pi
     True
     """
-    return float(Decimal(text) * RADIAN)
+    digits = len(Decimal(text).as_tuple().digits)
+    return float(Decimal(text) * RADIAN) if digits > MOST else math.radians(float(text))
