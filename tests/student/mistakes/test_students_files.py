@@ -21,7 +21,10 @@ from ekfsim.student.mistakes.guessing import guesses
 from ekfsim.student.mistakes.known import KNOWN
 from ekfsim.student.mistakes.working import right
 
-ELSEWHERE = {"wall-by-reading": "diverge-06b-pillar-corridor"}
+ELSEWHERE = {
+    "wall-by-reading": "diverge-06b-pillar-corridor",
+    "another-wall": "proof-every-mistake",
+}
 
 
 class Student:

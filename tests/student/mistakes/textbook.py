@@ -200,7 +200,7 @@ MISTAKES = {
         HITS, "if r > 0:",
         "hits.append((", "hits.append((abs(r * nd) / np.hypot(nx, ny), ",
         MIN, "return min(hits)[1:]"),
-    "another-wall": (MIN, "return sorted(hits)[1 if len(hits) > 2 else 0]"),
+    "another-wall": (MIN, "return sorted(hits)[2 if len(hits) > 3 else 0]"),
     "innovation-of-its-own": (V, V + " - 0.05"),
     "wall-by-reading": (MIN, "return min(hits, key=lambda hit: abs(hit[0] - z))"),
     "shortest-distance": (V, "r = r / np.hypot(hx, hy)\n    R = (sensor.range_ratio * r) ** 2\n    " + V),
