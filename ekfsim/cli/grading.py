@@ -1,5 +1,6 @@
 """The commands for who grades: grade, autograder."""
 
+import sys
 from pathlib import Path
 
 import click
@@ -8,7 +9,7 @@ from ekfsim.cli.kinds import Result, Source, Whole
 from ekfsim.cli.options import FORCE
 from ekfsim.cli.process import part_with, warn
 from ekfsim.cli.progress import submissions_bar
-from ekfsim.errors import RunError
+from ekfsim.errors import RunError, UsageError
 from ekfsim.printable import in_a_line
 
 
@@ -51,6 +52,8 @@ def grade(
     """
     import shlex
 
+    if sys.platform == "win32":
+        raise UsageError("grade: students' code can be kept to no limits on Windows; use WSL")
     from ekfsim.files.homework import read_homework
     from ekfsim.files.results.writing import refuse_existing_folder
     from ekfsim.student.grading import grading, keeping
