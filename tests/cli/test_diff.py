@@ -101,10 +101,13 @@ def test_a_wrong_filter_is_told_whole_with_status_1():
     assert ended.out == TOLD + MADE
 
 
-def test_every_line_fits_into_a_mail():
-    ended = diff("--runs", "3", code=WRONG, commands="tour")
-    assert ended.status == 1
-    assert max(map(len, ended.out.splitlines())) <= 80
+@pytest.mark.parametrize("commands", ["tour", "pylon"])
+def test_every_line_fits_into_a_mail(commands):
+    """A state of seven entries, too."""
+    code = WRONG.replace("np.eye(3)", "np.eye(len(x))").replace("M(u) @ G.T", "M(u) @ G.T * 1.1")
+    ended = diff(code=code, commands=commands)
+    assert (ended.status, ended.err) == (1, "")
+    assert 70 < max(map(len, ended.out.splitlines())) <= 80
     assert "\x1b" not in ended.out
 
 

@@ -21,6 +21,7 @@ from ekfsim.views.words.numbers import ROUNDING, cleared
 
 WIDE = 80  # columns
 MOST_ENTRIES = 12  # that are told of a step; of more only so many
+DEEPER = 8 * " "  # before what is left of a long row
 MOST_ALIKE = 3  # guesses that are told where several are as good
 
 
@@ -135,7 +136,10 @@ def _each(found: Found, sides: Sides) -> Iterator[str]:
     """Every mistake that shows, with the steps at which it does; those that have no name, too."""
     in_guess = {mistake for guess in found.guesses[:1] for mistake in guess}
     for mistake, seen in found.named.items():
-        yield _shows(found, mistake.name, seen) + (
+        names = [mistake.name] + [
+            guess[0].name for guess in found.guesses[1:] if found.guesses[0] == (mistake,)
+        ]
+        yield _shows(found, " or ".join(names[:MOST_ALIKE]), seen) + (
             "." if mistake in in_guess else f": {_told((mistake,), sides)}"
         )
     for seen in found.unnamed:
@@ -199,8 +203,10 @@ def _counted(number: int, what: str) -> str:
 
 
 def _filled(part: str) -> str:
-    """Lines of at most 80 columns; what stands in columns stays as it is."""
+    """Lines of at most 80 columns; what stands in columns stays as it is, but for long rows."""
     return "\n".join(
-        line if line.startswith("  ") else textwrap.fill(in_a_line(line), WIDE)
+        textwrap.fill(
+            in_a_line(line), WIDE, subsequent_indent=DEEPER if line.startswith("  ") else ""
+        )
         for line in part.rstrip("\n").split("\n")
     )
