@@ -25,6 +25,10 @@ OTHERS = {
     # written by `ekfsim grade`, and by two students
     "docs/grading.md": {"class.md", *(f"handed-in/{name}/filter.py" for name in ("anna", "bob"))},
 }
+OTHERS["docs/course.md"] = {  # written by its commands, and by its reader
+    *("filled.py", "class.md", "grades/class.md", "grades/report-ben.md"),
+    *(f"sheets/{name}.md" for name in ("ada", "ben", "long")),
+}
 READERS = {"filter.py", "mine.py"}  # which a reader of the page writes
 
 
