@@ -159,6 +159,20 @@ def test_a_belief_that_can_be_none_is_told_as_what_it_is():
     )
 
 
+@pytest.mark.parametrize(
+    ("coarse", "told"),
+    [
+        ("np.round(x, 3), P", "All numbers of x are rounded to 3 decimals."),
+        ("x.astype('f'), P", "All numbers of x are float32: they have 7 digits."),
+    ],
+)
+def test_digits_that_are_missing_are_told(coarse, told):
+    code = RIGHT.replace("return x + K", "x, P = x + K") + f"    return {coarse}\n"
+    ended = diff(code=code, commands="tour")
+    assert ended.status == 1
+    assert told in ended.out.replace("\n", " ")
+
+
 def test_another_file_may_be_the_reference():
     Path("other.py").write_text(WRONG, encoding="utf-8")
     ended = diff("--against", "other.py")

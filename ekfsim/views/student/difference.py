@@ -22,6 +22,7 @@ from ekfsim.views.words.numbers import ROUNDING, cleared
 WIDE = 80  # columns
 MOST_ENTRIES = 12  # that are told of a step; of more only so many
 DEEPER = 8 * " "  # before what is left of a long row
+MOST_DECIMALS = 10  # that somebody rounds to
 MOST_ALIKE = 3  # guesses that are told where several are as good
 
 
@@ -119,7 +120,7 @@ def _guesses(found: Found, sides: Sides) -> str:
         )
     if not found.guesses:
         none = "No known mistake, alone or with another, gives these numbers."
-        return none + _singular(found.first.step)
+        return none + _singular(found.first.step) + _coarse(found.first.step, sides)
     best, *others = found.guesses
     lines = [f"Guess: {_told(best, sides)}"]
     lines += [f"Or: {_told(other, sides)}" for other in others[: MOST_ALIKE - 1]]
@@ -162,7 +163,22 @@ def _singular(step: Compared) -> str:
     _, rank, _ = squared_mahalanobis(np.zeros(len(asked.x)), asked.P)
     if int(rank) == len(asked.x):
         return ""
-    return f" P has rank {int(rank)} of {len(asked.x)} here: it has no inverse."
+    return f" (P has rank {int(rank)} of {len(asked.x)} here: a form that inverts it fails.)"
+
+
+def _coarse(step: Compared, sides: Sides) -> str:
+    """What is odd in the digits of an answer: float32, or decimals that were cut off."""
+    if sides.printed:
+        return ""
+    for name, values in (("x", step.theirs.x), ("P", step.theirs.P)):
+        if (values == np.round(values)).all():
+            continue  # whole numbers say nothing
+        if (values == values.astype(np.float32)).all():
+            return f" All numbers of {name} are float32: they have 7 digits."
+        for decimals in range(1, MOST_DECIMALS):
+            if (values == np.round(values, decimals)).all():
+                return f" All numbers of {name} are rounded to {decimals} decimals."
+    return ""
 
 
 def _where(found: Found, at: At) -> str:
