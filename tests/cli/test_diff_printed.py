@@ -144,6 +144,14 @@ def test_rows_may_be_missing_or_counted_by_themselves():
     assert "equals ekf at all 23 steps" in ekfsim("diff", "tour", "--csv", "theirs.csv").out
 
 
+def test_the_table_of_the_program_itself_is_one():
+    """In radians, with a row of each text, and with columns of other things."""
+    ekfsim("run", "tour", "-q", "--csv", "theirs.csv")
+    ended = ekfsim("diff", "tour", "--csv", "theirs.csv")
+    assert (ended.status, ended.out[:32]) == (0, "theirs.csv equals ekf at all 23 ")
+    assert "headings are read as radians" in ended.err
+
+
 def test_the_results_of_a_handed_out_log_are_held_against_it():
     ekfsim("record", "tour", "-o", "log", "--seed", "9")
     written(table(options=("--log", "log")))
@@ -209,6 +217,16 @@ def test_the_narrative_of_a_log_is_right():
     ekfsim("record", "tour", "-o", "log")
     Path("told.txt").write_text(ekfsim("run", "tour", "--log", "log").out)
     assert ekfsim("diff", "tour", "--log", "log", "--narrative", "told.txt").status == 0
+
+
+@pytest.mark.parametrize("name", ["ukf", "kf", "iekf"])
+def test_other_filters_are_right_beside_themselves(name):
+    run = ekfsim("run", "tour", "--filter", name, "--csv", "theirs.csv")
+    Path("told.txt").write_text(run.out)
+    against = ("diff", "tour", "--against", name)
+    assert ekfsim(*against, "--narrative", "told.txt").status == 0
+    assert ekfsim(*against, "--csv", "theirs.csv").status == 0
+    assert ekfsim("diff", "tour", "--csv", "theirs.csv").status == 1
 
 
 def test_the_narrative_of_a_wrong_filter_is_named():

@@ -83,12 +83,11 @@ def _aligned(table: Table, given: Sequence[int]) -> tuple[dict[int, Row], list[s
     indices = {*table.rows} - {0}
     if indices <= {*given}:
         return dict(table.rows), []
+    if indices > {*given}:  # a row of each command, texts as well, as --csv of `run` has them
+        return {i: row for i, row in table.rows.items() if i == 0 or i in {*given}}, []
     if indices == {*range(1, len(indices) + 1)} and len(indices) <= len(given):
         told = f"{table.file}: its index counts the moves and beams: row 1 is of step {given[0]}"
         return _by_order(table.rows, given), [told]
-    every = {*range(1, max(given) + 1)}
-    if indices <= every and len(indices) > len(given):  # a row of each command, texts as well
-        return {i: row for i, row in table.rows.items() if i == 0 or i in {*given}}, []
     odd = min(indices - {*given})
     right = f"those of the run are {', '.join(map(str, given[:FEW]))}{', …' * (len(given) > FEW)}"
     line = table.rows[odd].line

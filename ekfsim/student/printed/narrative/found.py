@@ -85,13 +85,9 @@ def _hang_together(found: Examined, block: Block, before: Printed, entry: Entry 
     """What of one step can be held against itself. entry : of the run, where it is of one"""
     begun, after = hanging.begun_with(block, before), hanging.printed(block, before)
     found.look(hanging.carried_over(block, before))
-    if block.kind == "move":
-        u = block.facts.get("odometry")
-        if entry is None:
-            found.look(hanging.moved(block, begun, u))
-            found.look(hanging.moved_covariance(block, begun))
-        elif u is not None:
-            found.look(hanging.moved(block, begun, u))
+    if block.kind == "move" and entry is None:
+        found.look(hanging.moved(block, begun, block.facts.get("odometry")))
+        found.look(hanging.moved_covariance(block, begun))
     if block.kind == "sense":
         found.look(hanging.sensed(block))
         if before.P is not None and after.P is not None:
