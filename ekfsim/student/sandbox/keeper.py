@@ -54,6 +54,7 @@ def main(asked: Mapping[str, Any]) -> None:
     signal.signal(signal.SIGTERM, _enough)
     try:
         status = _seen_to_its_end(student, requests, limits)
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # nothing ends what is to end the others
     except InterruptedError:
         status = _left(student)
     _end_all(student)
