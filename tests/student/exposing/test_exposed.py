@@ -56,6 +56,13 @@ def test_what_can_be_made_is_asked_of_the_robot_not_of_what_it_does():
     assert "innovation-sign" not in shown
 
 
+def test_of_a_reading_that_says_nothing_no_mistake_can_be_made():
+    """Where S = 0 no filter is handed one."""
+    can_be_made = {mistake.name for mistake in possible(scene("proof-no-noise"), KNOWN)}
+    assert "turn-before-move" in can_be_made
+    assert "innovation-sign" not in can_be_made
+
+
 def test_a_number_is_told_that_is_wrong_by_hand():
     """A square of 3 m: with the turn first, the first side goes along the second."""
     played = scene("proof-square-twice")
