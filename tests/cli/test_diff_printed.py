@@ -104,7 +104,10 @@ def test_mistakes_are_named_from_six_digits():
     assert "Read again:" in ended.out
 
 
-@pytest.mark.parametrize("form", ["radians", "semicolons", "tabs", "BOM", "nine", "order", "words"])
+FORMS = ["radians", "semicolons", "tabs", "spaces", "BOM", "nine", "order", "words", "degrees"]
+
+
+@pytest.mark.parametrize("form", FORMS)
 def test_a_table_may_be_written_in_many_ways(form):
     rows, names, separator = table(), NAMES, ","
     if form == "radians":
@@ -113,6 +116,15 @@ def test_a_table_may_be_written_in_many_ways(form):
         rows, separator = [[one.replace(".", ",") for one in row] for row in rows], ";"
     elif form == "tabs":
         separator = "\t"
+    elif form == "spaces":
+        separator = "  "
+    elif form == "degrees":  # in P, too
+        powers = [0, 0, 0, 0, 0, 1, 0, 1, 2]
+        rows = [
+            [row[0], *(f"{float(one) * math.degrees(1) ** power:.6g}"
+                       for one, power in zip(row[1:], powers, strict=True))]
+            for row in table(digits="{:.17g}")
+        ]  # fmt: skip
     elif form == "nine":
         names = "k,x,y,th,p11,p12,p13,p21,p22,p23,p31,p32,p33"
         rows = [[*r[:7], r[5], r[7], r[8], r[6], r[8], r[9]] for r in rows]
@@ -127,6 +139,7 @@ def test_a_table_may_be_written_in_many_ways(form):
     assert (ended.status, ended.out[:32]) == (0, "theirs.csv equals ekf at all 23 ")
     unit = "radians" if form == "radians" else "degrees"
     assert f"headings are read as {unit}" in ended.err
+    assert ("P is read as of m and degrees" in ended.err) == (form == "degrees")
 
 
 def test_rows_may_be_missing_or_counted_by_themselves():
@@ -201,11 +214,14 @@ CLASSROOMS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CLASSROOMS)
-@pytest.mark.parametrize("explain", [(), ("--explain",)], ids=["short", "long"])
-def test_our_own_narrative_is_right(name, explain):
-    Path("told.txt").write_text(ekfsim("run", name, *explain).out)
-    ended = ekfsim("diff", name, "--narrative", "told.txt")
+@pytest.mark.parametrize(
+    "run", [*CLASSROOMS, "tour --explain", "diverge-01-wrong-wall --explain --seed 5"]
+)
+def test_our_own_narrative_is_right(run):
+    name, *options = run.split()
+    Path("told.txt").write_text(ekfsim("run", name, *options).out)
+    seed = options[1:]
+    ended = ekfsim("diff", name, *seed, "--narrative", "told.txt")
     if name == "proof-unsure-start":  # nothing happens in it
         assert ended.status == 2
         return
