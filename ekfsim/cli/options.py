@@ -102,7 +102,7 @@ PLAYED = (  # which run of which file
         "--log",
         type=Source(),
         metavar="PATH",
-        help="A recorded log in place of the one that COMMANDS names.",
+        help="A recorded log in place of the one that COMMANDS names, or of its commands.",
     ),
     READING,
 )
