@@ -13,18 +13,20 @@ from ekfsim.files.homework import Homework
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.protocol import Filter
 from ekfsim.localization import filter_of, first_belief
+from ekfsim.models.layout import Layout
 from ekfsim.records import Control, Entry, Reading
 from ekfsim.scene import Scene
 from ekfsim.simulation import simulate
 from ekfsim.student.asked import Answer, Asked
 from ekfsim.student.comparing.compare import Compared, compare
+from ekfsim.student.comparing.difference import DIFFERENT, sizes
 from ekfsim.systems import system_of
 
 MOST_KEPT = 100_000  # entries
 
 
 class Reached(NamedTuple):
-    """How many steps a run has in which the student's code is asked something."""
+    """How many steps a run has in which a filter has something to do."""
 
     moves: int
     readings: int
@@ -71,13 +73,24 @@ class Bench:
         return list(compare(entries, first_belief(scene), caller, reference, layout, scene.guard))
 
     def reached(self, name: str, run: int, filter: str) -> Reached:
-        """How many steps of a run the reference is asked."""
+        """In how many steps of a run the reference changes its belief."""
         key = name, run, filter
         if key not in self._reached:
-            given = [step.asked.given for step in self.by_itself(*key)]
+            layout = self.scene(name).world.layout
+            steps = self.by_itself(*key)
+            given = [step.asked.given for step in steps if tells(step, layout)]
             moves = sum(isinstance(one, Control) for one in given)
             self._reached[key] = Reached(moves, len(given) - moves)
         return self._reached[key]
+
+
+def tells(step: Compared, layout: Layout) -> bool:
+    """Whether a step tells right from wrong: there is something to do, or something else was done.
+    Where P is 0 no reading is worth anything, and who does nothing is right by chance.
+    """
+    before = Answer(step.asked.x.copy(), step.asked.P)
+    changes = (float(size.max()) > DIFFERENT for size in sizes(before, step.right, layout))
+    return bool(step.differences) or any(changes)
 
 
 @dataclass(frozen=True)

@@ -64,6 +64,16 @@ def test_moves_that_are_right_by_chance_count_as_right(asked, tmp_path):
     assert [one.mistake for one in score.shown] == ["J_x-after-move"]
 
 
+@pytest.mark.parametrize("partial", ["halves", "steps"])
+def test_who_does_nothing_earns_nothing(asked, tmp_path, partial):
+    """Its P stays 0, for which no reading would change anything: right by chance is not right."""
+    lazy = "def predict(x, P, u, motion):\n    return motion.f(x, u), P\n\n\n"
+    lazy += "def update(x, P, z, sensor):\n    return x, P\n"
+    score = steps(asked, tmp_path, lazy, partial)
+    assert score.cents == 0
+    assert score.words[-2:] == ("0 of 8 moves are right", "0 of 8 readings are right")
+
+
 def test_steps_that_are_never_reached_are_not_right(asked, tmp_path, monkeypatch):
     """It fails at the first reading: one move of eight was right."""
     monkeypatch.chdir(tmp_path)

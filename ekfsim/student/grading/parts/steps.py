@@ -10,7 +10,7 @@ from ekfsim.student.asked import Caller
 from ekfsim.student.comparing.compare import Compared, compare
 from ekfsim.student.comparing.found import Found, found
 from ekfsim.student.comparing.naming import At
-from ekfsim.student.grading.bench import Bench
+from ekfsim.student.grading.bench import Bench, tells
 from ekfsim.student.grading.scores import Scored, Shown
 from ekfsim.student.mistakes.guessing import Guess
 
@@ -21,7 +21,7 @@ class Counts:
 
     right: int = 0
     seen: int = 0
-    of: int = 0  # that a right filter is asked
+    of: int = 0  # in which a right filter has something to do
 
     @property
     def share(self) -> float:
@@ -46,8 +46,9 @@ def graded_steps(score: Scored, keys: StepsKeys, bench: Bench, caller: Caller) -
         layout, guard = scene.world.layout, scene.guard
         for step in compare(entries, first, caller, reference, layout, guard):
             kind = moves if isinstance(step.asked.given, Control) else readings
-            kind.seen += 1
-            kind.right += not step.differences
+            if tells(step, layout):
+                kind.seen += 1
+                kind.right += not step.differences
             yield step
 
     result = found((run, compared(run)) for run in runs)
