@@ -122,7 +122,8 @@ def test_ctrl_c_says_what_is_kept_and_leaves_no_process(place):
     os.killpg(begun.pid, signal.SIGINT)
     _, err = begun.communicate(timeout=PATIENCE)
     assert begun.returncode == 130
-    assert err == (
+    assert "Traceback" not in err
+    assert err.endswith(  # after what this machine cannot keep students' code from
         "ekfsim: interrupted; 1 of 2 submissions are graded and kept in out.partial; the same "
         "command goes on with the rest\n"
     )
