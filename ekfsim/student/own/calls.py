@@ -35,7 +35,6 @@ class InProcess:
 
         What an object believes then, should it have both already.
         """
-        self._object = self._agreed = None
         if isinstance(self._form, Stateful):
             with self._code.home.entered():
                 try:

@@ -99,3 +99,13 @@ def test_a_heading_may_come_back_unwrapped(tmp_path):
     for to in ("motion.f(x, u) - [0, 0, 2 * np.pi],", "np.mod(motion.f(x, u), [9, 9, 2 * np.pi]),"):
         (tmp_path / "mine.py").write_text(FUNCTIONS.replace("motion.f(x, u),", to))
         assert apart(tmp_path / "mine.py", load_scene("square")) < 1e-9
+
+
+def test_an_object_may_wrap_its_heading_when_it_likes(tmp_path):
+    """Laps that it counted on its way and forgets at a reading are no degrees."""
+    laps = CLASS.replace("motion.Q(u)\n", "motion.Q(u)\n        self.x[2] += 2 * np.pi * 3\n")
+    seen = "        self.x[2] = np.angle(np.exp(1j * self.x[2])) + 0.01\n"
+    (tmp_path / "mine.py").write_text(laps + seen)
+    scene = replace(load_scene("tour"), filter=str(tmp_path / "mine.py"))
+    *_, last = play(scene)
+    assert last.entry.index == 30
