@@ -6,7 +6,7 @@ carried   what such halves, of each number that a step begins with, make of its 
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,37 +94,41 @@ def carried(
 ) -> Halves:  # fmt: skip
     """What the halves of a belief make of a step's result, at worst : (n,), (n, n)
 
-    Each number is moved by its half in turn, and what that changes is summed. Infinite where the
-    step then leads nowhere, as where another wall is met, or none.
+    Each number is moved by its half in turn, to the side where that changes more, and what it
+    changes is summed. Infinite where the step then leads nowhere, as where another wall is met, or
+    none.
     """
-    x, P = belief
-    base, n = step(belief), len(x)
+    base, n = step(belief), len(belief.mean)
     open_x, open_P = np.zeros(n), np.zeros((n, n))
-    for i in range(n):
-        if halves.x[i]:
-            moved = x.copy()
-            moved[i] += halves.x[i]
-            _add(step(Gaussian(moved, P)), base, headings, open_x, open_P)
-        for j in range(i, n):
-            if half := max(halves.P[i, j], halves.P[j, i]):
-                spread = P.copy()
-                spread[i, j] += half
-                spread[j, i] = spread[i, j]
-                _add(step(Gaussian(x, spread)), base, headings, open_x, open_P)
+    for moves in _moves(belief, halves):
+        both = [_apart(step(moved), base, headings) for moved in moves]
+        open_x += np.maximum(*(apart.mean for apart in both))
+        open_P += np.maximum(*(apart.covariance for apart in both))
     return Halves(open_x, open_P)
 
 
-def _add(
-    moved: Gaussian | None, base: Gaussian | None, headings: tuple[int, ...],
-    open_x: Array, open_P: Array,
-) -> None:  # fmt: skip
-    """Add how far a moved result lies from the base."""
+def _moves(belief: Gaussian, halves: Halves) -> Iterator[list[Gaussian]]:
+    """The beliefs in which one number is larger, and smaller, by its half."""
+    x, P = belief
+    for i in range(len(x)):
+        if half := halves.x[i]:
+            step = half * np.eye(len(x))[i]
+            yield [Gaussian(x + step, P), Gaussian(x - step, P)]
+        for j in range(i, len(x)):
+            if half := max(halves.P[i, j], halves.P[j, i]):
+                one = np.zeros_like(P)
+                one[i, j] = one[j, i] = half
+                yield [Gaussian(x, P + one), Gaussian(x, P - one)]
+
+
+def _apart(moved: Gaussian | None, base: Gaussian | None, headings: tuple[int, ...]) -> Gaussian:
+    """How far a moved result lies from the base, in each of its numbers."""
     if moved is None or base is None:
-        open_x += np.inf
-        open_P += np.inf
-        return
+        return Gaussian(np.array(np.inf), np.array(np.inf))
     apart = moved.mean - base.mean
     for i in headings:
         apart[i] = wrap(apart[i])
-    open_x += np.nan_to_num(np.abs(apart), nan=np.inf)
-    open_P += np.nan_to_num(np.abs(moved.covariance - base.covariance), nan=np.inf)
+    return Gaussian(
+        np.nan_to_num(np.abs(apart), nan=np.inf),
+        np.nan_to_num(np.abs(moved.covariance - base.covariance), nan=np.inf),
+    )
