@@ -59,7 +59,8 @@ def _steps(scene: Scene, mistake: Mistake, numbers: Integers) -> Iterator[Step]:
     happened = simulate(scene, numbers)
     for entry in system_of(scene.world.system).entries(happened, scene.reading):
         step = advance(reference, belief, entry, scene.guard, layout)
-        posterior = Gaussian(belief.mean.copy(), belief.covariance.copy())
+        x, P = step.posterior  # what is right, and stays so where the mistake cannot be made
+        posterior = Gaussian(x.copy(), P.copy())
         for run in np.flatnonzero(_handed_over(step, numbers)).tolist():
             given = _of_run(entry.given, run, numbers)
             asked = Asked(
@@ -67,8 +68,9 @@ def _steps(scene: Scene, mistake: Mistake, numbers: Integers) -> Iterator[Step]:
                 entry.index, earlier.get(run), entry.t,
             )  # fmt: skip
             earlier[run] = asked.as_earlier()
-            believes = believed(wrong.call(asked), layout)
-            posterior.mean[run], posterior.covariance[run] = believes
+            if mistake.where(asked):
+                believes = believed(wrong.call(asked), layout)
+                posterior.mean[run], posterior.covariance[run] = believes
         measured = None if entry.truth is None else nees(posterior, entry.truth, layout)
         yield replace(step, posterior=posterior, nees=measured)
         belief = posterior
