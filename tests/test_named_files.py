@@ -26,8 +26,9 @@ OTHERS = {
     "docs/grading.md": {"class.md", *(f"handed-in/{name}/filter.py" for name in ("anna", "bob"))},
 }
 OTHERS["docs/course.md"] = {  # written by its commands, and by its reader
-    *("filled.py", "class.md", "grades/class.md", "grades/report-ben.md"),
-    *(f"sheets/{name}.md" for name in ("ada", "ben", "long")),
+    *("half.py", "filled.py", "derivative.py", "class.md"),
+    *("grades/class.md", "grades/report-ben.md"),
+    *(f"sheets/{name}.md" for name in ("ada", "ben", "ada-beams")),
 }
 READERS = {"filter.py", "mine.py"}  # which a reader of the page writes
 

@@ -1,5 +1,6 @@
 """The page of a class: which mistakes it made, how many, which scenes show them. No names."""
 
+import statistics
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -43,7 +44,7 @@ class Class:
         if not many:
             return "no submission"
         total = sum(cents * n for cents, n in self.grades.items())
-        middle = sorted(self.grades.elements())[many // 2]
+        middle = round(statistics.median(self.grades.elements()))
         return (
             f"{many} submission{'s' * (many != 1)}; of {keys.total:g} points the mean is "
             f"{points(round(total / many))}, the median {points(middle)}"
