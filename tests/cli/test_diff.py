@@ -133,11 +133,20 @@ def test_code_that_fails_ends_it_behind_what_was_found():
     assert ended.out.startswith("""\
 Before its code fails, mine.py equals ekf at 1 step (1 move, 0 readings) of 1
 run. The largest difference is 0 σ; one of 1e-06 σ would be told. No reading was
-compared: update was never called.
+compared.
 """)
     assert ended.err == (
         "mine.py:8: step 2 (sense 0°): sensor has no 'J'; "
         "it has H, R, bearing, h, range_ratio, residual, walls\n"
+    )
+
+
+def test_a_wrong_call_is_told_as_it_was_written():
+    ended = diff(code=RIGHT.replace("motion.F(x, u)", "motion.F(x)"))
+    assert ended.out.startswith("No step was compared: its code fails.\n")
+    assert ended.err == (
+        "mine.py:4: step 1 (move 1 m, 90°): TypeError: motion.F() missing 1 required positional "
+        "argument: 'u'\n"
     )
 
 

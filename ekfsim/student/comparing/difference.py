@@ -13,6 +13,7 @@ from ekfsim.student.asked import Answer
 from ekfsim.student.comparing.rounding import LEAST, Rounding, deviations
 
 DIFFERENT = 1e-6  # σ; what is less is no difference
+SURELY = 1000  # σ; how many more it is matters to nobody
 SIGNS = {"theta": "θ", "phi": "φ"}
 
 
@@ -37,6 +38,11 @@ def sizes(theirs: Answer, right: Gaussian, layout: Layout) -> tuple[Array, Array
     for i in layout.headings:
         apart[i] = wrap(apart[i])
     return np.abs(apart) / σ, np.abs(theirs.P - right.covariance) / np.outer(σ, σ)
+
+
+def in_sigmas(size: float) -> str:
+    """A size in a sentence."""
+    return f"{size:.3g} σ" if size <= SURELY else f"more than {SURELY} σ"
 
 
 def differences(

@@ -153,3 +153,13 @@ def numbers_of(model: Any) -> dict[str, Any]:
         if isinstance(value, bool | int | float | np.ndarray):
             found[one.name] = value
     return found
+
+
+def _named(kind: type, what: str, equations: Sequence[str]) -> None:
+    """Let Python's own words of a wrong call say motion.F(), as the student wrote it."""
+    for name in equations:
+        getattr(kind, f"_{name}").__qualname__ = f"{what}.{name}"
+
+
+_named(HandedMotion, "motion", MOTION)
+_named(HandedSensor, "sensor", SENSOR)

@@ -56,9 +56,11 @@ def _headline(found: Found, sides: Sides) -> str:
     of = f"{_counted(found.steps, 'step')} ({moves}, {readings}) of {_counted(found.runs, 'run')}"
     ends = "its numbers end" if sides.printed else "its code fails"
     until = "" if found.fault is None else f"Before {ends}, "
+    if not found.steps:
+        return f"No step was compared: {ends if until else 'nothing was handed over'}."
     if found.first is None:
         every = "all " if found.steps > 1 else ""
-        never = "" if sides.printed else ": update was never called"
+        never = "" if sides.printed or until else ": update was never called"
         none = "" if found.readings else f" No reading was compared{never}."
         least = (
             "that is what its digits leave open" if sides.printed

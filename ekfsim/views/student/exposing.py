@@ -5,6 +5,7 @@ column each.
 from collections.abc import Iterator, Mapping, Sequence
 
 from ekfsim.printable import in_a_line, some
+from ekfsim.student.comparing.difference import SURELY
 from ekfsim.student.exposing.exposed import Exposed
 from ekfsim.student.exposing.statistics import seen
 from ekfsim.student.mistakes.mistake import Mistake
@@ -12,7 +13,6 @@ from ekfsim.study.results import Result
 from ekfsim.views.words.numbers import number
 from ekfsim.views.words.text_table import aligned, folded
 
-SURELY = 1000  # σ; how many more it is matters to nobody
 MOST = 24  # names in a sentence; the table has them all
 RIGHT = "(no mistake)"
 FIRST = ("mistake", "shows first at", "in", "it says", "right is", "σ")

@@ -8,7 +8,7 @@ from ekfsim.filters.belief import Gaussian, Refused
 from ekfsim.filters.place import label
 from ekfsim.records import Step
 from ekfsim.student.asked import Answer, Asked
-from ekfsim.student.comparing.difference import DIFFERENT, differences, sizes
+from ekfsim.student.comparing.difference import DIFFERENT, differences, in_sigmas, sizes
 from ekfsim.student.comparing.rounding import rounding
 
 
@@ -26,7 +26,7 @@ class Apart:
         names = " and ".join(self.names)
         if self.since is None:
             return f"{names} do not differ, at no step by a millionth of σ"
-        return f"{names} differ from step {self.since} on, there by {self.size:.3g} σ"
+        return f"{names} differ from step {self.since} on, there by {in_sigmas(self.size)}"
 
 
 @dataclass

@@ -148,6 +148,8 @@ def test_a_page_of_the_class_counts_and_names_nobody():
     assert re.search(r"\| innovation-sign \| 2 \| tour \(2\) \| eqs? ", told)
     assert not re.search("anna|bob|zoe|mine.py", told)
     assert of.unjudged == 2
+    of.add(whole("yan"))
+    assert "the mean is 20.62, the median 20.62." in class_page(KEYS, CHECKS, of)  # of 11.23 and 30
 
 
 def test_formats_are_named_in_any_order():

@@ -64,6 +64,18 @@ def test_fewer_exposed_mistakes_earn_their_share(graded):
     assert mistakes.cents == 500 * got // 100
 
 
+def test_who_hands_in_no_input_is_told_so(graded):
+    for score, summed in zip(
+        graded({}, "{files: 1, exposed: 1}"),
+        ("files that keep what they promise", "known mistakes exposed"),
+        strict=True,
+    ):
+        assert score.cents == 0
+        assert score.words == (
+            f"{summed}: 0; 1 is worth all points", "no commands file (.yaml) was handed in"
+        )  # fmt: skip
+
+
 LEADS_OUT = "which lies outside of the folder; hand it in beside, or name one that comes along"
 
 

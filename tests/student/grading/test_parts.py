@@ -60,7 +60,7 @@ def test_moves_that_are_right_by_chance_count_as_right(asked, tmp_path):
     score = steps(asked, tmp_path, pupils.AFTER)
     assert score.cents == 500 + 125
     assert score.first_wrong == "square run 0: step 3 (move 3 m, 90°)"
-    assert "2 of 8 moves are right" in score.words
+    assert score.words[-2:] == ("2 of 8 moves are right", "8 of 8 readings are right")
     assert [one.mistake for one in score.shown] == ["J_x-after-move"]
 
 

@@ -69,7 +69,9 @@ def graded_inputs(score: Scored, keys: InputsKeys, folder: Path) -> Scored:
             found.words.append(short(f"{in_a_line(path.name)}: {_told(error, folder)}", 300))
     got = len(found.kept if promises else found.exposed)
     what = "files that keep what they promise" if promises else "known mistakes exposed"
-    summed = f"{what}: {got}; {wanted} are worth all points"
+    if not any(_files(folder)):
+        found.words.append("no commands file (.yaml) was handed in")
+    summed = f"{what}: {got}; {wanted} {'is' if wanted == 1 else 'are'} worth all points"
     words = (summed, *found.words)
     return replace(score, words=words).earned(1.0 if got >= wanted else got / wanted)
 

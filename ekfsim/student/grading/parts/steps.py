@@ -8,6 +8,7 @@ from ekfsim.localization import first_belief
 from ekfsim.records import Control
 from ekfsim.student.asked import Caller
 from ekfsim.student.comparing.compare import Compared, compare
+from ekfsim.student.comparing.difference import in_sigmas
 from ekfsim.student.comparing.found import Found, found
 from ekfsim.student.comparing.naming import At
 from ekfsim.student.grading.bench import Bench, tells
@@ -92,7 +93,7 @@ def _words(result: Found, moves: Counts, readings: Counts, runs: int) -> Iterato
         run = f"run {result.first.run}, " if runs > 1 else ""
         yield (
             f"first wrong number: {run}{step.asked.step}: {most.entry} is {most.theirs:.9g}, "
-            f"where {most.right:.9g} is right: {most.size:.3g} σ{others}"
+            f"where {most.right:.9g} is right: {in_sigmas(most.size)}{others}"
         )
         yield from _guessed(result.guesses)
     if result.ended is not None:
@@ -103,7 +104,7 @@ def _words(result: Found, moves: Counts, readings: Counts, runs: int) -> Iterato
             where = seen.first.step.asked.step
             yield f"also, at {seen.steps} steps, the first {where}: {mistake.told}; {mistake.read}"
     for what, kind in (("moves", moves), ("readings", readings)):
-        if kind.of and not (kind.right == kind.of == kind.seen):
+        if kind.of and not (result.equal and kind.right == kind.of == kind.seen):
             yield f"{kind.right} of {max(kind.of, kind.seen)} {what} are right"
     if result.equal:
         yield f"all {result.steps} steps are right, to {result.largest:.1g} σ"
