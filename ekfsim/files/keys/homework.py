@@ -161,7 +161,9 @@ class LimitsKeys(Strict):
     """What a student's code may take."""
 
     seconds: Annotated[float, Field(gt=0, le=3600, examples=[60])] = Field(
-        60.0, description="For each test, by the clock on the wall."
+        60.0,
+        description="Of CPU, for each test: what his process calculates itself, however busy the "
+        "machine is. Who sleeps is waited for 4 times as long and 20 s.",
     )
     memory: Annotated[int, Field(ge=512, le=65536, examples=[512])] = Field(
         512, description="MiB of address space, of each of its processes."

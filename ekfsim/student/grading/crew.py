@@ -23,9 +23,10 @@ from ekfsim.files.homework import Homework, read_homework
 from ekfsim.student.grading.examining import Examiner
 from ekfsim.student.grading.scores import Check, Grade, Scored, checks_of
 from ekfsim.student.grading.submissions import Submission
+from ekfsim.student.sandbox.limits import patience as waited
 from ekfsim.study.running.engines import one_thread_each
 
-SLOWER = 3  # by so much we may take longer than the student's code may
+SLOWER = 3  # by so much we may take longer than his code is waited for
 START = 120.0  # s, until a process has begun
 MOST_MEMORY = 4096  # MiB of a process that grades
 ENDING = 5.0  # s
@@ -61,7 +62,7 @@ def grades(
     waiting = _jobs(jobs, checks)
     again: list[Job] = []
     hands: list[Hand] = []
-    patience = START + SLOWER * homework.keys.limits.seconds
+    patience = START + SLOWER * waited(homework.keys.limits.seconds)
     try:
         while True:
             for hand in list(hands):

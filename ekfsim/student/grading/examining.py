@@ -21,7 +21,7 @@ from ekfsim.student.grading.parts.jacobians import graded_jacobian
 from ekfsim.student.grading.parts.steps import graded_steps
 from ekfsim.student.grading.scores import Check, Scored, checks_of
 from ekfsim.student.grading.submissions import Submission
-from ekfsim.student.sandbox.limits import Limits
+from ekfsim.student.sandbox.limits import Limits, patience
 from ekfsim.student.sandbox.sandboxed import Sandboxed
 
 MOST_PRINTED = 300  # characters of what the code printed that are told
@@ -61,7 +61,7 @@ class Examiner:
                 with at_most(seconds):
                     return graded_inputs(score, part.inputs, submission.path)
             except TimeoutError:
-                told = f"the files take longer than {seconds:g} s to read and to play"
+                told = f"the files take longer than {seconds:g} s of CPU to read and to play"
                 return replace(score, words=(told,), fault=told).earned(0.0)
         file, missing = submission.filter(self.homework.keys.filter)
         if missing:
@@ -79,9 +79,7 @@ class Examiner:
 
     def _sandboxed(self, submission: Submission, file: str) -> Sandboxed:
         asked = self.homework.keys.limits
-        limits = Limits(
-            seconds=asked.seconds, cpu_seconds=max(1, round(asked.seconds)), memory_mb=asked.memory
-        )
+        limits = Limits(asked.seconds, patience(asked.seconds), asked.memory)
         provided = self.homework.keys.provided
         file = "" if submission.path.name == file else file
         return Sandboxed(
@@ -109,15 +107,17 @@ def _part_of(homework: Homework, check: Check) -> HomeworkPartKeys:
 
 @contextmanager
 def at_most(seconds: float) -> Iterator[None]:
-    """Raise TimeoutError where the block takes longer; only of a process's main thread."""
+    """Raise TimeoutError where this process calculates longer in the block; of its main thread
+    alone.
+    """
 
     def end(number: int, frame: FrameType | None) -> None:
         raise TimeoutError
 
-    before = signal.signal(signal.SIGALRM, end)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    before = signal.signal(signal.SIGPROF, end)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)

@@ -15,7 +15,7 @@ from typing import Any
 from ekfsim.student.fault import FaultError
 from ekfsim.student.sandbox.exchange import HEAD, answered, faulted
 from ekfsim.student.sandbox.kernel import fence, give_up_privileges
-from ekfsim.student.sandbox.limits import ALONE, Limits, keep_to
+from ekfsim.student.sandbox.limits import ALONE, Limits, charge, keep_to
 
 
 def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits) -> None:
@@ -26,19 +26,21 @@ def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits)
 
     fenced = fence(asked["folder"], [*asked["read"], sys.prefix, sys.base_prefix])
     requested = Requests(asked["place"], asked["provided"], fenced)
-    label, rung = os.path.basename(asked["place"]), _alarms(limits)
+    label, alarms = os.path.basename(asked["place"]), Alarms(limits)
+    charge(limits)
     read, write, loads, alarm = os.read, os.write, json.loads, signal.setitimer
     while True:
         length, _, mark = HEAD.unpack(_read(read, requests, HEAD.size))
         seconds, what, told = loads(_read(read, requests, length))
-        rung.clear()
         try:
             alarm(signal.ITIMER_REAL, seconds)
-            message = answered(getattr(requested, what)(*told), mark)
+            with alarms:
+                message = answered(getattr(requested, what)(*told), mark)
         except FaultError as error:
-            message = faulted(error.place, rung[0] if rung else error.wrong, mark)
+            message = faulted(error.place, alarms.rung or error.wrong, mark)
         except BaseException as error:  # of his, where it is called by ours: __array__ may exit
-            message = faulted(_place(error, asked["folder"]) or label, words_of(error), mark)
+            place = _place(error, asked["folder"]) or label
+            message = faulted(place, alarms.rung or words_of(error), mark)
         finally:
             alarm(signal.ITIMER_REAL, 0)
         _flush()
@@ -60,19 +62,31 @@ def _prepare(asked: Mapping[str, Any], limits: Limits) -> None:
     give_up_privileges()
 
 
-def _alarms(limits: Limits) -> list[str]:
-    """Interrupt the code where it is when its time is over; the list returned holds what is told
-    then.
-    """
-    rung: list[str] = []
+class Alarms:
+    """Interrupt the code where it is, within a `with`, when its time is over."""
 
-    def ring(number: int, frame: FrameType | None) -> None:
-        rung.append(limits.too_busy if number == signal.SIGXCPU else limits.too_long)
-        raise TimeoutError(rung[-1])
+    def __init__(self, limits: Limits) -> None:
+        self.rung = ""  # what is told then, of the first
+        self._within = False
+        self._told = {
+            signal.SIGALRM: limits.too_long, signal.SIGPROF: limits.too_busy,
+            signal.SIGXCPU: limits.too_busy,
+        }  # fmt: skip
+        for number in self._told:
+            signal.signal(number, self._ring)
 
-    signal.signal(signal.SIGALRM, ring)
-    signal.signal(signal.SIGXCPU, ring)
-    return rung
+    def _ring(self, number: int, frame: FrameType | None) -> None:
+        self.rung = self.rung or self._told[signal.Signals(number)]
+        if self._within:
+            raise TimeoutError(self.rung)
+
+    def __enter__(self) -> None:
+        if self.rung:  # a thread of his went on between two questions
+            raise TimeoutError(self.rung)
+        self._within = True
+
+    def __exit__(self, *_: object) -> None:
+        self._within = False
 
 
 def _place(error: BaseException, folder: str) -> str:

@@ -80,9 +80,11 @@ def _seen_to_its_end(student: int, requests: int, limits: Limits) -> int:
     counted = os.getuid() == 0 and sys.platform == "linux"  # for others, the kernel counts
     while True:
         closed = any(descriptor == requests for descriptor, _ in waited.poll(TICK * 1000))
-        done, status = os.waitpid(student, os.WNOHANG)
+        done, status, took = os.wait4(student, os.WNOHANG)
         if done:
             code = os.waitstatus_to_exitcode(status)
+            if code == -signal.SIGKILL and took.ru_utime + took.ru_stime > limits.cpu_seconds:
+                code = -signal.SIGXCPU  # who heeded no alarm: only the kernel's end is left
             return code if code >= 0 else 128 - code
         if closed:
             return _left(student)

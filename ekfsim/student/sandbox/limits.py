@@ -1,7 +1,10 @@
 """What a student's code may take, and how a process is kept to it."""
 
+import math
 import os
+import signal
 import sys
+import time
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 
@@ -9,6 +12,7 @@ LEAST_MEMORY = 512  # MiB; with less NumPy itself does not start everywhere
 OPEN_FILES = 128
 MEBI = 2**20
 LINUX = sys.platform == "linux"
+AGAIN = 0.1  # s of CPU after which who did not heed it is told again that his time is over
 # One thread: each of OpenBLAS's takes its share of the memory, and waits for the others. To be set
 # before NumPy is imported.
 ALONE = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -18,11 +22,12 @@ ALONE = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 class Limits:
     """What one process with a student's code may take until it ends.
 
-    The defaults leave a parent 200 MB in a container of 768 MB.
+    It is charged what it calculates itself, however busy the machine is; the wall only ends who
+    sleeps. The defaults leave a parent 200 MB in a container of 768 MB.
     """
 
-    seconds: float = 60.0  # on the wall, while it is waited for, once it has started
-    cpu_seconds: int = 60  # of each process
+    cpu_seconds: float = 60.0  # of each process, once Python and NumPy have started
+    wall_seconds: float = 260.0  # in which it is waited for, all together; see `patience`
     memory_mb: int = LEAST_MEMORY  # MiB of address space, of each process
     file_mb: int = 16  # MiB, of each file that it writes
     processes: int = 64  # and threads, itself among them; see `_tasks`
@@ -33,14 +38,19 @@ class Limits:
             raise ValueError(f"memory_mb is {self.memory_mb}; {LEAST_MEMORY} is the least")
 
     @property
-    def too_long(self) -> str:
-        """What is told of who took longer."""
-        return f"took longer than {self.seconds:g} s"
-
-    @property
     def too_busy(self) -> str:
         """What is told of who calculated longer."""
-        return f"took more than {self.cpu_seconds} s of CPU"
+        return f"took longer than {self.cpu_seconds:g} s of CPU"
+
+    @property
+    def too_long(self) -> str:
+        """What is told of who calculated less, and did not answer."""
+        return f"was waited for longer than {self.wall_seconds:g} s"
+
+
+def patience(cpu_seconds: float) -> float:
+    """Seconds to wait in all for code that may calculate so long: enough on a busy machine."""
+    return 4 * cpu_seconds + 20
 
 
 def keep_to(limits: Limits) -> None:
@@ -49,20 +59,33 @@ def keep_to(limits: Limits) -> None:
     """
     import resource
 
-    def keep(what: int, soft: int, hard: int) -> None:
-        _, most = resource.getrlimit(what)
-        if most != resource.RLIM_INFINITY:  # only the superuser can raise what is set already
-            soft, hard = min(soft, most), min(hard, most)
-        with nullcontext() if LINUX else suppress(ValueError, OSError):  # see kernel.lacking
-            resource.setrlimit(what, (soft, hard))
-
-    keep(resource.RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1)  # SIGXCPU, then SIGKILL
-    keep(resource.RLIMIT_AS, *(limits.memory_mb * MEBI,) * 2)
-    keep(resource.RLIMIT_FSIZE, *(limits.file_mb * MEBI,) * 2)
-    keep(resource.RLIMIT_NOFILE, OPEN_FILES, OPEN_FILES)
-    keep(resource.RLIMIT_CORE, 0, 0)
+    _keep(resource.RLIMIT_AS, *(limits.memory_mb * MEBI,) * 2)
+    _keep(resource.RLIMIT_FSIZE, *(limits.file_mb * MEBI,) * 2)
+    _keep(resource.RLIMIT_NOFILE, OPEN_FILES, OPEN_FILES)
+    _keep(resource.RLIMIT_CORE, 0, 0)
     if hasattr(resource, "RLIMIT_NPROC"):
-        keep(resource.RLIMIT_NPROC, *(_tasks() + limits.processes,) * 2)
+        _keep(resource.RLIMIT_NPROC, *(_tasks() + limits.processes,) * 2)
+
+
+def charge(limits: Limits) -> None:
+    """Count what this process calculates from now on: SIGPROF when that is too much; SIGXCPU, then
+    SIGKILL, for who does not heed it, in whole seconds.
+    """
+    import resource
+
+    signal.setitimer(signal.ITIMER_PROF, limits.cpu_seconds, AGAIN)
+    whole = math.ceil(time.process_time() + limits.cpu_seconds)
+    _keep(resource.RLIMIT_CPU, whole, whole + 1)
+
+
+def _keep(what: int, soft: int, hard: int) -> None:
+    import resource
+
+    _, most = resource.getrlimit(what)
+    if most != resource.RLIM_INFINITY:  # only the superuser can raise what is set already
+        soft, hard = min(soft, most), min(hard, most)
+    with nullcontext() if LINUX else suppress(ValueError, OSError):  # see kernel.lacking
+        resource.setrlimit(what, (soft, hard))
 
 
 def _tasks() -> int:

@@ -36,7 +36,7 @@ from ekfsim.student.sandbox.exchange import (
 from ekfsim.student.sandbox.keeper import KILLING, MOST_LEFT, TOO_MANY, descendants
 from ekfsim.student.sandbox.limits import ALONE, Limits
 
-STARTING = 60.0  # s in which Python and NumPy have started even on a busy machine
+STARTING = 120.0  # s in which Python and NumPy have started even on a busy machine
 GRACE = 0.25  # s beyond its time in which it can still say where it was
 CHUNK = 2**16
 MOST_PARTS = 64  # of what it has printed when it is not waited for
@@ -92,7 +92,7 @@ class Process:
         except BaseException:
             self.end()
             raise
-        self._left = limits.seconds
+        self._left = limits.wall_seconds
 
     def ask(self, what: str, *told: Any, kind: int = NUMBERS) -> bytes:
         """What it answers, of that kind. Raises FaultError for whatever else comes of it."""
@@ -193,10 +193,10 @@ class Process:
         limits = self._limits
         if status == TOO_MANY:
             wrong = f"started more than {limits.processes} processes"
-        elif status == 128 + signal.SIGXCPU:
+        elif status in (128 + signal.SIGXCPU, 128 + signal.SIGPROF):
             wrong = limits.too_busy
         elif status == 128 + signal.SIGKILL:
-            wrong = "was killed: by itself, or for want of memory, or for what it took of CPU"
+            wrong = "was killed: by itself, or for want of memory"
         elif status > 128:
             wrong = f"crashed: {signal.strsignal(status - 128)}"
         elif status < 0:

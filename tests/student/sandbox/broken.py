@@ -24,8 +24,10 @@ for descriptor in range(3, 30):
         os.write(descriptor, {})
     except OSError:
         pass"""
-SECONDS = 0.5  # of the limit that endless ones are given
-TOO_LONG = f"took longer than {SECONDS:g} s"
+SECONDS = 0.5  # of CPU, of the limit that endless ones are given
+WALL = 1.5  # s that sleepers are waited for
+TOO_BUSY = f"took longer than {SECONDS:g} s of CPU"
+TOO_LONG = f"was waited for longer than {WALL:g} s"
 MARKED = """\
 import struct
 frame = sys._getframe()
@@ -50,14 +52,27 @@ def mine(line: int | None, wrong: str) -> re.Pattern[str]:
 
 
 BROKEN = {  # the text, and what is told
-    "endless loop": (doing("while True: pass"), mine(6, TOO_LONG)),
+    "endless loop": (doing("while True: pass"), mine(6, TOO_BUSY)),
     "endless loop that catches all": (
         doing("while True:\n    try:\n        while True: pass\n    except BaseException: pass"),
-        mine(8, TOO_LONG),
+        mine(8, TOO_BUSY),
     ),
-    "endless loop while it is read": ("while True: pass\n", mine(1, TOO_LONG)),
+    "endless loop while it is read": ("while True: pass\n", mine(1, TOO_BUSY)),
+    "deaf to one alarm": (
+        doing("signal.signal(signal.SIGPROF, signal.SIG_IGN)\nwhile True: pass"),
+        mine(7, TOO_BUSY),
+    ),
     "deaf to alarms": (
-        doing("signal.signal(signal.SIGALRM, signal.SIG_IGN)\nwhile True: pass"),
+        doing(
+            "for name in ('PROF', 'XCPU', 'ALRM'):\n"
+            "    signal.signal(getattr(signal, f'SIG{name}'), signal.SIG_IGN)\n"
+            "while True: pass"
+        ),
+        mine(None, TOO_BUSY),
+    ),
+    "sleeps": (doing("time.sleep(60)"), mine(6, TOO_LONG)),
+    "sleeps through alarms": (
+        doing("signal.signal(signal.SIGALRM, signal.SIG_IGN)\ntime.sleep(60)"),
         mine(None, TOO_LONG),
     ),
     "stops itself": (doing("os.kill(os.getpid(), signal.SIGSTOP)"), mine(None, TOO_LONG)),

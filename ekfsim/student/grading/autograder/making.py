@@ -16,6 +16,7 @@ from ekfsim.files.packaged import PACKAGE, folder
 from ekfsim.files.results.writing import told, whole_file
 from ekfsim.student.grading.formats.gradescope import nothing_yet
 from ekfsim.student.grading.scores import checks_of
+from ekfsim.student.sandbox.limits import patience
 from ekfsim.version import VERSION
 
 PYTHON = "3.12"
@@ -49,16 +50,16 @@ def make(homework: Homework, out: Path, force: bool) -> list[str]:
 
 
 def longest(homework: Homework) -> int:
-    """Seconds that the grading of a submission may take, if each test takes all of its time."""
-    return round(len(checks_of(homework.keys)) * homework.keys.limits.seconds) + SPARE
+    """Seconds that the grading of a submission may take, if its code sleeps in each test."""
+    return round(len(checks_of(homework.keys)) * patience(homework.keys.limits.seconds)) + SPARE
 
 
 def _remarks(homework: Homework) -> Iterator[str]:
     seconds = longest(homework)
     if seconds > USUAL_SECONDS:
         yield (
-            f"a submission whose code never ends takes {seconds} s; Gradescope stops after "
-            f"{USUAL_SECONDS} s unless its settings say more (at most {MOST_SECONDS}): lower "
+            f"a submission whose code sleeps in each test takes {seconds} s; Gradescope stops "
+            f"after {USUAL_SECONDS} s unless its settings say more (at most {MOST_SECONDS}): lower "
             "limits.seconds, or raise it there"
         )
 
