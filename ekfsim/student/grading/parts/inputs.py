@@ -69,7 +69,7 @@ def graded_inputs(score: Scored, keys: InputsKeys, folder: Path) -> Scored:
             found.words.append(short(f"{in_a_line(path.name)}: {_told(error, folder)}", 300))
     got = len(found.kept if promises else found.exposed)
     what = "files that keep what they promise" if promises else "known mistakes exposed"
-    if not any(_files(folder)):
+    if not found.words:
         found.words.append("no commands file (.yaml) was handed in")
     summed = f"{what}: {got}; {wanted} {'is' if wanted == 1 else 'are'} worth all points"
     words = (summed, *found.words)
