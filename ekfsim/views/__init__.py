@@ -2,5 +2,6 @@
 
 words/      the narrative and its numbers    picture/   what matplotlib draws of a step
 terminal/   a run at the keyboard            film/      frames, GIF, MP4
-study/      what is told of many runs
+study/      what is told of many runs        student/     what is told of students' filters
+worksheet/  the narrative with gaps
 """

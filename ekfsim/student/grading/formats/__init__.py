@@ -1,6 +1,5 @@
 """Grades as files: what a grader, a spreadsheet, a platform or a build server reads.
 
-    records.py    what is kept of each submission, from which all else is made
     table.py      grades.csv
     report.py     a submission in words
     class_page.py which mistakes the class made
