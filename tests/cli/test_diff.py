@@ -123,7 +123,12 @@ First at the start: it begins with another belief than it is given.
   P_yy        1        0.01       99 σ²
   P_θθ        1  0.00761544  1.3e+02 σ²
 
+Guess: your run begins with a P of its own, not with the one that it is given.
+Read again: eq 2: at the start P is what is given: 0 where the start is known
+exactly.
 Take x and P as they are given to the class: the run begins with them.
+
+own-first-P shows at the start.
 """)
 
 

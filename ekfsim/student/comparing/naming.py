@@ -6,9 +6,20 @@ from dataclasses import dataclass, field
 
 from ekfsim.student.comparing.compare import Compared
 from ekfsim.student.comparing.difference import unit
-from ekfsim.student.mistakes.guessing import Gives, Guess, alone, fits, gives, pairs, special
+from ekfsim.student.mistakes.guessing import (
+    Gives,
+    Guess,
+    alone,
+    fits,
+    gives,
+    hidden,
+    kept,
+    pairs,
+    special,
+)
 from ekfsim.student.mistakes.known import KNOWN
 from ekfsim.student.mistakes.mistake import Mistake
+from ekfsim.student.mistakes.table.beliefs import BELIEF_KEPT, OWN_FIRST_P, OWN_FIRST_X
 
 # a search goes through the whole table; what it has found is looked for at every other step, too
 SEARCHED = 6  # differing steps at which all single mistakes are looked for, whatever is known
@@ -66,13 +77,13 @@ class Naming:
         alike = next(
             (guesses for guesses, seen in self._alike.items() if seen.first is at), frozenset()
         )
-        return self._best(alike)
+        return self._best(alike, at.step)
 
     def named(self) -> dict[Mistake, Seen]:
         """Each mistake that is believed, with the steps at which it shows."""
         found: dict[Mistake, Seen] = {}
         for alike, seen in self._alike.items():
-            for mistake in next(iter(self._best(alike)), ()):
+            for mistake in next(iter(self._best(alike, seen.first.step)), ()):
                 before = found.get(mistake)
                 found[mistake] = seen if before is None else Seen(
                     before.steps + seen.steps, before.first
@@ -87,9 +98,11 @@ class Naming:
         """The candidates that explain a step; the whole table is searched for more while few steps
         were, and where none does.
         """
-        σ = unit(step.right)
-        if step.asked.index == 0 or textbook(step, self.gives):
+        if step.asked.index == 0:
+            return [_begun(step)]
+        if textbook(step, self.gives):
             return []
+        σ = unit(step.right)
         found = [
             one for one in self._candidates if fits(one, step.asked, step.theirs, σ, self.gives)
         ]
@@ -111,21 +124,23 @@ class Naming:
         self._searches["pairs"] += 1 if together else IN_PAIRS
         return together + found
 
-    def _best(self, alike: Iterable[Guess]) -> list[Guess]:
-        """The guesses that are believed most, in the order of the table."""
+    def _best(self, alike: Iterable[Guess], step: Compared) -> list[Guess]:
+        """The guesses that are believed most, in the order of the table. Where nothing has changed
+        to the last bit nothing was calculated, whatever else would give the same numbers there.
+        """
         worth = {guess: self._worth(guess) for guess in alike}
+        best = [guess for guess in worth if worth[guess] == max(worth.values())]
+        if (BELIEF_KEPT,) in best and kept(step.asked, step.theirs):
+            return [(BELIEF_KEPT,)]
         order = {mistake: place for place, mistake in enumerate(KNOWN)}
-        return sorted(
-            (guess for guess in worth if worth[guess] == max(worth.values())),
-            key=lambda guess: [order[mistake] for mistake in guess],
-        )
+        return sorted(best, key=lambda guess: [order[mistake] for mistake in guess])
 
     def _worth(self, guess: Guess) -> tuple[bool, float]:
         """Whether nothing speaks against a guess, and how many steps speak for it; for one that
         fits itself to each of them, half as many.
         """
         silent = all(
-            fits((mistake,), one.asked, one.theirs, unit(one.right), self.gives)
+            hidden(mistake, one.asked, one.theirs, unit(one.right), self.gives)
             for mistake in guess
             for one in self._witnesses
             if mistake.where(one.asked)
@@ -140,6 +155,14 @@ class Naming:
             for alike, seen in self._alike.items()
             if any(mistake in guess for guess in alike)
         )
+
+
+def _begun(step: Compared) -> Guess:
+    """What is wrong with the belief that a run begins with: x, P, or both."""
+    in_P = {one.entry.startswith("P_") for one in step.differences}
+    return tuple(
+        mistake for mistake, of_P in ((OWN_FIRST_X, False), (OWN_FIRST_P, True)) if of_P in in_P
+    )
 
 
 def textbook(step: Compared, gives: Gives = gives) -> bool:

@@ -47,6 +47,15 @@ def guesses(asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> 
     return found if special(found) else pairs(asked, theirs, unit, gives) + found
 
 
+def kept(asked: Asked, theirs: Answer) -> bool:
+    """Whether a reading has left the belief as it was, to the last bit."""
+    return (
+        isinstance(asked.given, Reading)
+        and np.array_equal(theirs.x, asked.x)
+        and np.array_equal(theirs.P, asked.P)
+    )
+
+
 def alone(asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> list[Guess]:
     """Each mistake that reproduces the numbers by itself."""
     return [(one,) for one in KNOWN if fits((one,), asked, theirs, unit, gives)]
@@ -67,6 +76,11 @@ def fits(mistakes: Guess, asked: Asked, theirs: Answer, unit: Array, gives: Give
             asked, theirs, unit, gives,
         )
     )  # fmt: skip
+
+
+def hidden(mistake: Mistake, asked: Asked, theirs: Answer, unit: Array, gives: Gives) -> bool:
+    """Whether a step has these numbers with the mistake, too, however it is made."""
+    return any(gives(asked, (way,), theirs, unit) for way in mistake.ways)
 
 
 def pairs(asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> list[Guess]:

@@ -114,7 +114,8 @@ def _guesses(found: Found, sides: Sides) -> str:
     assert found.first is not None
     if found.first.step.asked.index == 0:
         given = "the world tells them" if sides.printed else "they are given to the class"
-        return f"Take x and P as {given}: the run begins with them."
+        lines = [f"Guess: {_told(guess, sides)}" for guess in found.guesses]
+        return "\n".join([*lines, f"Take x and P as {given}: the run begins with them."])
     if found.textbook:
         return (
             "These are an EKF's numbers, with the equations of motion and sensor as they are "

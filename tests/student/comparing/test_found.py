@@ -7,6 +7,7 @@ import pytest
 from scenes import scene
 from two_functions import compared, predict, update
 
+from ekfsim import load_scene
 from ekfsim.commands import Move, Sense
 from ekfsim.student.comparing.found import found
 from ekfsim.student.fault import FaultError
@@ -92,7 +93,7 @@ def test_what_is_right_elsewhere_speaks_against_a_guess():
 def test_what_nobody_knows_stays_without_a_name():
     def strange(x, P, z, sensor):
         x, P = update(x, P, z, sensor)
-        return x, 1.0123 * P
+        return x, P + 0.0123 * P.max()
 
     result = of(2, update=strange)
     assert (result.guesses, result.named) == ((), {})
@@ -138,3 +139,10 @@ def test_the_first_difference_is_that_of_the_first_run(runs):
     result = of(runs, update=other_way)
     assert (result.first.run, result.first.step.asked.index) == (0, 2)
     assert counted(result) == {"innovation-sign": 10 * runs}
+
+
+@pytest.mark.parametrize("name", ["proof-two-beams", "tour"])
+def test_an_update_that_does_nothing_is_told_before_what_comes_to_the_same(name):
+    result = of(made=load_scene(name), update=lambda x, P, z, sensor: (x, P))
+    assert names(result.guesses) == [("reading-refused",)]
+    assert counted(result) == {"reading-refused": result.differing}

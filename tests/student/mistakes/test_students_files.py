@@ -5,7 +5,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from textbook import FORMS, MISTAKES, OF_OTHERS, ONE_AFTER_THE_OTHER, written, written_for_others
+from textbook import (
+    BY_LARGE_DIFFERENCES,
+    FORMS,
+    MISTAKES,
+    OF_OTHERS,
+    ONE_AFTER_THE_OTHER,
+    SPELT_OTHERWISE,
+    written,
+    written_for_others,
+)
 
 from ekfsim import load_scene
 from ekfsim.localization import filter_of, first_belief
@@ -110,6 +119,13 @@ def test_a_mistake_in_a_file_is_named(name):
     assert differing
     for step in differing:
         assert (name,) in named(step)
+
+
+@pytest.mark.parametrize("spelt", [*SPELT_OTHERWISE, *BY_LARGE_DIFFERENCES], ids=lambda one: one[0])
+def test_it_is_named_however_it_is_written(spelt):
+    name, *changes = spelt
+    steps = compared(written(*changes), load_scene(ELSEWHERE.get(name, "tour")))
+    assert (name,) in named(next(step for step in steps if step.differences))
 
 
 @pytest.mark.parametrize(("name", "where"), OF_OTHERS)

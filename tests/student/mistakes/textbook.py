@@ -117,6 +117,7 @@ MISTAKES = {
     "J_x-signs": (JX, JX.replace("-d", "d").replace("1, d", "1, -d")),
     "J_x-identity": (JX, "np.eye(3)"),
     "J_x-exchanged": (JX, "[[1, 0, -d * c], [0, 1, d * s], [0, 0, 1]]"),
+    "J_x-of-its-own": (JX, "[[1, 0, -0.9 * d * s], [0, 1, 1.2 * d * c], [0, 0, 1]]"),
     "J_x-without-d": (JX, "[[1, 0, -s], [0, 1, c], [0, 0, 1]]"),
     "J_x-without-ones": (JX, "[[0, 0, -d * s], [0, 0, d * c], [0, 0, 0]]"),
     "J_x-transposed": (SPREAD, "spread = Jx.T @ P @ Jx"),
@@ -139,6 +140,7 @@ MISTAKES = {
     "P_u-of-its-own": (PU, "np.diag([0.03**2, 0.01])"),
     "diagonal-of-its-own": (SUM, SUM + " + np.diag([0.01, 0.02, 0.003])"),
     "P-inflated": (SUM, SUM + " + 0.01 * np.eye(3)"),
+    "P-scaled": (SUM, "P = 1.05 * (spread + noise)"),
     "no-noise": (SUM, "P = spread"),
     "P-not-predicted": (SUM, ""),
     "P-forgotten": (SUM, "P = noise"),
@@ -172,6 +174,7 @@ MISTAKES = {
     "J_H-exchanged": (ROW, "[[hy, hx, ht]]"),
     "J_H-of-a-point": (ROW, "[[-np.cos(x[2] + sensor.bearing), -np.sin(x[2] + sensor.bearing), 0]]"),
     "J_H-without-slant": (ROW, "[[hx, hy, ht]] / np.sqrt(hx**2 + hy**2)"),
+    "J_H-of-its-own": (ROW, "[[1.1 * hx, 0.9 * hy, ht + 0.1]]"),
     "J_H-in-degrees": (ROW, "[[hx, hy, ht * np.pi / 180]]"),
     "sigma-in-C_v": (R, "R = sensor.range_ratio * r"),
     "C_v-of-the-reading": (R, R.replace("* r)", "* z)")),
@@ -257,6 +260,33 @@ MISTAKES = {
         DA, "global fresh\n    x, fresh = (np.zeros(3) if fresh else x), False\n    " + DA),
 }  # fmt: skip
 
+
+SPELT_OTHERWISE = (  # mistakes of the table, written in another way
+    ("wall-behind", HITS, HITS.replace("r > 0 and ", "")),
+    ("wall-behind", HITS, HITS.replace("r > 0 and ", ""), MIN,
+        "r, hx, hy, ht = min(hits, key=lambda hit: abs(hit[0]))\n    return abs(r), hx, hy, ht * np.sign(r)"),
+    ("J_x-exchanged", JX, "[[1, 0, d * c], [0, 1, -d * s], [0, 0, 1]]"),
+    ("J_x-exchanged", JX, "[[1, 0, d * c], [0, 1, d * s], [0, 0, 1]]"),
+    ("sigma-in-P_u", PU, "np.diag([sd, sa])"),
+    ("sigma-in-P_u", PU, "np.diag([sd**2, abs(sa)])"),
+    ("P_u-ratio-not-squared", PU, "np.diag([sd**2, motion.angle_ratio * a**2])"),
+    ("J_H-of-a-point", ROW, "[[-np.cos(x[2] + sensor.bearing), -np.sin(x[2] + sensor.bearing), ht]]"),
+    ("degrees-in-f", NEW, NEW.replace("x[2] + a", "np.degrees(x[2] + a)")),
+    ("P-scaled", SPREAD, "spread = 1.02 * Jx @ P @ Jx.T"),
+    ("own-first-P", "before = first = None\n\n\ndef predict", "before = first = None\nfresh = True\n\n\ndef predict",
+        DA, "global fresh\n    P, fresh = (np.eye(3) / 100 if fresh else P), False\n    " + DA),
+    ("iterated-update", P, "new = x\n"
+        "    for _ in range(3):\n"
+        "        h, *H = meet(new, sensor.bearing, sensor.walls, z)\n"
+        "        H = np.array([H])\n"
+        "        K = P @ H.T / ((H @ P @ H.T)[0, 0] + (sensor.range_ratio * h) ** 2)\n"
+        "        new = x + K[:, 0] * (z - h - H[0] @ (x - new))\n    " + P),
+)  # fmt: skip
+# of many other numbers in J_H and J_x: derivatives by differences that are too large
+BY_LARGE_DIFFERENCES = (
+    ("J_x-of-its-own", JX, "[[1, 0, d * (np.cos(th + 0.02) - c) / 0.02], [0, 1, d * (np.sin(th + 0.02) - s) / 0.02], [0, 0, 1]]"),
+    ("J_H-of-its-own", ROW, "[[(meet(x + e, sensor.bearing, sensor.walls, z)[0] - r) / 0.02 for e in 0.02 * np.eye(3)]]"),
+)  # fmt: skip
 
 # the same equations, written otherwise
 FORMS = {

@@ -30,6 +30,7 @@ class Crossed(NamedTuple):
 
 Heading = Callable[[float, float], float]  # of the beam, from θ and the bearing
 Choice = Callable[[Crossed, Working], int]  # of the wall that is met
+Length = Callable[[float], float]  # what is made of its distance
 
 
 class Seen(NamedTuple):
@@ -47,15 +48,16 @@ def _first_wall(crossed: Crossed, _: Working) -> int:
     return crossed.first(crossed.on & (crossed.r >= 0))
 
 
-def _look(s: Working, x: Array, heading: Heading, choice: Choice) -> Seen:
+def _look(s: Working, x: Array, heading: Heading, choice: Choice, length: Length) -> Seen:
     """Follow a beam from x as textbooks do: the lines of all walls, and one of the crossings."""
     seen: Seen = s.model.once(
-        (heading, choice, x.tobytes(), s.z.tobytes()), lambda: _follow(s, x, heading, choice)
+        (heading, choice, length, x.tobytes(), s.z.tobytes()),
+        lambda: _follow(s, x, heading, choice, length),
     )
     return seen
 
 
-def _follow(s: Working, x: Array, heading: Heading, choice: Choice) -> Seen:
+def _follow(s: Working, x: Array, heading: Heading, choice: Choice, length: Length) -> Seen:
     walls = s.laser.walls
     a, b = walls.segments[:, 0], walls.segments[:, 1]
     along = heading(x[2], s.laser.bearing)
@@ -67,17 +69,19 @@ def _follow(s: Working, x: Array, heading: Heading, choice: Choice) -> Seen:
     on = (share >= -AT_AN_END) & (share <= 1 + AT_AN_END)
     is_boundary = np.array([name == BOUNDARY for name in walls.names])[walls.polygon]
     i = choice(Crossed(r, on, np.abs(n_a), is_boundary), s)
-    n = walls.normals[i]
-    turned = r[i] * (n @ np.array([-d[1], d[0]]))
-    return Seen(float(r[i]), -np.array([n[0], n[1], turned]) / n_d[i])
+    n, far = walls.normals[i], length(float(r[i]))
+    turned = far * (n @ np.array([-d[1], d[0]]))
+    return Seen(far, -np.array([n[0], n[1], turned]) / n_d[i])
 
 
-def ways_to(heading: Heading = _straight, choice: Choice = _first_wall) -> tuple[Pieces, ...]:
+def ways_to(
+    heading: Heading = _straight, choice: Choice = _first_wall, length: Length = float
+) -> tuple[Pieces, ...]:
     """Ways to look at another wall: h and all that follows from it; h with J_H or with C_v from it;
     h alone.
     """
-    h: Piece = lambda s, _: np.array([_look(s, s.x_h, heading, choice).r])  # noqa: E731
-    H: Piece = lambda s, _: _look(s, s.x_H, heading, choice).slope[None]  # noqa: E731
+    h: Piece = lambda s, _: np.array([_look(s, s.x_h, heading, choice, length).r])  # noqa: E731
+    H: Piece = lambda s, _: _look(s, s.x_H, heading, choice, length).slope[None]  # noqa: E731
     R: Piece = lambda s, _: np.diag((s.laser.range_ratio * s.h) ** 2)  # noqa: E731
     return {"h": h, "H": H, "R": R}, {"h": h}, {"h": h, "H": H}, {"h": h, "R": R}
 
@@ -96,6 +100,10 @@ def _listed_last(crossed: Crossed, _: Working) -> int:
 
 def _either_way(crossed: Crossed, _: Working) -> int:
     return int(np.argmin(np.where(crossed.on, np.abs(crossed.r), np.inf)))
+
+
+def _rearmost(crossed: Crossed, _: Working) -> int:
+    return crossed.first(crossed.on)
 
 
 def _nearest_line(crossed: Crossed, _: Working) -> int:
@@ -207,10 +215,16 @@ OF_BEAMS = (
     ),
     Mistake(
         "wall-behind",
-        "your beam looks backwards as well: it meets a wall behind the robot that is nearer",
+        "your beam looks backwards as well: it meets a wall behind the robot",
         "eq 8: h is the distance to the first wall ahead, r ≥ 0",
         beams,
-        ways_to(choice=_either_way),
+        (
+            *ways_to(choice=_either_way)[:1],
+            *ways_to(choice=_rearmost)[:1],
+            *ways_to(choice=_either_way, length=abs),
+            *ways_to(choice=_either_way)[1:],
+            *ways_to(choice=_rearmost)[1:],
+        ),
     ),
     Mistake(
         "nearest-line",

@@ -5,7 +5,7 @@ import numpy as np
 from ekfsim.filters.belief import Gaussian
 from ekfsim.student.mistakes.mistake import Mistake
 from ekfsim.student.mistakes.table.steps import after_a_move, everywhere, first, readings
-from ekfsim.student.mistakes.working import Working
+from ekfsim.student.mistakes.working import Piece, Working
 
 
 def _earlier(s: Working) -> Gaussian:
@@ -14,14 +14,33 @@ def _earlier(s: Working) -> Gaussian:
     return Gaussian(earlier.x, earlier.P)
 
 
+def _times_I(by: float) -> Piece:
+    return lambda s, _: by * np.eye(len(s.x))
+
+
+BELIEF_KEPT = Mistake(
+    "reading-refused",
+    "your step leaves the belief as it was: there is no update, or a gate refuses good readings",
+    "eqs 10, 12: x + K r and (I − K J_H) P; a gate refuses r² / S beyond a high quantile",
+    readings,
+    ({"mean": lambda s, _: s.x, "covariance": lambda s, _: s.P},),
+)
+OWN_FIRST_P = Mistake(
+    "own-first-P",
+    "your run begins with a P of its own, not with the one that it is given",
+    "eq 2: at the start P is what is given: 0 where the start is known exactly",
+    first,
+    tuple({"P": _times_I(by)} for by in (1.0, 0.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-6, 10.0, 1e2, 1e3)),
+)
+OWN_FIRST_X = Mistake(
+    "own-first-x",
+    "your run begins at an x of its own, not at the start that it is given",
+    "eq 4: the first estimate is the given start",
+    first,
+    ({"x": lambda s, _: np.zeros_like(s.asked.x)},),
+)
 OF_BELIEFS = (
-    Mistake(
-        "reading-refused",
-        "your step leaves the belief as it was: a gate, perhaps, refuses good readings",
-        "eqs 10, 12: a gate refuses r² / S beyond a high quantile, not below it",
-        readings,
-        ({"mean": lambda s, _: s.x, "covariance": lambda s, _: s.P},),
-    ),
+    BELIEF_KEPT,
     Mistake(
         "P-before-move",
         "your update is the one with the P of before the move: the predicted P is not used",
@@ -46,21 +65,6 @@ OF_BELIEFS = (
         everywhere,
         ({"covariance": lambda s, _: np.zeros((len(s.x), len(s.x)))},),
     ),
-    Mistake(
-        "own-first-P",
-        "your run begins with a P of its own, not with the one that it is given",
-        "eq 2: at the start P is what is given: 0 where the start is known exactly",
-        first,
-        (
-            {"P": lambda s, _: np.eye(len(s.x))},
-            {"P": lambda s, _: np.zeros((len(s.x), len(s.x)))},
-        ),
-    ),
-    Mistake(
-        "own-first-x",
-        "your run begins at an x of 0, not at the start that it is given",
-        "eq 4: the first estimate is the given start",
-        first,
-        ({"x": lambda s, _: np.zeros_like(s.asked.x)},),
-    ),
+    OWN_FIRST_P,
+    OWN_FIRST_X,
 )

@@ -39,14 +39,17 @@ def _anew(s: Working) -> tuple[Array, Array]:
     return gain_of_moments(s.P @ H.T, H @ s.P @ H.T + R), H
 
 
-def _iterated(times: int) -> dict[str, Piece]:
-    """The update whose h and J_H are taken again at the estimate that comes of it."""
+def _iterated(times: int, noise: Callable[[Working, Array], Array]) -> dict[str, Piece]:
+    """The update whose h and J_H are taken again at the estimate that comes of it.
+
+    noise : C_v at such an estimate
+    """
 
     def last(s: Working) -> tuple[Array, Array, Array]:
         x = s.x
         for _ in range(times):
             H = s.model.H(x)
-            K = gain_of_moments(s.P @ H.T, H @ s.P @ H.T + s.R)
+            K = gain_of_moments(s.P @ H.T, H @ s.P @ H.T + noise(s, x))
             at = x
             x = s.x + K @ (s.model.residual(s.z, s.model.h(at)) - H @ (s.x - at))
         return x, K, H
@@ -218,7 +221,11 @@ OF_GAINS = (
         "your update is iterated: h and J_H are taken again at the estimate that comes of it",
         "eqs 8 to 12: once for each reading; the filter iekf is the iterated one",
         readings,
-        tuple(_iterated(times) for times in (5, 2, 3, 4, 10, 20)),
+        tuple(
+            _iterated(times, noise)
+            for times in (5, 2, 3, 4, 10, 20)
+            for noise in (lambda s, _: s.R, lambda s, at: s.model.R(at))
+        ),
     ),
     Mistake(
         "P-plus",

@@ -126,10 +126,14 @@ OF_MOVES = (
     ),
     Mistake(
         "degrees-in-f",
-        "your turn a is in degrees where it is added to θ in radians",
+        "your turn a is in degrees where it is added to θ in radians, or θ is after it",
         "eq 3: θ + a, both in radians",
         move_turn,
-        ({"u_f": angle(np.degrees)}, {"u": angle(np.degrees)}),
+        (
+            {"u_f": angle(np.degrees)},
+            {"u": angle(np.degrees)},
+            {"f": _entry(2, lambda _, after: np.degrees(after))},
+        ),
     ),
     Mistake(
         "radians-twice",

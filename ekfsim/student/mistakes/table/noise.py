@@ -8,13 +8,18 @@ from ekfsim.geometry import Array
 from ekfsim.student.mistakes.mistake import Mistake
 from ekfsim.student.mistakes.table.moves import angle, command
 from ekfsim.student.mistakes.table.steps import commanded, everywhere, move_turn, moves, wandering
-from ekfsim.student.mistakes.working import Piece, Working
+from ekfsim.student.mistakes.working import Piece, Pieces, Working
 
 
 def deviations(_: Working, right: Callable[[], Array]) -> Array:
     """σ where σ² belongs."""
     M = right()
     return np.sign(M) * np.sqrt(np.abs(M))
+
+
+def _signed(s: Working, right: Callable[[], Array]) -> Array:
+    """σ where σ² belongs, with the sign of what it is a share of: ratio * a"""
+    return deviations(s, right) * np.sign(s.u_M)
 
 
 def squares(_: Working, right: Callable[[], Array]) -> Array:
@@ -28,6 +33,22 @@ def _variances(of: Callable[[float, float, float, float], tuple[float, float]]) 
     def M(s: Working, _: Callable[[], Array]) -> Array:
         d, a = s.u_M
         return np.diag(np.array(of(d, a, s.robot.distance_ratio, s.robot.angle_ratio)))
+
+    return M
+
+
+def _each_or_one(wrong: Piece) -> tuple[Pieces, ...]:
+    """P_u with wrong variances, or with a single one: of the first input, of the second."""
+    return {"M": wrong}, *({"M": _one(i, wrong)} for i in (0, 1))
+
+
+def _one(i: int, wrong: Piece) -> Piece:
+    """P_u with one wrong variance."""
+
+    def M(s: Working, right: Callable[[], Array]) -> Array:
+        P_u = np.array(right())
+        P_u[i, i] = wrong(s, right)[i, i]
+        return P_u
 
     return M
 
@@ -71,7 +92,7 @@ OF_NOISE = (
         "your P_u holds σ where σ² belongs",
         "eq 1: the diagonal of P_u holds variances, the squares of σ",
         moves,
-        ({"M": deviations},),
+        (*_each_or_one(deviations), {"M": _signed}),
     ),
     Mistake(
         "noise-without-J_u",
@@ -166,14 +187,14 @@ OF_NOISE = (
         "your P_u is the one with the ratios not squared: ratio * d²",
         "eq 1: σ_d² = (odometryDstSigmaRatio * d)^2",
         move_turn,
-        ({"M": _variances(lambda d, a, ρ_d, ρ_a: (ρ_d * d**2, ρ_a * a**2))},),
+        _each_or_one(_variances(lambda d, a, ρ_d, ρ_a: (ρ_d * d**2, ρ_a * a**2))),
     ),
     Mistake(
         "P_u-way-not-squared",
         "your P_u is the one with d and a not squared: ratio² * d",
         "eq 1: σ_d² = (odometryDstSigmaRatio * d)^2",
         move_turn,
-        ({"M": _variances(lambda d, a, ρ_d, ρ_a: (ρ_d**2 * abs(d), ρ_a**2 * abs(a)))},),
+        _each_or_one(_variances(lambda d, a, ρ_d, ρ_a: (ρ_d**2 * abs(d), ρ_a**2 * abs(a)))),
     ),
     Mistake(
         "P_u-squared-twice",

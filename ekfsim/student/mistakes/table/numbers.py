@@ -5,10 +5,12 @@ from functools import cache
 
 import numpy as np
 
+from ekfsim.filters.arithmetic.algebra import symmetric
 from ekfsim.geometry import Array
 from ekfsim.student.asked import Answer, Asked
 from ekfsim.student.mistakes.mistake import Mistake
 from ekfsim.student.mistakes.table.beams import Choice, ways_to
+from ekfsim.student.mistakes.table.slopes import bent
 from ekfsim.student.mistakes.table.steps import (
     beams,
     everywhere,
@@ -19,7 +21,7 @@ from ekfsim.student.mistakes.table.steps import (
 )
 from ekfsim.student.mistakes.working import Piece, Pieces, Working
 
-SMALL = tuple(10.0**-k for k in (2, 6, 9, 12, 3, 8, 10, 4, 1))
+SMALL = tuple(10.0**-k for k in (2, 6, 9, 12, 3, 8, 10, 4, 1, 5, 7, 15, 14, 13))
 
 
 def _instead(value: Array) -> Piece:
@@ -48,6 +50,49 @@ def _diagonals(asked: Asked, theirs: Answer) -> Iterator[Pieces]:
     added = theirs.P - s.spread
     yield {"noise": _instead(np.diag(np.diag(added)))}
     yield {"noise": _instead(s.noise + np.diag(np.diag(added - s.noise)))}
+
+
+def _bend(asked: Asked, theirs: Answer) -> Iterator[Pieces]:
+    """∂x/∂θ and ∂y/∂θ in J_x from P_xθ and P_yθ, which are linear in them."""
+    s = Working(asked)
+    F, θ = np.array(s.F), s.places[2]
+    turned = s.P @ F[θ]
+    if turned[θ] <= 0:
+        return
+    for i in s.places[:2]:
+        F[i, θ] = 0.0
+        F[i, θ] = ((theirs.P - s.noise - s.Q)[i, θ] - F[i] @ turned) / turned[θ]
+    yield {"F": _instead(F)}
+
+
+def _row(asked: Asked, theirs: Answer) -> Iterator[Pieces]:
+    """J_H from what a reading left of P: P⁻ − P = c cᵀ with c = P⁻ J_H'/√S."""
+    s = Working(asked)
+    lost, directions = np.linalg.eigh(symmetric(s.P - theirs.P))
+    if lost[-1] <= 0:
+        return
+    c = np.sqrt(lost[-1]) * directions[:, -1]
+    h = np.linalg.pinv(s.P, hermitian=True) @ c  # J_H/√S
+    if h @ c < 1:  # S − C_v is so much of S
+        H = np.sqrt(s.R[0, 0] / (1 - h @ c)) * h[None]
+        yield from ({"H": _instead(H)}, {"H": _instead(-H)})
+
+
+def _scaled(asked: Asked, theirs: Answer) -> Iterator[Pieces]:
+    """By which number all of P is multiplied, or what it was before a move."""
+    s = Working(asked)
+    yield {"covariance": _times(_ratio(theirs.P, s.covariance))}
+    if moves(asked):
+        yield {"spread": _times(_ratio(theirs.P - s.noise - s.Q, s.spread))}
+
+
+def _ratio(theirs: Array, right: Array) -> float:
+    """The number that the one is of the other, as near as may be."""
+    return float(np.vdot(theirs, right) / max(np.vdot(right, right), np.finfo(float).tiny))
+
+
+def _times(by: float) -> Piece:
+    return lambda s, right: by * right()
 
 
 def _innovation(asked: Asked, theirs: Answer) -> Iterator[Pieces]:
@@ -98,6 +143,14 @@ OF_NUMBERS = (
         _variance,
     ),
     Mistake(
+        "J_H-of-its-own",
+        "your J_H has other numbers than the derivatives of h",
+        "eq 11: the derivatives of h; hold yours against (h(x + e) − h(x − e)) / 2e, e = 1e-5",
+        of_one,
+        ({"H": lambda s, right: 1.1 * right()},),
+        _row,
+    ),
+    Mistake(
         "another-wall",
         "your h is the distance to another wall than the first one on the beam's way",
         "eq 8: h is the distance to the first wall",
@@ -114,6 +167,14 @@ OF_NUMBERS = (
         _innovation,
     ),
     Mistake(
+        "J_x-of-its-own",
+        "your J_x has other numbers than the derivatives of x and y by θ",
+        "eq 6: the derivatives by θ; hold yours against (Φ(θ + e) − Φ(θ − e)) / 2e, e = 1e-5",
+        moves,
+        ({"F": bent(1.1)},),
+        _bend,
+    ),
+    Mistake(
         "diagonal-of-its-own",
         "your P has variances of its own on its diagonal, in place of J_u P_u J_u' or besides",
         "eq 7: J_x P J_x' + J_u P_u J_u'; all noise of a move is in P_u",
@@ -128,5 +189,13 @@ OF_NUMBERS = (
         move_turn,
         ({"M": _instead(np.diag([0.01, 0.01]))},),
         _variances,
+    ),
+    Mistake(
+        "P-scaled",
+        "your P is multiplied by a number",
+        "eqs 7, 12: P grows by the noise of a move alone, and shrinks by a reading alone",
+        everywhere,
+        ({"covariance": _times(1.1)},),
+        _scaled,
     ),
 )

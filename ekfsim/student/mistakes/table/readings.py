@@ -55,6 +55,13 @@ def _of_a_point(s: Working, _: Callable[[], Array]) -> Array:
     return -np.array([[np.cos(along), np.sin(along), 0.0]])
 
 
+def _of_a_turned_point(s: Working, right: Callable[[], Array]) -> Array:
+    """The same with the right ∂h/∂θ."""
+    J = np.array(right())
+    J[0, :2] = _of_a_point(s, right)[0, :2]
+    return J
+
+
 def _unit_normal(of_theta: bool) -> Piece:
     """−n, without the division by n·d."""
 
@@ -180,7 +187,7 @@ OF_READINGS = (
         "your step is the one with the J_H of a point where the beam ends, not of a wall",
         "eq 11: the derivatives of h; beside the robot's way the beam slides along the wall",
         beams,
-        ({"H": _of_a_point},),
+        ({"H": _of_a_point}, {"H": _of_a_turned_point}),
     ),
     Mistake(
         "J_H-without-slant",

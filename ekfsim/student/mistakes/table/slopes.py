@@ -15,7 +15,7 @@ def _moved(s: Working, _: Callable[[], Array]) -> Array:
     return s.f
 
 
-def _bent(by: float, entries: Sequence[int] = (0, 1)) -> Piece:
+def bent(by: float, entries: Sequence[int] = (0, 1)) -> Piece:
     """J_x with these rows (of x and y) of its column of θ times `by`."""
 
     def F(s: Working, right: Callable[[], Array]) -> Array:
@@ -26,11 +26,15 @@ def _bent(by: float, entries: Sequence[int] = (0, 1)) -> Piece:
     return F
 
 
-def _exchanged_column(s: Working, right: Callable[[], Array]) -> Array:
-    """∂x/∂θ = −d cos θ, ∂y/∂θ = d sin θ"""
-    J, θ = right().copy(), s.x_F[2]
-    J[0, 2], J[1, 2] = -s.u_J[0] * np.cos(θ), s.u_J[0] * np.sin(θ)
-    return J
+def _exchanged_column(of_x: float, of_y: float) -> Piece:
+    """J_x with ∂x/∂θ and ∂y/∂θ exchanged, each times its sign."""
+
+    def F(s: Working, right: Callable[[], Array]) -> Array:
+        J, (x, y, θ) = np.array(right()), s.places
+        J[x, θ], J[y, θ] = of_x * J[y, θ], of_y * J[x, θ]
+        return J
+
+    return F
 
 
 def _of_unit_way(s: Working, right: Callable[[], Array]) -> Array:
@@ -90,35 +94,35 @@ OF_SLOPES = (
         "your P is the one with the other sign of ∂x/∂θ in J_x",
         "eq 6: J_x, the derivative of the first line of Φ by θ",
         moves,
-        ({"F": _bent(-1.0, [0])},),
+        ({"F": bent(-1.0, [0])},),
     ),
     Mistake(
         "J_x-sign-y",
         "your P is the one with the other sign of ∂y/∂θ in J_x",
         "eq 6: J_x, the derivative of the second line of Φ by θ",
         moves,
-        ({"F": _bent(-1.0, [1])},),
+        ({"F": bent(-1.0, [1])},),
     ),
     Mistake(
         "J_x-signs",
         "your P is the one with the other sign of both ∂x/∂θ and ∂y/∂θ in J_x",
         "eq 6: J_x, the derivatives of Φ by θ",
         moves,
-        ({"F": _bent(-1.0)},),
+        ({"F": bent(-1.0)},),
     ),
     Mistake(
         "J_x-identity",
         "your P is the one with J_x = I: the heading's uncertainty does not bend the way",
         "eq 6: J_x, the derivatives of Φ by θ",
         moves,
-        ({"F": _bent(0.0)}, {"spread": lambda s, _: s.P}),
+        ({"F": bent(0.0)}, {"spread": lambda s, _: s.P}),
     ),
     Mistake(
         "J_x-exchanged",
-        "your P is the one with sine and cosine exchanged in J_x",
+        "your P is the one with sine and cosine exchanged in J_x: ∂x/∂θ and ∂y/∂θ",
         "eq 6: ∂x/∂θ = −d sin θ, ∂y/∂θ = d cos θ",
         move_turn,
-        ({"F": _exchanged_column},),
+        tuple({"F": _exchanged_column(*signs)} for signs in ((-1, -1), (1, 1), (1, -1))),
     ),
     Mistake(
         "J_x-without-d",
