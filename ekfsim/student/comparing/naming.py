@@ -12,7 +12,6 @@ from ekfsim.student.mistakes.guessing import (
     alone,
     fits,
     gives,
-    hidden,
     kept,
     pairs,
     special,
@@ -128,19 +127,27 @@ class Naming:
         """The guesses that are believed most, in the order of the table. Where nothing has changed
         to the last bit nothing was calculated, whatever else would give the same numbers there.
         """
-        worth = {guess: self._worth(guess) for guess in alike}
+        worth = {guess: self._worth(guess) for guess in self._plain(alike)}
         best = [guess for guess in worth if worth[guess] == max(worth.values())]
         if (BELIEF_KEPT,) in best and kept(step.asked, step.theirs):
             return [(BELIEF_KEPT,)]
         order = {mistake: place for place, mistake in enumerate(KNOWN)}
         return sorted(best, key=lambda guess: [order[mistake] for mistake in guess])
 
+    def _plain(self, alike: Iterable[Guess]) -> list[Guess]:
+        """Without what fits itself to the numbers of no more steps than a plain mistake explains;
+        that may be chance where it is a single one.
+        """
+        steps = {guess: min(map(self._support, guess)) for guess in alike}
+        most = max((n for guess, n in steps.items() if special([guess])), default=0)
+        return [guess for guess, n in steps.items() if special([guess]) or n > most or most == 1]
+
     def _worth(self, guess: Guess) -> tuple[bool, float]:
         """Whether nothing speaks against a guess, and how many steps speak for it; for one that
         fits itself to each of them, half as many.
         """
         silent = all(
-            hidden(mistake, one.asked, one.theirs, unit(one.right), self.gives)
+            fits((mistake,), one.asked, one.theirs, unit(one.right), self.gives)
             for mistake in guess
             for one in self._witnesses
             if mistake.where(one.asked)

@@ -78,11 +78,6 @@ def fits(mistakes: Guess, asked: Asked, theirs: Answer, unit: Array, gives: Give
     )  # fmt: skip
 
 
-def hidden(mistake: Mistake, asked: Asked, theirs: Answer, unit: Array, gives: Gives) -> bool:
-    """Whether a step has these numbers with the mistake, too, however it is made."""
-    return any(gives(asked, (way,), theirs, unit) for way in mistake.ways)
-
-
 def pairs(asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> list[Guess]:
     """The pairs of mistakes that show in this step, each made in one of its most usual ways."""
     if not usable(asked):
