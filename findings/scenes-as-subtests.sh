@@ -73,7 +73,7 @@ for name, file in (("pytest", "class.xml"), ("junitparser", "merged.xml")):
     suite = ElementTree.parse(file).getroot().find("testsuite")
     tests, failures, cases = int(suite.get("tests")), int(suite.get("failures")), len(suite.findall("testcase"))
     reports[name] = tests, failures, cases
-    print(f"{name + ':':12s} tests {tests}, failures {failures}, tests less failures {tests - failures}; <testcase> {cases}")
+    print(f"{name + ':':12s} tests {tests}, failures {failures}, difference {tests - failures}; <testcase> {cases}")
 raise SystemExit(reports != {"pytest": (34, 12, 4), "junitparser": (4, 12, 4)} and "pytest or junitparser has changed")
 PYTHON
 venv/bin/python graded.py
