@@ -1,6 +1,6 @@
 """A run under two filters, each step from the belief that the student's code held before it."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +23,7 @@ from ekfsim.student.comparing.difference import (
     unit,
 )
 from ekfsim.student.comparing.rounding import LEAST, NONE, deviations, rounding
+from ekfsim.student.fault import FaultError
 
 NEGATIVE = 1e-9  # of a variance; so much below 0 it may be by rounding, and the square of `LEAST`
 
@@ -51,11 +52,14 @@ def compare(
     reference: Filter,
     layout: Layout = POSE,
     guard: Guard = "warn",
+    failed: Callable[[Asked, FaultError], None] | None = None,
 ) -> Iterator[Compared]:
     """Each step of a run that is handed to the student's code: one error does not hide the next.
 
-    Before them comes the start, where the code has begun with another belief than it was given. It
-    ends early where no belief is left to go on from. Raises FaultError where code fails.
+    Before them comes the start, where the code has begun with another belief than it was given.
+    failed : told of each step at which code fails. The run then goes on from what the reference
+    believes, as it does after an answer that is no belief. Without it the run ends there, and
+    raises FaultError.
     """
     begun, belief = caller.begin(first.mean.copy(), first.covariance.copy()), first
     earlier: Asked | None = None
@@ -74,19 +78,35 @@ def compare(
         try:
             found = answered(asked, caller, reference, layout, guard)
         except StepError as error:
-            raise error.at(asked.step) from error.__cause__
+            fault = error.at(asked.step)
+            if failed is None or not isinstance(fault, FaultError):
+                raise fault from error.__cause__
+            failed(asked, fault)
+            belief, earlier = _right(asked, reference)[0], None
+            continue
         if found is None:
             continue
         yield found
-        if found.unusable:
+        if not found.unusable:
+            belief, earlier = believed(found.theirs, layout), asked.as_earlier()
+        elif failed is None:
             return
-        belief, earlier = believed(found.theirs, layout), asked.as_earlier()
+        else:
+            belief, earlier = found.right, None
 
 
 def answered(
     asked: Asked, caller: Caller, reference: Filter, layout: Layout, guard: Guard
 ) -> Compared | None:
     """What both make of one entry; None for a reading that is not handed over."""
+    right, made = _right(asked, reference)
+    if isinstance(made, Correction) and not _handed_over(asked, made, guard):
+        return None
+    return compared(asked, caller.call(asked), right, made, layout)
+
+
+def _right(asked: Asked, reference: Filter) -> tuple[Gaussian, Prediction | Correction]:
+    """What the reference believes afterwards, and what it did to come to it."""
     prior = Gaussian(asked.x, asked.P)
     made: Prediction | Correction
     match asked.given:
@@ -94,9 +114,7 @@ def answered(
             right, made = reference.predict(prior, motion, u)
         case Reading(sensor, z):
             right, made = reference.update(prior, sensor, z)
-            if not _handed_over(asked, made, guard):
-                return None
-    return compared(asked, caller.call(asked), Gaussian(*right), made, layout)
+    return Gaussian(*right), made
 
 
 def compared(

@@ -36,6 +36,7 @@ class InProcess:
         What an object believes then, should it have both already.
         """
         if isinstance(self._form, Stateful):
+            self._object = None
             with self._code.home.entered():
                 try:
                     self._object = self._form.kind(x.copy(), P.copy())
@@ -60,6 +61,7 @@ class InProcess:
                 returned = self._run(step, asked.x.copy(), asked.P.copy(), value, handed)
                 return answer(returned, step, n)
             self._agree(asked)
+            self._agreed = None  # it may fail half-way
             self._run(step, value, handed)
             return self._told(asked)
         except WrongError as wrong:
@@ -79,11 +81,9 @@ class InProcess:
 
     def _agree(self, asked: Asked) -> None:
         """Set the object's belief where it is not that which is asked from."""
-        if self._agreed is None:
+        if self._object is None:
             self.begin(asked.x, asked.P)
-        assert self._agreed is not None
-        x, P = self._agreed
-        if not (np.array_equal(x, asked.x) and np.array_equal(P, asked.P)):
+        if self._agreed is None or not all(map(np.array_equal, self._agreed, (asked.x, asked.P))):
             with self._code.home.entered():
                 try:
                     self._object.x, self._object.P = asked.x.copy(), asked.P.copy()

@@ -6,6 +6,7 @@ import pytest
 
 from ekfsim.errors import InputError
 from ekfsim.records import Control
+from ekfsim.student.fault import FaultError
 from ekfsim.student.grading.parts.honesty import graded_honesty, of_reference, tally_of
 from ekfsim.student.grading.parts.jacobians import graded_jacobian, numerical_derivative
 from ekfsim.student.grading.parts.steps import graded_steps
@@ -74,14 +75,66 @@ def test_who_does_nothing_earns_nothing(asked, tmp_path, partial):
     assert score.words[-2:] == ("0 of 8 moves are right", "0 of 8 readings are right")
 
 
-def test_steps_that_are_never_reached_are_not_right(asked, tmp_path, monkeypatch):
-    """It fails at the first reading: one move of eight was right."""
+def test_who_fails_at_readings_has_half_for_the_moves(asked, tmp_path, monkeypatch):
+    """After each failure it goes on from what the reference believes."""
     monkeypatch.chdir(tmp_path)
     score = steps(asked, tmp_path, pupils.FAILS)
-    assert score.cents == 500 // 8
+    assert (score.cents, score.status) == (500, "failed")
     assert score.fault == "mine.py:25: step 2 (sense -90°): ZeroDivisionError: division by zero"
-    assert score.words[0] == f"the code failed: run 0: {score.fault}"
-    assert score.words[1:] == ("1 of 8 moves are right", "0 of 8 readings are right")
+    assert score.words == (
+        f"the code failed: run 0: {score.fault}", "it fails at 7 more steps",
+        "8 of 8 moves are right", "0 of 8 readings are right",
+    )  # fmt: skip
+
+
+def test_who_fails_once_loses_that_step_alone(asked, tmp_path):
+    lines = "    if not hasattr(update, 'asked'):\n        update.asked = True\n        1 / 0\n"
+    score = steps(asked, tmp_path, pupils.RIGHT.replace("    J = s", lines + "    J = s"))
+    assert score.words[1:] == ("8 of 8 moves are right", "7 of 8 readings are right")
+    assert score.cents == 500 + 500 * 7 // 8
+
+
+def test_after_an_answer_that_is_no_belief_it_goes_on_too(asked, tmp_path):
+    text = pupils.RIGHT.replace("(np.eye(3) - K @ J) @ P", "P - 3 * K @ J @ P")
+    score = steps(asked, tmp_path, text)
+    assert score.words[-2:] == ("8 of 8 moves are right", "0 of 8 readings are right")
+    assert score.cents == 500
+
+
+def test_an_object_that_failed_half_way_goes_on_from_the_right_belief(asked, tmp_path):
+    text = """\
+import numpy as np
+
+
+class Mine:
+    def __init__(self, x, P):
+        self.x, self.P = x, P
+
+    def predict(self, u, motion):
+        F, G = motion.F(self.x, u), motion.G(self.x, u)
+        self.x, self.P = motion.f(self.x, u), F @ self.P @ F.T + G @ motion.M(u) @ G.T
+
+    def update(self, z, sensor):
+        self.x, self.P = self.x + 1, 2 * self.P
+        raise ValueError
+"""
+    score = steps(asked, tmp_path, text)
+    assert score.words[-2:] == ("8 of 8 moves are right", "0 of 8 readings are right")
+
+
+def test_who_ends_its_process_fails_at_all_that_is_left(asked, tmp_path):
+    """As it is told by a process that has gone: again and again."""
+    homework, bench, scores = asked("steps: {scenes: [square], runs: 2}")
+    mine, calls = pupils.pupil(tmp_path, pupils.RIGHT), iter(range(10**3))
+
+    def call(asked):
+        if next(calls) > 2:
+            raise FaultError("mine.py", "ended its process with status 0")
+        return alive(asked)
+
+    alive, mine.call = mine.call, call
+    score = graded_steps(scores[0], homework.keys.parts[0].steps, bench, mine)
+    assert score.words[-2:] == ("2 of 8 moves are right", "1 of 8 readings are right")
 
 
 def test_what_is_handed_out_is_all_that_there_is(asked, tmp_path):

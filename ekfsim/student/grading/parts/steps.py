@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 from ekfsim.files.keys.homework import Partial, StepsKeys
 from ekfsim.localization import first_belief
 from ekfsim.records import Control
-from ekfsim.student.asked import Caller
+from ekfsim.student.asked import Asked, Caller
 from ekfsim.student.comparing.compare import Compared, compare
 from ekfsim.student.comparing.difference import in_sigmas
 from ekfsim.student.comparing.found import Found, found
 from ekfsim.student.comparing.naming import At
+from ekfsim.student.fault import FaultError
 from ekfsim.student.grading.bench import Bench, tells
 from ekfsim.student.grading.scores import Scored, Shown
 from ekfsim.student.mistakes.guessing import Guess
@@ -34,27 +35,39 @@ def graded_steps(score: Scored, keys: StepsKeys, bench: Bench, caller: Caller) -
     """How many steps of a scene are right, and what is wrong with the first that is not."""
     name = score.check.about
     moves, readings = Counts(), Counts()
+    faults: list[tuple[int, FaultError]] = []  # of single steps, each with its run
     runs = bench.runs(name, keys.runs)
     for run in runs:
         reached = bench.reached(name, run, keys.against)
         moves.of += reached.moves
         readings.of += reached.readings
 
+    def kind_of(asked: Asked) -> Counts:
+        return moves if isinstance(asked.given, Control) else readings
+
     def compared(run: int) -> Iterator[Compared]:
         scene = bench.scene(name, run)
         reference = bench.reference(name, run, keys.against)
         entries, first = bench.entries(name, run), first_belief(scene)
         layout, guard = scene.world.layout, scene.guard
-        for step in compare(entries, first, caller, reference, layout, guard):
-            kind = moves if isinstance(step.asked.given, Control) else readings
+
+        def failed(asked: Asked, fault: FaultError) -> None:
+            kind_of(asked).seen += 1
+            faults.append((run, fault))
+
+        for step in compare(entries, first, caller, reference, layout, guard, failed):
+            kind = kind_of(step.asked)
             if tells(step, layout):
                 kind.seen += 1
                 kind.right += not step.differences
             yield step
 
     result = found((run, compared(run)) for run in runs)
+    if faults:
+        result = replace(result, fault_run=faults[0][0], fault=faults[0][1])
     share = _share(keys.partial, result, [kind for kind in (moves, readings) if kind.of])
-    score = replace(score, words=tuple(_words(result, moves, readings, len(runs))))
+    told = _words(result, max(len(faults) - 1, 0), moves, readings, len(runs))
+    score = replace(score, words=tuple(told))
     if result.fault is not None:
         score = replace(score, fault=str(result.fault))
     if result.first is not None:
@@ -81,11 +94,18 @@ def _where(scene: str, at: At, runs: int) -> str:
     return f"{scene}{run}: {at.step.asked.step}"
 
 
-def _words(result: Found, moves: Counts, readings: Counts, runs: int) -> Iterator[str]:
-    """What is found, the first wrong number first."""
+def _words(
+    result: Found, failures: int, moves: Counts, readings: Counts, runs: int
+) -> Iterator[str]:
+    """What is found, the first fault and the first wrong number first.
+
+    failures : how many more steps fail
+    """
     if result.fault is not None:
         run = f"run {result.fault_run}: " if runs > 1 else ""
         yield f"the code failed: {run}{result.fault}"
+    if failures:
+        yield f"it fails at {failures} more step{'s' * (failures > 1)}"
     if result.first is not None:
         step = result.first.step
         most, more = step.most, len(step.differences) - 1
