@@ -188,8 +188,8 @@ def kind_told(file: Path) -> str:
     told = [kind for word, kind in WORDS.items() if word in file.stem.lower()]
     if len(told) != 1:
         raise UsageError(
-            f"{file}: a world, commands or a homework? say --kind world, --kind commands or "
-            "--kind homework"
+            f"{file}: a world, commands, a homework or a filter? say --kind world, "
+            "--kind commands, --kind homework or --kind filter"
         )
     return told[0]
 

@@ -60,6 +60,7 @@ def grade(
     from ekfsim.student.grading.formats.folder import FILES, formats_in, write_grades
     from ekfsim.student.grading.scores import checks_of
     from ekfsim.student.grading.sound import refuse_unsound
+    from ekfsim.student.grading.submissions import odd
     from ekfsim.student.grading.submissions import submissions as handed_in
     from ekfsim.student.sandbox.kernel import lacking, landlock
 
@@ -67,6 +68,7 @@ def grade(
     wanted, asked = formats_in(formats), read_homework(Path(homework))
     warn(asked.warnings)
     found = handed_in([Path(path) for path in submissions])
+    warn(odd(found))
     refuse_existing_folder(out, *FILES, force=force)
     refuse_unsound(asked)
     lacks = () if through else lacking(landlock())

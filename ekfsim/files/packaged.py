@@ -36,9 +36,12 @@ def resolve(name_or_path: str | Path, kind: Folder) -> Path:
     """The file that a path, or the bare name of a packaged file, stands for. A file that exists
     wins over a name.
 
-    Raises UsageError where it is neither.
+    Raises UsageError where it is neither, and where it is a filter.
     """
     path = Path(name_or_path)
+    if path.suffix == ".py":
+        what = "a world is" if kind == "worlds" else "commands are"
+        raise UsageError(f"{path}: {what} asked for here; a filter is named after --filter")
     known = packaged(kind)
     name = os.fspath(name_or_path)
     try:

@@ -210,8 +210,8 @@ def test_new_asks_which_kind():
         told = ekfsim("new", name)
         assert told.status == 2
         assert (
-            told.err == f"ekfsim: {name}: a world, commands or a homework? say --kind world, "
-            "--kind commands or --kind homework\n"
+            told.err == f"ekfsim: {name}: a world, commands, a homework or a filter? say "
+            "--kind world, --kind commands, --kind homework or --kind filter\n"
         )
         assert not Path(name).exists()
         assert ekfsim("new", name, "--kind", "world").status == 0

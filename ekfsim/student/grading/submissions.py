@@ -4,7 +4,8 @@ import hashlib
 import os
 import stat
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
@@ -100,6 +101,17 @@ def submissions(paths: Sequence[Path]) -> list[Submission]:
             )
         found[key] = Submission(path, name)
     return sorted(found.values(), key=lambda one: one.name)
+
+
+def odd(found: Iterable[Submission]) -> Iterator[str]:
+    """Folders of nothing but folders: each may be a class that was named as one submission."""
+    for one in found:
+        if not is_folder(one.path):
+            continue
+        with suppress(OSError), os.scandir(one.path) as entries:
+            inside = [entry.is_dir() for entry in entries]
+            if inside and all(inside):
+                yield f"{one.path}: holds folders alone; if each is a submission, name {one.path}/*"
 
 
 def safe(name: str) -> str:

@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 import ekfsim.files
+from ekfsim.errors import UsageError
 from ekfsim.files import packaged as packaged_files
 from ekfsim.files.packaged import description_of, packaged, resolve, source_name
 from ekfsim.files.scenes.check_study import check
@@ -192,6 +193,14 @@ def test_packaged_files_go_by_their_bare_names(home):
     assert resolve("room", "worlds") == home / "worlds/room.yaml"
     assert str(resolve("some/tour", "commands")) == "some/tour"
     assert str(resolve("none.yaml", "commands")) == "none.yaml"
+
+
+def test_a_filter_is_no_commands_file():
+    with pytest.raises(UsageError) as refused:
+        resolve("mine.py", "commands")
+    assert str(refused.value) == (
+        "mine.py: commands are asked for here; a filter is named after --filter"
+    )
 
 
 def test_an_installed_package_holds_its_own(home):

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ekfsim.errors import UsageError
-from ekfsim.student.grading.submissions import Submission, safe, submissions
+from ekfsim.student.grading.submissions import Submission, odd, safe, submissions
 
 
 @pytest.fixture
@@ -47,6 +47,15 @@ def test_what_cannot_be_graded_is_refused(place, names, told):
     with pytest.raises(UsageError) as refused:
         submissions(list(map(Path, names)))
     assert str(refused.value) == told
+
+
+def test_a_class_that_is_named_as_one_submission_is_odd(place):
+    for name in ("class/anna", "class/bob", "zoe/data"):
+        (place / name).mkdir(parents=True)
+    (place / "zoe/filter.py").write_text("")
+    assert list(odd(submissions([place / "class", place / "zoe"]))) == [
+        f"{place}/class: holds folders alone; if each is a submission, name {place}/class/*"
+    ]
 
 
 def test_the_filter_is_found_in_a_folder(place):
