@@ -38,6 +38,10 @@ def test_a_filter_to_start_from_says_which_equation_is_open():
     assert told.out == (
         "filter.py: a filter file to start from; ekfsim play tour --filter filter.py plays it\n"
     )
+    found = ekfsim("check", "filter.py").out.split()
+    assert " ".join(word for word in found if not word.strip(",").isdigit()) == (
+        "filter.py: ok: predict in line (still open), update in line (still open)"
+    )
     lines = Path("filter.py").read_text().splitlines(keepends=True)
     for function, equations in OPEN.items():
         for number in equations:

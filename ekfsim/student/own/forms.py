@@ -77,7 +77,9 @@ def told(form: Form) -> str:
 
 def _in_line(step: str, function: Any) -> str:
     _, _, line = where(function).rpartition(":")
-    return f"{step} in line {line}" if line else step
+    code = getattr(function, "__code__", None)
+    left = " (still open)" if "NotImplementedError" in getattr(code, "co_names", ()) else ""
+    return f"{step} in line {line}{left}" if line else f"{step}{left}"
 
 
 def _named(module: ModuleType, name: str, told: str) -> Form:
