@@ -62,10 +62,15 @@ def advance(
 
 def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
     """Localize in a scene: every Step of its run, or of N runs side by side. runs : (N,)"""
-    happened = simulate(scene, runs) if scene.log is None else scene.log.entries
-    entries = system_of(scene.world.system).entries(happened, scene.reading)
     belief = first_belief(scene, np.shape(scene.run if runs is None else runs))
+    entries = entries_of(scene, runs)
     return localize(entries, filter_of(scene, runs), belief, scene.guard, scene.world.layout)
+
+
+def entries_of(scene: Scene, runs: Integers | None = None) -> Iterable[Entry]:
+    """What happens in a scene, simulated or recorded, as its system gives it to a filter."""
+    happened = simulate(scene, runs) if scene.log is None else scene.log.entries
+    return system_of(scene.world.system).entries(happened, scene.reading)
 
 
 def first_belief(scene: Scene, axes: tuple[int, ...] = ()) -> Gaussian:

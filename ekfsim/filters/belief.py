@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple, Protocol
 
+import numpy as np
+
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.layout import Layout
 
@@ -94,3 +96,9 @@ class Correction:
     settled: Booleans | bool = True  # (…) whether the search of an iterated filter came to rest
     # `predicted` is that of a tangent drawn elsewhere than at x⁻: it meets nothing of the map
     tangent: bool = False
+
+    @property
+    def used(self) -> Booleans:
+        """(…) whether the reading could change the belief: not refused, and S is not 0."""
+        used: Booleans = (self.refused == Refused.NOT) & ~np.isnan(self.nis)
+        return used

@@ -1,9 +1,10 @@
 """One call of a filter: what it is asked, from which belief; and who answers."""
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, Self
 
 from ekfsim.commands import Plain
+from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array
 from ekfsim.records import Control, Entry, Reading, called
 
@@ -20,6 +21,14 @@ class Asked:
     index: int = 0  # of the entry, from 1; 0 at the start, where only the belief is asked for
     earlier: "Asked | None" = None  # the call before, of the same run: `as_earlier`
     t: float | None = None  # s, in drives and recorded logs
+
+    @classmethod
+    def at(
+        cls, entry: Entry, belief: Gaussian, headings: tuple[int, ...], earlier: "Asked | None"
+    ) -> Self:
+        """What is asked at an entry at which something is given."""
+        assert entry.given is not None
+        return cls(*belief, entry.given, headings, entry.command, entry.index, earlier, entry.t)
 
     def as_earlier(self) -> "Asked":
         """What the next call looks back at: what was asked, and before it what readings followed

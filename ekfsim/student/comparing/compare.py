@@ -8,10 +8,10 @@ import numpy as np
 from ekfsim.diagnostics.ambiguity import remark
 from ekfsim.errors import StepError
 from ekfsim.filters.arithmetic.algebra import symmetric, wrapped
-from ekfsim.filters.belief import Correction, Gaussian, Prediction, Refused
+from ekfsim.filters.belief import Correction, Gaussian, Prediction
 from ekfsim.filters.protocol import Filter
 from ekfsim.models.layout import POSE, Layout
-from ekfsim.records import Control, Entry, Reading
+from ekfsim.records import Entry, Reading
 from ekfsim.scene import Guard
 from ekfsim.student.asked import Answer, Asked, Caller
 from ekfsim.student.comparing.difference import (
@@ -22,6 +22,7 @@ from ekfsim.student.comparing.difference import (
     symbols,
     unit,
 )
+from ekfsim.student.comparing.reference import made_by
 from ekfsim.student.comparing.rounding import LEAST, NONE, deviations, rounding
 from ekfsim.student.fault import FaultError
 
@@ -66,9 +67,7 @@ def compare(
     for entry in entries:
         if entry.given is None:
             continue
-        asked = Asked(
-            *belief, entry.given, layout.headings, entry.command, entry.index, earlier, entry.t
-        )
+        asked = Asked.at(entry, belief, layout.headings, earlier)
         if begun is not None:
             start, begun = _started(replace(asked, command=None, index=0), begun, layout), None
             if start.differences:
@@ -82,7 +81,7 @@ def compare(
             if failed is None or not isinstance(fault, FaultError):
                 raise fault from error.__cause__
             failed(asked, fault)
-            belief, earlier = _right(asked, reference)[0], None
+            belief, earlier = made_by(reference, asked)[0], None
             continue
         if found is None:
             continue
@@ -98,23 +97,13 @@ def compare(
 def answered(
     asked: Asked, caller: Caller, reference: Filter, layout: Layout, guard: Guard
 ) -> Compared | None:
-    """What both make of one entry; None for a reading that is not handed over."""
-    right, made = _right(asked, reference)
-    if isinstance(made, Correction) and not _handed_over(asked, made, guard):
+    """What both make of one entry; None for a reading that is not handed over: one without an echo,
+    without a wall, refused, or with nothing to tell.
+    """
+    right, made = made_by(reference, asked)
+    if isinstance(made, Correction) and not (made.used and _passes(asked, guard)):
         return None
     return compared(asked, caller.call(asked), right, made, layout)
-
-
-def _right(asked: Asked, reference: Filter) -> tuple[Gaussian, Prediction | Correction]:
-    """What the reference believes afterwards, and what it did to come to it."""
-    prior = Gaussian(asked.x, asked.P)
-    made: Prediction | Correction
-    match asked.given:
-        case Control(motion, u):
-            right, made = reference.predict(prior, motion, u)
-        case Reading(sensor, z):
-            right, made = reference.update(prior, sensor, z)
-    return Gaussian(*right), made
 
 
 def compared(
@@ -142,15 +131,10 @@ def _started(asked: Asked, begun: Answer, layout: Layout) -> Compared:
     return compared(asked, begun, Gaussian(asked.x, asked.P), None, layout)
 
 
-def _handed_over(asked: Asked, made: Correction, guard: Guard) -> bool:
-    """Whether a reading reaches the student's code: it has an echo, a wall, no reason to be
-    refused, and something to tell.
-    """
-    if made.refused != Refused.NOT or np.isnan(made.nis):
-        return False
-    if guard != "skip":
+def _passes(asked: Asked, guard: Guard) -> bool:
+    """Whether the guard lets a reading through."""
+    if guard != "skip" or not isinstance(asked.given, Reading):
         return True
-    assert isinstance(asked.given, Reading)
     told = remark(asked.given.sensor, asked.x, asked.P)
     return told is None or not told.ambiguous
 

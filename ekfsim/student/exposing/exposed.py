@@ -4,10 +4,8 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ekfsim.commands import Command, Move, Sense
-from ekfsim.filters.belief import Refused
+from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.tuning import UNTUNED
 from ekfsim.localization import filter_of, play
 from ekfsim.records import Step
@@ -16,7 +14,7 @@ from ekfsim.student.asked import Asked
 from ekfsim.student.comparing.compare import Compared, answered
 from ekfsim.student.mistakes.known import KNOWN
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.mutant import mutant
+from ekfsim.student.mistakes.mutant import Mutant
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +39,7 @@ def exposed(scene: Scene, mistakes: Sequence[Mistake] = KNOWN) -> tuple[Exposed,
     for step, asked in handed_over(play(played)):
         left = [one for one in found.values() if one.first is None and one.mistake.where(asked)]
         for one in left:
-            told = answered(asked, mutant(one.mistake), reference, step.layout, played.guard)
+            told = answered(asked, Mutant(one.mistake), reference, step.layout, played.guard)
             shows = told if told is not None and told.differences else None
             found[one.mistake] = Exposed(one.mistake, True, shows)
         if all(one.first is not None for one in found.values()):
@@ -76,12 +74,8 @@ def handed_over(steps: Iterable[Step]) -> Iterator[tuple[Step, Asked]]:
     earlier: Asked | None = None
     for step in steps:
         given, c = step.entry.given, step.correction
-        if given is None or (c is not None and (c.refused != Refused.NOT or np.isnan(c.nis))):
+        if given is None or (c is not None and not c.used):
             continue
-        x, P = step.prior
-        asked = Asked(
-            x, P, given, step.layout.headings, step.entry.command, step.entry.index, earlier,
-            step.entry.t,
-        )  # fmt: skip
+        asked = Asked.at(step.entry, Gaussian(*step.prior), step.layout.headings, earlier)
         yield step, asked
         earlier = asked.as_earlier()

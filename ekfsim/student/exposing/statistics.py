@@ -10,22 +10,20 @@ from dataclasses import replace
 import numpy as np
 
 from ekfsim.diagnostics.nees import nees
-from ekfsim.filters.belief import Gaussian, Refused
+from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Booleans, Integers
-from ekfsim.localization import advance, filter_of, first_belief
+from ekfsim.localization import advance, entries_of, filter_of, first_belief
 from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
-from ekfsim.simulation import simulate
 from ekfsim.student.asked import Asked
 from ekfsim.student.comparing.compare import believed
 from ekfsim.student.exposing.exposed import of_the_textbook
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.mutant import mutant
+from ekfsim.student.mistakes.mutant import Mutant
 from ekfsim.study.block import Watched, follow, instants, length_of, run_block, steps_told
 from ekfsim.study.plan import Case
 from ekfsim.study.results import Result
 from ekfsim.study.verdict import Verdict, Word
-from ekfsim.systems import system_of
 
 
 def without_mistake(scene: Scene, runs: int) -> Result:
@@ -54,19 +52,16 @@ def seen(result: Result) -> str:
 
 def _steps(scene: Scene, mistake: Mistake, numbers: Integers) -> Iterator[Step]:
     """The steps of N runs side by side under a filter with a mistake. numbers : (N,)"""
-    reference, wrong, layout = filter_of(scene, numbers), mutant(mistake), scene.world.layout
+    reference, wrong, layout = filter_of(scene, numbers), Mutant(mistake), scene.world.layout
     belief, earlier = first_belief(scene, numbers.shape), dict[int, Asked]()
-    happened = simulate(scene, numbers)
-    for entry in system_of(scene.world.system).entries(happened, scene.reading):
+    for entry in entries_of(scene, numbers):
         step = advance(reference, belief, entry, scene.guard, layout)
         x, P = step.posterior  # what is right, and stays so where the mistake cannot be made
         posterior = Gaussian(x.copy(), P.copy())
         for run in np.flatnonzero(_handed_over(step, numbers)).tolist():
-            given = _of_run(entry.given, run, numbers)
-            asked = Asked(
-                belief.mean[run], belief.covariance[run], given, layout.headings, entry.command,
-                entry.index, earlier.get(run), entry.t,
-            )  # fmt: skip
+            own = replace(entry, given=_of_run(entry.given, run, numbers))
+            before = Gaussian(belief.mean[run], belief.covariance[run])
+            asked = Asked.at(own, before, layout.headings, earlier.get(run))
             earlier[run] = asked.as_earlier()
             if mistake.where(asked):
                 believes = believed(wrong.call(asked), layout)
@@ -81,8 +76,7 @@ def _handed_over(step: Step, numbers: Integers) -> Booleans:
     c = step.correction
     if c is None:
         return np.full(numbers.shape, step.entry.given is not None)
-    used: Booleans = (c.refused == Refused.NOT) & ~np.isnan(c.nis)
-    return np.broadcast_to(used, numbers.shape)
+    return np.broadcast_to(c.used, numbers.shape)
 
 
 def _of_run(given: Control | Reading | None, run: int, numbers: Integers) -> Control | Reading:

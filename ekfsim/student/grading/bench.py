@@ -7,20 +7,16 @@ came first.
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-import numpy as np
-
 from ekfsim.files.homework import Homework
-from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.protocol import Filter
-from ekfsim.localization import filter_of, first_belief
+from ekfsim.localization import entries_of, filter_of, first_belief
 from ekfsim.models.layout import Layout
-from ekfsim.records import Control, Entry, Reading
+from ekfsim.records import Control, Entry
 from ekfsim.scene import Scene
-from ekfsim.simulation import simulate
-from ekfsim.student.asked import Answer, Asked
+from ekfsim.student.asked import Answer
 from ekfsim.student.comparing.compare import Compared, compare
 from ekfsim.student.comparing.difference import DIFFERENT, sizes
-from ekfsim.systems import system_of
+from ekfsim.student.comparing.reference import Around
 
 MOST_KEPT = 100_000  # entries
 
@@ -51,10 +47,7 @@ class Bench:
         if (name, run) not in self._entries:
             if sum(map(len, self._entries.values())) > MOST_KEPT:
                 self._entries.clear()
-            scene = self.scene(name, run)
-            happened = simulate(scene) if scene.log is None else scene.log.entries
-            given = system_of(scene.world.system).entries(happened, scene.reading)
-            self._entries[name, run] = tuple(given)
+            self._entries[name, run] = tuple(entries_of(self.scene(name, run)))
         return self._entries[name, run]
 
     def runs(self, name: str, asked_for: int) -> range:
@@ -69,8 +62,8 @@ class Bench:
         """The reference in the place of a student's filter: every step in which that is asked."""
         reference, scene = self.reference(name, run, filter), self.scene(name, run)
         entries, layout = self.entries(name, run), scene.world.layout
-        caller = AsCaller(reference)
-        return list(compare(entries, first_belief(scene), caller, reference, layout, scene.guard))
+        first, caller = first_belief(scene), Around(reference)
+        return list(compare(entries, first, caller, reference, layout, scene.guard))
 
     def reached(self, name: str, run: int, filter: str) -> Reached:
         """In how many steps of a run the reference changes its belief."""
@@ -91,27 +84,3 @@ def tells(step: Compared, layout: Layout) -> bool:
     before = Answer(step.asked.x.copy(), step.asked.P)
     changes = (float(size.max()) > DIFFERENT for size in sizes(before, step.right, layout))
     return bool(step.differences) or any(changes)
-
-
-@dataclass(frozen=True)
-class AsCaller:
-    """A filter of ours that is called as a student's is."""
-
-    filter: Filter
-
-    def begin(self, x: object, P: object) -> None:
-        """It keeps nothing."""
-
-    def call(self, asked: Asked) -> Answer:
-        """Its step."""
-        belief = Gaussian(asked.x, asked.P)
-        match asked.given:
-            case Control(motion, u):
-                after, _ = self.filter.predict(belief, motion, u)
-            case Reading(sensor, z):
-                after, _ = self.filter.update(belief, sensor, z)
-        return Answer(np.array(after.mean), np.array(Gaussian(*after).covariance))
-
-    def place_of(self, given: Control | Reading) -> str:
-        """Of no interest."""
-        return ""

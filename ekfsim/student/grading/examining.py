@@ -46,7 +46,7 @@ class Examiner:
         try:
             return self._examined(score, submission)
         except FaultError as fault:  # of a kind that no part expects
-            return replace(score, words=(str(fault),), fault=str(fault)).earned(0.0)
+            return score.failed(str(fault), str(fault))
         except MemoryError:
             return score.lost("not judged: the grader had too little memory")
         except (EkfsimError, Exception) as error:
@@ -62,10 +62,10 @@ class Examiner:
                     return graded_inputs(score, part.inputs, submission.path)
             except TimeoutError:
                 told = f"the files take longer than {seconds:g} s of CPU to read and to play"
-                return replace(score, words=(told,), fault=told).earned(0.0)
+                return score.failed(told, told)
         file, missing = submission.filter(self.homework.keys.filter)
         if missing:
-            return replace(score, words=(missing,), fault=missing).earned(0.0)
+            return score.failed(missing, missing)
         with self._sandboxed(submission, file) as pupil:
             if part.steps is not None:
                 score = graded_steps(score, part.steps, self.bench, pupil)

@@ -108,6 +108,10 @@ class Scored:
         cents = self.check.cents if share == 1 else math.floor(self.check.cents * share + 1e-9)
         return replace(self, status="passed" if share == 1 else "failed", cents=cents)
 
+    def failed(self, told: str, fault: str) -> Self:
+        """The same where the student's code or files failed: no points, and why."""
+        return replace(self, words=(told,), fault=fault).earned(0.0)
+
     def lost(self, why: str) -> Self:
         """The same where the grader itself failed: no points, and not the student's failure."""
         return replace(self, status=NOT_RUN, cents=0, words=(why,))

@@ -26,8 +26,3 @@ class Mutant:
     def place_of(self, given: Control | Reading) -> str:
         """No file."""
         return self.mistake.name
-
-
-def mutant(mistake: Mistake) -> Mutant:
-    """The filter with that mistake alone."""
-    return Mutant(mistake)

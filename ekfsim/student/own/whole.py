@@ -1,5 +1,6 @@
 """A class of one's own of the full protocol of filters: called as it is, and looked after."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
@@ -47,7 +48,7 @@ class WholeFilter:
         returned = self._run("predict", self.filter.predict, belief, motion, u)
         after, told = self._two("predict", returned, Prediction, "Prediction(F, G)")
         shapes = {"F": "nn", "G": "nm"}
-        self._refuse_misshapen("predict", told, shapes, belief.mean, m=len(motion.inputs))
+        self._refuse_misshapen("predict", told, shapes, belief.mean, {"m": len(motion.inputs)})
         return self._believed("predict", belief, after, Control(motion, u)), told
 
     def update(
@@ -57,7 +58,7 @@ class WholeFilter:
         returned = self._run("update", self.filter.update, prior, sensor, z, skip)
         fields = ", ".join(SHAPES)
         after, told = self._two("update", returned, Correction, f"Correction({fields})")
-        self._refuse_misshapen("update", told, SHAPES, prior.mean, k=len(sensor.outputs))
+        self._refuse_misshapen("update", told, SHAPES, prior.mean, {"k": len(sensor.outputs)})
         return self._believed("update", prior, after, Reading(sensor, z)), told
 
     def _run(self, step: str, function: Any, *args: Any) -> Any:
@@ -77,10 +78,11 @@ class WholeFilter:
         raise FaultError(self._place(step), wrong)
 
     def _refuse_misshapen(
-        self, step: str, told: Any, shapes: dict[str, str], x: Array, **sizes: int
+        self, step: str, told: Any, shapes: Mapping[str, str], x: Array, lengths: Mapping[str, int]
     ) -> None:
         """Raise FaultError where what is told of a step is of another shape than the protocol's."""
-        *axes, sizes["n"] = x.shape
+        *axes, n = x.shape
+        sizes = {"n": n, **lengths}
         for name, letters in shapes.items():
             value, shape = getattr(told, name), (*axes, *(sizes[letter] for letter in letters))
             if np.shape(value) != shape or np.asarray(value).dtype.kind not in "iuf":

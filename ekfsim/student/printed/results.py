@@ -50,17 +50,17 @@ def results(table: Table, given: Sequence[int], expected: Mapping[int, Gaussian]
         remarks.append(f"{table.file}: P is read as of m and degrees")
     missing = [index for index in given if index not in rows]
     if missing:
-        remarks.append(f"{table.file}: no row of {steps_told(missing)}: not compared, nor is what "
+        remarks.append(f"{table.file}: no row of {steps_named(missing)}: not compared, nor is what "
                        "follows each of them")  # fmt: skip
     return Results(
         table.file, {i: _scaled(row, factor, spread) for i, row in rows.items()}, tuple(remarks)
     )
 
 
-def steps_told(indices: Sequence[int]) -> str:
+def steps_named(indices: Sequence[int]) -> str:
     """Some steps in words.
 
-    >>> steps_told([3]), steps_told([3, 4, 9])
+    >>> steps_named([3]), steps_named([3, 4, 9])
     ('step 3', 'steps 3, 4 and 9')
     """
     if len(indices) == 1:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ekfsim.filters.arithmetic.algebra import symmetric, wrapped
-from ekfsim.filters.belief import Correction, Gaussian, Prediction, Refused
+from ekfsim.filters.belief import Correction, Gaussian, Prediction
 from ekfsim.filters.protocol import Filter
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
@@ -15,13 +15,14 @@ from ekfsim.records import Control, Entry
 from ekfsim.student.asked import Answer, Asked
 from ekfsim.student.comparing.compare import Compared, believed
 from ekfsim.student.comparing.difference import differences, sizes, symbols, unit
+from ekfsim.student.comparing.reference import made_by
 from ekfsim.student.comparing.rounding import LEAST, Rounding, deviations, rounding
 from ekfsim.student.fault import FaultError
 from ekfsim.student.mistakes.guessing import LAST_DIGITS, SAME
 from ekfsim.student.mistakes.mistake import outcome
 from ekfsim.student.mistakes.working import FORMS, Pieces, Working
 from ekfsim.student.printed.digits import SLACK, Halves, carried, exact
-from ekfsim.student.printed.results import Results, steps_told
+from ekfsim.student.printed.results import Results, steps_named
 from ekfsim.student.printed.table import Row
 
 COARSE = 0.1  # σ; an entry that is open by more cannot be judged
@@ -56,6 +57,7 @@ class PrintedSteps:
     reference: Filter
     layout: Layout = POSE
     open: dict[int, Open] = field(default_factory=dict)  # of each step that was compared
+    _spreads: dict[int, tuple[Open, Array]] = field(default_factory=dict)  # and its σ
 
     def compared(self, entries: Iterable[Entry], first: Gaussian) -> Iterator[Compared]:
         """Each step whose belief before and after are known; before them the start, where it
@@ -77,11 +79,9 @@ class PrintedSteps:
             started = True
             kept = False  # whether the belief stays as it is
             if belief is not None:
-                asked = Asked(
-                    *belief, entry.given, self.layout.headings, entry.command, entry.index, earlier
-                )
-                right, made = self._reference(asked)
-                kept = isinstance(made, Correction) and _unused(made)
+                asked = Asked.at(entry, belief, self.layout.headings, earlier)
+                right, made = made_by(self.reference, asked)
+                kept = isinstance(made, Correction) and not made.used
                 if row is not None:
                     yield self._compared(asked, row, right, None if kept else made, halves)
                 earlier = replace(asked, earlier=None)
@@ -114,12 +114,10 @@ class PrintedSteps:
                     if judged[i] and judged[j] and left.P[i, j] > COARSE * σ[i] * σ[j]:
                         found.setdefault(f"P_{name}{names[j]}", []).append(index)
         return [
-            f"{name} of {steps_told(indices)} cannot be judged: the printed digits leave more than "
-            f"{COARSE:g} σ open; print more of them"
+            f"{name} of {steps_named(indices)} cannot be judged: the printed digits leave more "
+            f"than {COARSE:g} σ open; print more of them"
             for name, indices in found.items()
         ]
-
-    _spreads: dict[int, tuple[Open, Array]] = field(default_factory=dict)
 
     def _compared(
         self, asked: Asked, row: Row, right: Gaussian, made: Prediction | Correction | None,
@@ -128,12 +126,13 @@ class PrintedSteps:
         """What a row says beside the reference. Raises FaultError where it says no number."""
         self._refuse_nan(asked, row)
         theirs = Answer(row.x, row.P)
-        moved = carried(
-            lambda belief: right if made is None and asked.index == 0 else Gaussian(
-                *self._reference(replace(asked, x=belief.mean, P=belief.covariance))[0]
-            ),
-            Gaussian(asked.x, asked.P), halves, self.layout.headings,
-        )  # fmt: skip
+
+        def step(belief: Gaussian) -> Gaussian:
+            if asked.index == 0:  # the start, which is given
+                return right
+            return made_by(self.reference, replace(asked, x=belief.mean, P=belief.covariance))[0]
+
+        moved = carried(step, Gaussian(asked.x, asked.P), halves, self.layout.headings)
         left = self.open[asked.index] = Open(halves, row.halves, moved)
         self._spreads[asked.index] = left, unit(right)
         in_x, in_P = sizes(theirs, right, self.layout)
@@ -160,15 +159,6 @@ class PrintedSteps:
             if not np.isfinite(value):
                 place = f"{self.results.file}:{row.line}"
                 raise FaultError(place, f"{name} is no number", asked.step)
-
-    def _reference(self, asked: Asked) -> tuple[Gaussian, Prediction | Correction]:
-        prior = Gaussian(asked.x, asked.P)
-        made: Prediction | Correction
-        if isinstance(asked.given, Control):
-            right, made = self.reference.predict(prior, asked.given.motion, asked.given.u)
-        else:
-            right, made = self.reference.update(prior, asked.given.sensor, asked.given.z)
-        return Gaussian(*right), made
 
     def _given_by(
         self, changes: tuple[Pieces, ...], asked: Asked, theirs: Answer, unit: Array, left: Open
@@ -204,8 +194,3 @@ class PrintedSteps:
 def _belief(row: Row, layout: Layout) -> Gaussian:
     """The belief that goes on from a row."""
     return believed(Answer(wrapped(row.x.copy(), layout.headings), row.P), layout)
-
-
-def _unused(made: Correction) -> bool:
-    """Whether a reading leaves the belief as it is: it is refused, or nothing is uncertain."""
-    return bool(made.refused != Refused.NOT or np.isnan(made.nis))

@@ -1,6 +1,5 @@
 """What is found of a student's filter beside a reference, in words that fit into a mail."""
 
-import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -8,7 +7,7 @@ import numpy as np
 
 from ekfsim.diagnostics.nees import squared_mahalanobis
 from ekfsim.geometry import Array
-from ekfsim.printable import in_a_line, short
+from ekfsim.printable import short
 from ekfsim.records import Control
 from ekfsim.student.comparing.compare import Compared
 from ekfsim.student.comparing.difference import DIFFERENT, Difference, unit
@@ -17,11 +16,10 @@ from ekfsim.student.comparing.naming import At, Seen
 from ekfsim.student.comparing.rounding import LEAST
 from ekfsim.student.mistakes.guessing import Guess
 from ekfsim.student.mistakes.mistake import elsewhere
+from ekfsim.views.student.telling import apart, counted, filled
 from ekfsim.views.words.numbers import ROUNDING, cleared
 
-WIDE = 80  # columns
 MOST_ENTRIES = 12  # that are told of a step; of more only so many
-DEEPER = 8 * " "  # before what is left of a long row
 MOST_DECIMALS = 10  # that somebody rounds to
 MOST_ALIKE = 3  # guesses that are told where several are as good
 
@@ -48,12 +46,12 @@ def told(found: Found, sides: Sides) -> str:
         parts.append(
             f"After {_where(found, at)} no belief is left to go on from: {at.step.unusable}."
         )
-    return "\n".join(f"{_filled(part)}\n" for part in [*parts, sides.made])
+    return "\n".join(f"{filled(part)}\n" for part in [*parts, sides.made])
 
 
 def _headline(found: Found, sides: Sides) -> str:
-    moves, readings = _counted(found.moves, "move"), _counted(found.readings, "reading")
-    of = f"{_counted(found.steps, 'step')} ({moves}, {readings}) of {_counted(found.runs, 'run')}"
+    moves, readings = counted(found.moves, "move"), counted(found.readings, "reading")
+    of = f"{counted(found.steps, 'step')} ({moves}, {readings}) of {counted(found.runs, 'run')}"
     ends = "its numbers end" if sides.printed else "its code fails"
     until = "" if found.fault is None else f"Before {ends}, "
     if not found.steps:
@@ -95,7 +93,7 @@ def _first(found: Found, at: At, sides: Sides) -> str:
 def _table(step: Compared, theirs: str, right: str) -> str:
     """The entries that differ."""
     theirs, right = short(theirs, 20), short(right, 20)
-    rows = [(one.entry, *_apart(one), _size(one)) for one in step.differences]
+    rows = [(one.entry, *apart(one.theirs, one.right), _size(one)) for one in step.differences]
     rows = [("", theirs, right, "difference"), *rows[:MOST_ENTRIES]]
     widths = [max(len(row[i]) for row in rows) for i in range(4)]
     lines = [
@@ -193,15 +191,6 @@ def _words(text: str, sides: Sides) -> str:
     return text if sides.classroom else elsewhere(text)
 
 
-def _apart(one: Difference) -> tuple[str, str]:
-    """Both values, with as many digits as tell them apart."""
-    for digits in range(6, 18):
-        told = f"{one.theirs:.{digits}g}", f"{one.right:.{digits}g}"
-        if told[0] != told[1]:
-            break
-    return told
-
-
 def _size(one: Difference) -> str:
     return f"{one.size:.2g} σ{'²' if one.entry.startswith('P_') else ''}"
 
@@ -215,17 +204,3 @@ def _matrix(P: Array) -> str:
     rows = [_row(np.array(row)) for row in cleared(P, ROUNDING)]
     between = ",\n       "
     return f"  P = [{between.join(rows)}]\n"
-
-
-def _counted(number: int, what: str) -> str:
-    return f"{number} {what}{'' if number == 1 else 's'}"
-
-
-def _filled(part: str) -> str:
-    """Lines of at most 80 columns; what stands in columns stays as it is, but for long rows."""
-    return "\n".join(
-        textwrap.fill(
-            in_a_line(line), WIDE, subsequent_indent=DEEPER if line.startswith("  ") else ""
-        )
-        for line in part.rstrip("\n").split("\n")
-    )

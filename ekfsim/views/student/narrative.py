@@ -1,14 +1,12 @@
 """What is found in a narrative that another program printed, in words."""
 
 import math
-import textwrap
 from collections.abc import Iterator, Sequence
 
-from ekfsim.printable import in_a_line
 from ekfsim.student.printed.narrative.found import NarrativeFound
 from ekfsim.student.printed.narrative.numbers import Wrong
+from ekfsim.views.student.telling import apart, counted, filled
 
-WIDE = 80  # columns
 MOST = 40  # wrong numbers that are told; of more only how many
 
 
@@ -22,11 +20,11 @@ def told(found: NarrativeFound, made: str) -> str:
         first, *others = found.wrong
         parts.append(f"First, {_sentence(first)}{_why(first)}")
         parts += _others(first, others)
-    return "\n".join(f"{_filled(part)}\n" for part in [*parts, made])
+    return "\n".join(f"{filled(part)}\n" for part in [*parts, made])
 
 
 def _headline(found: NarrativeFound) -> str:
-    steps = f"{found.steps} step{'' if found.steps == 1 else 's'}"
+    steps = counted(found.steps, "step")
     if not found.wrong:
         return (
             f"{found.file} is right: all {found.checked} numbers of {steps} that can be "
@@ -59,7 +57,7 @@ def _others(first: Wrong, others: Sequence[Wrong]) -> Iterator[str]:
 def _sentence(one: Wrong) -> str:
     if math.isnan(one.right):
         return f"line {one.line}: {one.what} is {one.theirs:g}, and no number."
-    theirs, right = _apart(one)
+    theirs, right = apart(one.theirs, one.right)
     unit = f" {one.unit}" if one.unit else ""
     bound = f" {one.bound}" if one.bound else ""
     return f"line {one.line}: {one.what} is {theirs}{unit}, right is{bound} {right}{unit}."
@@ -68,16 +66,3 @@ def _sentence(one: Wrong) -> str:
 def _why(one: Wrong) -> str:
     guess = f" Guess: {one.guess}." if one.guess else ""
     return guess + (f" Read again: {one.read}." if one.read else "")
-
-
-def _apart(one: Wrong) -> tuple[str, str]:
-    """Both values, with as many digits as tell them apart."""
-    for digits in range(6, 18):
-        told = f"{one.theirs:.{digits}g}", f"{one.right:.{digits}g}"
-        if told[0] != told[1]:
-            break
-    return told
-
-
-def _filled(part: str) -> str:
-    return "\n".join(textwrap.fill(in_a_line(line), WIDE) for line in part.split("\n"))

@@ -14,7 +14,7 @@ from ekfsim.student.exposing.exposed import exposed, possible
 from ekfsim.student.exposing.statistics import seen, with_mistake, without_mistake
 from ekfsim.student.mistakes.known import BY_NAME, KNOWN
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.mutant import mutant
+from ekfsim.student.mistakes.mutant import Mutant
 
 NONE = Mistake("none", "", "", lambda _: True, ({},))
 
@@ -30,7 +30,7 @@ def test_it_is_where_a_filter_with_the_mistake_leaves_the_right_one(name):
     played = scene(name)
     entries, reference = list(simulate(played)), filter_of(played)
     for one in exposed(played):
-        steps = compare(entries, first_belief(played), mutant(one.mistake), reference)
+        steps = compare(entries, first_belief(played), Mutant(one.mistake), reference)
         first = next((step for step in steps if step.differences), None)
         assert (first is None) == (one.first is None), one.mistake.name
         if first is not None:

@@ -11,7 +11,7 @@ from ekfsim.localization import play
 from ekfsim.student.asked import Answer, Asked
 from ekfsim.student.mistakes.guessing import guesses
 from ekfsim.student.mistakes.known import KNOWN
-from ekfsim.student.mistakes.mutant import mutant
+from ekfsim.student.mistakes.mutant import Mutant
 from ekfsim.student.mistakes.working import right
 
 ELSEWHERE = {  # mistakes that the tour cannot show
@@ -76,7 +76,7 @@ def deviations(P):
 def differing(mistake):
     """The calls at which a filter with this mistake has other numbers than the EKF."""
     for asked, belief in calls(ELSEWHERE.get(mistake.name, "tour")):
-        x, P = mutant(mistake).call(asked)
+        x, P = Mutant(mistake).call(asked)
         unit = deviations(belief.covariance)
         apart = np.abs(P - belief.covariance) / np.outer(unit, unit)
         if max(apart.max(), np.max(np.abs(wrap(x - belief.mean)) / unit)) > 1e-6:

@@ -13,7 +13,7 @@ from ekfsim.simulation import simulate
 from ekfsim.student.asked import Answer
 from ekfsim.student.comparing.compare import compare
 from ekfsim.student.mistakes.known import KNOWN
-from ekfsim.student.mistakes.mutant import mutant
+from ekfsim.student.mistakes.mutant import Mutant
 from ekfsim.student.printed.held import held_table
 
 NAMES = "index,x,y,theta,p11,p12,p13,p21,p22,p23,p31,p32,p33"
@@ -39,7 +39,7 @@ def written(path, steps, digits=6):
 @pytest.mark.parametrize("mistake", SOME, ids=[one.name for one in SOME])
 def test_a_known_mistake_is_found_and_named(scene, mistake, tmp_path):
     def steps():
-        return compare(simulate(scene), first_belief(scene), mutant(mistake), filter_of(scene))
+        return compare(simulate(scene), first_belief(scene), Mutant(mistake), filter_of(scene))
 
     first = next((step for step in steps() if step.differences), None)
     found = held_table(scene, written(tmp_path / "theirs.csv", steps()), "ekf").found

@@ -14,9 +14,8 @@ import numpy as np
 from ekfsim.files.keys.homework import HonestyKeys
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Integers
-from ekfsim.localization import first_belief, localize
+from ekfsim.localization import entries_of, first_belief, localize
 from ekfsim.scene import Scene
-from ekfsim.simulation import simulate
 from ekfsim.simulation.draws import BLOCK
 from ekfsim.student.fault import FaultError
 from ekfsim.student.grading.bench import Bench
@@ -28,7 +27,6 @@ from ekfsim.study.plan import Case
 from ekfsim.study.results import Result, Share
 from ekfsim.study.tally import Tally
 from ekfsim.study.verdict import COVERED, MEDIAN, MOST_LOST, NIS, Verdict, Word
-from ekfsim.systems import system_of
 
 AT_ONCE = 256  # runs
 
@@ -40,8 +38,7 @@ def graded_honesty(score: Scored, keys: HonestyKeys, bench: Bench, pupil: Pupil)
         pupil.begin(*first_belief(scene))  # what cannot be loaded fails at no step
         tally = tally_of(scene, keys.runs, pupil)
     except FaultError as fault:
-        told = f"the code failed: {fault}"
-        return replace(score, words=(told,), fault=str(fault)).earned(0.0)
+        return score.failed(f"the code failed: {fault}", str(fault))
     verdict = Verdict(Result(Case((), scene), tally))
     share = (not condemned_at_end(verdict)) / 2 + (not condemned_on_the_way(verdict)) / 2
     return replace(score, words=tuple(words(verdict))).earned(share)
@@ -59,10 +56,9 @@ def tally_of(scene: Scene, runs: int, pupil: Pupil) -> Tally:
 def _block(scene: Scene, numbers: Integers, pupil: Pupil) -> Tally:
     """The same of some runs side by side."""
     beginning = Beginning(first_belief(scene), scene.world.layout.headings)
-    entries = system_of(scene.world.system).entries(simulate(scene, numbers), scene.reading)
     filter = OwnFilter.around(pupil.new_caller, beginning)
     first = first_belief(scene, numbers.shape)
-    steps = localize(entries, filter, first, scene.guard, scene.world.layout)
+    steps = localize(entries_of(scene, numbers), filter, first, scene.guard, scene.world.layout)
     start = Watched.empty(numbers, steps_told(length_of(scene)))
     return follow(start, instants(steps)).tally()
 

@@ -32,12 +32,11 @@ def graded_jacobian(score: Scored, keys: JacobiansKeys, bench: Bench, pupil: Pup
             for asked, numerical in _points(name, scene, bench):
                 theirs = pupil.derivative(name, asked.x, asked.given)
                 points += 1
-                wrong = _wrong(name, asked, theirs, numerical)
+                wrong = _wrong(name, theirs, numerical)
                 right += not wrong
                 first = first or (wrong and f"{scene}: {asked.step}: {wrong}")
     except FaultError as fault:
-        told = f"the code failed: {fault}"
-        return replace(score, words=(told,), fault=str(fault)).earned(0.0)
+        return score.failed(f"the code failed: {fault}", str(fault))
     if points == 0:
         scenes = ", ".join(keys.scenes)
         return score.lost(f"{scenes}: nothing is asked there of which {name} were the derivative")
@@ -98,7 +97,7 @@ def _differences(
     return np.stack(columns, axis=-1)
 
 
-def _wrong(name: str, asked: Asked, theirs: Array, numerical: Array) -> str:
+def _wrong(name: str, theirs: Array, numerical: Array) -> str:
     """What is wrong with it: the entry that is farthest off, and both numbers."""
     apart = np.abs(theirs - numerical)
     if apart.max() <= DIFFERENT * max(1.0, float(np.abs(numerical).max())):

@@ -76,9 +76,7 @@ def examined(
         before = hanging.printed(block, before)
     wrong = sorted(found.wrong.values(), key=lambda one: one.line)
     steps = sum(block.kind in ("move", "sense") for block in told.blocks)
-    return NarrativeFound(
-        told.file, steps, found.checked, tuple(wrong), tuple(_remarks(told, run, steps))
-    )
+    return NarrativeFound(told.file, steps, found.checked, tuple(wrong), tuple(_remarks(told, run)))
 
 
 def _hang_together(found: Examined, block: Block, before: Printed, entry: Entry | None) -> None:
@@ -147,7 +145,7 @@ def _wrongs(step: Compared, block: Block, mistake: Mistake | None) -> Iterator[W
             )
 
 
-def _remarks(told: Narrative, run: Beside, steps: int) -> Iterator[str]:
+def _remarks(told: Narrative, run: Beside) -> Iterator[str]:
     """What was held against the run, and what only against itself."""
     if run.stranger is not None and not run.entries:
         yield (
