@@ -114,6 +114,7 @@ def test_the_options_of_either_side_win_over_those_of_both():
             "--a guard: this is no KEY=VALUE; write e.g. --a noise.rangeSigmaRatio=0.02",
         ),
         (["--a", ""], "--a : this is no KEY=VALUE;"),
+        (["--b", "mine.py"], "--b mine.py: this is no KEY=VALUE; write e.g. --b filter=mine.py"),
         (
             ["--a", "guard=off,"],
             "--a guard=off,: '' is no KEY=VALUE; write e.g. --a guard=skip,gate=0.99",

@@ -12,6 +12,7 @@ from ekfsim.files.yaml.marked import Path as Route
 from ekfsim.files.yaml.marked import Scalar, field_of, scalar
 from ekfsim.files.yaml.schema import Kind, keys_at, schema_at
 from ekfsim.files.yaml.telling import nearest, quoted, short
+from ekfsim.filters import FILTERS
 from ekfsim.filters.place import absolute, is_place, label, stem
 
 OF_COMMANDS = ("gate", "guard")  # the rest belongs to the world
@@ -39,9 +40,9 @@ def setting(text: str, option: str = "--set") -> Setting:
     """The setting that KEY=VALUE means. Raises UsageError where it means none."""
     key, _, value = (part.strip() for part in text.partition("="))
     if not key or not value:
-        raise UsageError(
-            f"{option} {text}: this is no KEY=VALUE; write e.g. {option} noise.rangeSigmaRatio=0.02"
-        )
+        named = option in ("--a", "--b") and (is_place(key) or key in FILTERS)
+        right = f"filter={key}" if named else "noise.rangeSigmaRatio=0.02"
+        raise UsageError(f"{option} {text}: this is no KEY=VALUE; write e.g. {option} {right}")
     made = Setting(key, value, f"{option} {key}={value}")
     path_of(made)
     return made
