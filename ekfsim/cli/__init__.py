@@ -7,7 +7,7 @@ from typing import NoReturn
 
 import click
 
-from ekfsim.cli import files, grading, process, runs, students, studies
+from ekfsim.cli import comparing, files, grading, process, runs, students, studies
 from ekfsim.version import VERSION
 
 
@@ -34,7 +34,7 @@ for command in (
     *(runs.play, runs.render, runs.run, runs.record),
     *(files.check, files.schema, files.list_packaged, files.show, files.new, files.figures),
     *(studies.study, studies.compare),
-    *(students.diff, students.mutants, students.worksheet),
+    *(comparing.diff, students.mutants, students.worksheet),
     *(grading.grade, grading.autograder),
 ):
     ekfsim.add_command(command)

@@ -138,7 +138,7 @@ MADE_WHERE = (
 
 def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options by which every command that plays a scene may overrule its file."""
-    return _with(
+    return with_options(
         command,
         [
             *PLAYED,
@@ -167,63 +167,9 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
     )
 
 
-def diff_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options of a comparison step by step: whose filter, beside which, over which runs."""
-    return _with(
-        command,
-        [
-            *PLAYED,
-            click.option(
-                "--filter",
-                "filter_name",
-                metavar="FILE.py[:NAME]",
-                help="The filter of one's own, or package.module:NAME.",
-            ),
-            click.option(
-                "--csv",
-                type=Source(),
-                metavar="FILE",
-                help="In place of it: a table of results that a program in another language wrote "
-                "(index, x, y, theta, P_xx, P_xy, …).",
-            ),
-            click.option(
-                "--narrative",
-                type=Source(),
-                metavar="FILE",
-                help="Or what a program printed in the assignment's format, number by number.",
-            ),
-            click.option(
-                "--against",
-                metavar="NAME",
-                default="ekf",
-                show_default=True,
-                help="What it is held against: a built-in filter, or FILE.py.",
-            ),
-            click.option(
-                "--runs",
-                type=Whole(1, MOST_RUNS),
-                metavar="N",
-                default=1,
-                show_default=True,
-                help="How many runs, from --run on.",
-            ),
-            click.option(
-                "--provided",
-                metavar="NAME,…",
-                help="The only equations of motion and sensor that the filter may ask for, "
-                "e.g. f,h.",
-            ),
-            GATE,
-            GUARD,
-            SET,
-            PLAIN,
-        ],
-    )
-
-
 def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options of a study: which runs, watched by whom, made where."""
-    return _with(
+    return with_options(
         command,
         [
             click.argument("commands", metavar="COMMANDS|STUDY.yaml"),
@@ -270,7 +216,7 @@ def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def compare_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options of a comparison: which two settings, of which runs, made where."""
-    return _with(
+    return with_options(
         command,
         [
             click.argument("commands", metavar="COMMANDS|COMPARE.yaml"),
@@ -309,7 +255,9 @@ def compare_options(command: Callable[..., Any]) -> Callable[..., Any]:
     )
 
 
-def _with(command: Callable[..., Any], options: Sequence[Callable[..., Any]]) -> Callable[..., Any]:
+def with_options(
+    command: Callable[..., Any], options: Sequence[Callable[..., Any]]
+) -> Callable[..., Any]:
     """A command that has the options, told by --help in their order."""
     for option in reversed(options):
         command = option(command)

@@ -1,120 +1,22 @@
-"""The commands for students and who teaches them: diff, mutants, worksheet."""
+"""The commands for students and who teaches them: mutants, worksheet."""
 
 import sys
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ekfsim.cli.asked import scene_of
 from ekfsim.cli.kinds import Result, Seed, Share, Whole
-from ekfsim.cli.options import EXPLAIN, FORCE, MOST, MOST_RUNS, diff_options, scene_options
-from ekfsim.cli.process import heed, warn, width
+from ekfsim.cli.options import EXPLAIN, FORCE, MOST, MOST_RUNS, scene_options
+from ekfsim.cli.process import heed, width
 from ekfsim.errors import RunError, UsageError
 from ekfsim.printable import in_a_line, shown
 
 if TYPE_CHECKING:
     from ekfsim.scene import Scene
-
-T = TypeVar("T")
-
-
-@click.command(short_help="Find the first wrong number of a filter of one's own.")
-@diff_options
-def diff(
-    filter_name: str | None, csv: str | None, narrative: str | None, against: str, runs: int,
-    provided: str | None, **chosen: Any,
-) -> None:  # fmt: skip
-    """Hold a filter of one's own against the built-in one, step by step, each from what it believed
-    itself: the first wrong number, and which mistake it comes of. --csv and --narrative do the same
-    with what a program in another language wrote.
-
-    Exit status 0 where both are equal, 1 where they differ or the code fails, 2 for wrong usage.
-    """
-    from ekfsim.files.scenes.settings import filter_in
-    from ekfsim.filters.place import label
-    from ekfsim.provenance import told_in_a_line
-    from ekfsim.student.comparing.sides import comparable
-
-    named = [name for name in (filter_name, csv, narrative) if name is not None]
-    if len(named) != 1:
-        what = "one of --filter, --csv and --narrative"
-        raise UsageError(
-            f"diff: there is nothing to compare; name {what}"
-            if not named
-            else f"diff: only {what} can be compared at once"
-        )
-    if filter_name is None and (runs > 1 or provided is not None):
-        option = "--runs" if runs > 1 else "--provided"
-        raise UsageError(f"{option}: a file is of one run, and asks for no equations; leave it out")
-    reference = comparable(filter_in(against, "--against"), "--against")
-    scene = scene_of(**chosen)
-    made = told_in_a_line(replace(scene, filter=label(reference)))
-    if filter_name is not None:
-        _diff_filter(scene, filter_name, reference, runs, provided)
-    elif csv is not None:
-        _diff_table(scene, csv, reference, made)
-    elif narrative is not None:
-        _diff_narrative(scene, narrative, reference, made)
-
-
-def _diff_filter(
-    scene: "Scene", filter_name: str, reference: str, runs: int, provided: str | None
-) -> None:
-    from ekfsim.files.scenes.settings import filter_in
-    from ekfsim.filters.place import label
-    from ekfsim.provenance import told_in_a_line
-    from ekfsim.student.comparing.found import found as found_in
-    from ekfsim.student.comparing.sides import caller_of, comparable, runs_of
-    from ekfsim.student.own.handed import provided_in
-    from ekfsim.views.student.difference import Sides, told
-
-    name = comparable(filter_in(filter_name, "--filter"), "--filter")
-    scene = replace(scene, filter=name, beside=())
-    caller = caller_of(scene, None if provided is None else provided_in(provided, "--provided"))
-    found = found_in(heeded(runs_of(scene, caller, reference, runs)))
-    if not found.steps and found.fault is None:
-        raise UsageError(f"{scene.commands_source}: has no move and no reading to be compared")
-    made = f"{told_in_a_line(scene)}, runs {runs}, against {label(reference)}"
-    sides = Sides(label(name), label(reference), made, scene.world.system == "classroom")
-    click.echo(shown(told(found, sides)), nl=False)
-    if found.fault is not None:
-        raise found.fault
-    if not found.equal:
-        sys.exit(RunError.status)
-
-
-def _diff_table(scene: "Scene", csv: str, reference: str, made: str) -> None:
-    from ekfsim.filters.place import label
-    from ekfsim.student.printed.held import held_table
-    from ekfsim.views.student.difference import Sides, told
-
-    held = held_table(scene, Path(csv), reference)
-    warn(held.remarks)
-    click.echo(shown(told(held.found, Sides(csv, label(reference), made, printed=True))), nl=False)
-    if held.found.fault is not None:
-        raise held.found.fault
-    if not held.found.equal:
-        sys.exit(RunError.status)
-
-
-def _diff_narrative(scene: "Scene", narrative: str, reference: str, made: str) -> None:
-    from ekfsim.student.printed.held import held_narrative
-    from ekfsim.views.student.narrative import told
-
-    found = held_narrative(scene, Path(narrative), reference)
-    click.echo(shown(told(found, made)), nl=False)
-    if found.wrong:
-        sys.exit(RunError.status)
-
-
-def heeded(runs: Iterable[T]) -> Iterator[T]:
-    """The same, ended by a signal between two."""
-    for run in runs:
-        heed()
-        yield run
+    from ekfsim.student.mistakes.mistake import Mistake
+    from ekfsim.study.results import Result as Studied
 
 
 @click.command(short_help="Write the narrative of COMMANDS with gaps to fill in.")
@@ -174,9 +76,8 @@ def mutants(
     """
     from ekfsim.files.results.writing import refuse_existing, whole_text
     from ekfsim.student.exposing.exposed import exposed
-    from ekfsim.student.exposing.statistics import with_mistake, without_mistake
+    from ekfsim.student.exposing.statistics import without_mistake
     from ekfsim.student.exposing.table import write_exposed
-    from ekfsim.student.mistakes.known import KNOWN
     from ekfsim.views.student.exposing import first_of, of_one, of_several
 
     if runs is not None and len(commands) > 1:
@@ -188,19 +89,13 @@ def mutants(
     for scene in scenes:
         heed()
         found.append(exposed(scene))
-    right, statistics = None, {}
+    right, statistics = None, dict["Mistake", "Studied"]()
     if runs is not None:
         if scenes[0].log is not None:
             raise UsageError(
                 f"--runs: {scenes[0].commands_source} is a recording, which is one run"
             )
-        right = without_mistake(scenes[0], runs)
-        with click.progressbar(
-            KNOWN, label="mistakes", file=sys.stderr, hidden=not sys.stderr.isatty()
-        ) as bar:
-            for mistake in bar:
-                heed()
-                statistics[mistake] = with_mistake(scenes[0], mistake, runs)
+        right, statistics = without_mistake(scenes[0], runs), with_each_mistake(scenes[0], runs)
     if csv is not None:
         with whole_text(csv, force) as file:
             write_exposed(file, scenes, found, statistics)
@@ -214,3 +109,18 @@ def mutants(
     missed = [one.mistake.name for one in together if one.possible and one.first is None]
     if all_of_them and missed:
         raise RunError(f"not exposed: {', '.join(missed)}")
+
+
+def with_each_mistake(scene: "Scene", runs: int) -> "dict[Mistake, Studied]":
+    """What statistics of many runs say of each known mistake."""
+    from ekfsim.student.exposing.statistics import with_mistake
+    from ekfsim.student.mistakes.known import KNOWN
+
+    found = {}
+    with click.progressbar(
+        KNOWN, label="mistakes", file=sys.stderr, hidden=not sys.stderr.isatty()
+    ) as bar:
+        for mistake in bar:
+            heed()
+            found[mistake] = with_mistake(scene, mistake, runs)
+    return found

@@ -127,6 +127,9 @@ class InputsKeys(Strict):
     )
 
 
+PartKeys = StepsKeys | JacobiansKeys | HonestyKeys | InputsKeys
+
+
 class HomeworkPartKeys(Strict):
     """One part: exactly one of steps, jacobians, honesty, inputs."""
 
@@ -155,6 +158,13 @@ class HomeworkPartKeys(Strict):
         description="The student's own commands files.",
         examples=[{"files": 3, "exposed": 10}],
     )
+
+    @property
+    def asks_for(self) -> PartKeys:
+        """The one of the four that a part without a mistake has."""
+        kinds = self.steps, self.jacobians, self.honesty, self.inputs
+        (one,) = (keys for keys in kinds if keys is not None)
+        return one
 
 
 class LimitsKeys(Strict):

@@ -11,7 +11,13 @@ from types import FrameType
 
 from ekfsim.errors import EkfsimError
 from ekfsim.files.homework import Homework
-from ekfsim.files.keys.homework import HomeworkPartKeys
+from ekfsim.files.keys.homework import (
+    HonestyKeys,
+    InputsKeys,
+    JacobiansKeys,
+    PartKeys,
+    StepsKeys,
+)
 from ekfsim.printable import in_a_line, short
 from ekfsim.student.fault import FaultError
 from ekfsim.student.grading.bench import Bench
@@ -54,12 +60,12 @@ class Examiner:
             return score.lost(f"not judged: the grader itself failed: {told}")
 
     def _examined(self, score: Scored, submission: Submission) -> Scored:
-        part = _part_of(self.homework, score.check)
+        keys = _keys_of(self.homework, score.check)
         seconds = self.homework.keys.limits.seconds
-        if part.inputs is not None:
+        if isinstance(keys, InputsKeys):
             try:
                 with at_most(seconds):
-                    return graded_inputs(score, part.inputs, submission.path)
+                    return graded_inputs(score, keys, submission.path)
             except TimeoutError:
                 told = f"the files take longer than {seconds:g} s of CPU to read and to play"
                 return score.failed(told, told)
@@ -67,13 +73,13 @@ class Examiner:
         if missing:
             return score.failed(missing, missing)
         with self._sandboxed(submission, file) as pupil:
-            if part.steps is not None:
-                score = graded_steps(score, part.steps, self.bench, pupil)
-            elif part.jacobians is not None:
-                score = graded_jacobian(score, part.jacobians, self.bench, pupil)
-            else:
-                assert part.honesty is not None
-                score = graded_honesty(score, part.honesty, self.bench, pupil)
+            match keys:
+                case StepsKeys():
+                    score = graded_steps(score, keys, self.bench, pupil)
+                case JacobiansKeys():
+                    score = graded_jacobian(score, keys, self.bench, pupil)
+                case HonestyKeys():
+                    score = graded_honesty(score, keys, self.bench, pupil)
         beside = *_printed(pupil.printed), *_left(pupil.left)
         return replace(score, words=(*score.words, *beside))
 
@@ -101,8 +107,9 @@ def _left(processes: int) -> Sequence[str]:
     return [f"it left {told} running, which the grader ended"]
 
 
-def _part_of(homework: Homework, check: Check) -> HomeworkPartKeys:
-    return homework.keys.parts[int(check.number.partition(".")[0]) - 1]
+def _keys_of(homework: Homework, check: Check) -> PartKeys:
+    """What the part asks for that a test is of."""
+    return homework.keys.parts[int(check.number.partition(".")[0]) - 1].asks_for
 
 
 @contextmanager

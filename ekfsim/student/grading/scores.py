@@ -10,7 +10,15 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, Self
 
-from ekfsim.files.keys.homework import CENTS, HomeworkKeys, Visibility
+from ekfsim.files.keys.homework import (
+    CENTS,
+    HomeworkKeys,
+    HonestyKeys,
+    InputsKeys,
+    JacobiansKeys,
+    StepsKeys,
+    Visibility,
+)
 
 Status = Literal["passed", "failed", "not run"]
 NOT_RUN: Status = "not run"
@@ -44,16 +52,16 @@ def checks_of(keys: HomeworkKeys) -> tuple[Check, ...]:
 
 def _checks_of(keys: HomeworkKeys) -> Iterator[Check]:
     for n, part in enumerate(keys.parts, 1):
-        if part.steps is not None:
-            kind, about = "steps", part.steps.scenes
-        elif part.jacobians is not None:
-            kind, about = "jacobians", [*part.jacobians.functions]
-        elif part.honesty is not None:
-            kind, about = "honesty", part.honesty.scenes
-        else:
-            assert part.inputs is not None
-            asked = {"promises": part.inputs.files, "exposed mistakes": part.inputs.exposed}
-            kind, about = "inputs", [name for name, least in asked.items() if least is not None]
+        match part.asks_for:
+            case StepsKeys(scenes=scenes):
+                kind, about = "steps", scenes
+            case JacobiansKeys(functions=functions):
+                kind, about = "jacobians", [*functions]
+            case HonestyKeys(scenes=scenes):
+                kind, about = "honesty", scenes
+            case InputsKeys(files=files, exposed=exposed):
+                asked = {"promises": files, "exposed mistakes": exposed}
+                kind, about = "inputs", [name for name, least in asked.items() if least is not None]
         shares = shared_out(round(part.points * CENTS), len(about))
         for k, (name, cents) in enumerate(zip(about, shares, strict=True), 1):
             yield Check(f"{n}.{k}", part.name, kind, name, cents, part.visibility)
