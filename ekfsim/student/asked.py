@@ -1,5 +1,6 @@
 """One call of a filter: what it is asked, from which belief; and who answers."""
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Protocol, Self
 
@@ -68,3 +69,13 @@ class Caller(Protocol):
 
     def place_of(self, given: Control | Reading) -> str:
         """file:line of the code that answers to it, where what came back of it is wrong."""
+
+
+Calls = Sequence[tuple[Caller, Asked]]  # of runs side by side
+Together = Callable[[Calls], Iterator[Answer]]
+
+
+def one_by_one(calls: Calls) -> Iterator[Answer]:
+    """What comes of each call in turn. Raises FaultError where one fails."""
+    for caller, asked in calls:
+        yield caller.call(asked)

@@ -1,6 +1,7 @@
 """The filter around a student's calls: what it is not handed, and what is calculated beside it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
@@ -14,9 +15,11 @@ from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.protocols import Motion, Sensor
 from ekfsim.models.sensors.laser_by_reading import LaserByReading
 from ekfsim.records import Control, Reading
-from ekfsim.student.asked import Answer, Asked, Caller
+from ekfsim.student.asked import Answer, Asked, Caller, Together, one_by_one
 from ekfsim.student.fault import FaultError
 from ekfsim.student.own.returned import WrongError, judged
+
+Run = tuple[int, ...]  # where it stands in the leading axes: () for one robot, (k,) of many
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,8 @@ class OwnFilter:
     gate: float | None = None
     headings: tuple[int, ...] = (2,)
     runs: Integers | None = None  # (N,) the numbers of runs side by side
-    callers: dict[tuple[int, ...], Caller] = field(default_factory=dict)  # one for each run
+    together: Together = one_by_one  # who asks them
+    callers: dict[Run, Caller] = field(default_factory=dict)  # one for each run
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:
@@ -43,18 +47,20 @@ class OwnFilter:
         raise NotImplementedError
 
     @classmethod
-    def around(cls, new_caller: Callable[[], Caller], beginning: Beginning) -> Self:
+    def around(
+        cls,
+        new_caller: Callable[[], Caller],
+        beginning: Beginning,
+        together: Together = one_by_one,
+    ) -> Self:
         """The filter for a run that begins so."""
-        return cls(new_caller, beginning.gate, beginning.headings, beginning.runs)
+        return cls(new_caller, beginning.gate, beginning.headings, beginning.runs, together)
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Gaussian, Prediction]:
         """What predict returns of x, P and u of each run          u : (…, m)"""
-        x, P = belief
-        posterior = Gaussian(x.copy(), P.copy())
-        for run in np.ndindex(x.shape[:-1]):
-            given = Control(motion, _row(u, run))
-            posterior.mean[run], posterior.covariance[run] = self._called(run, x, P, given)
-        return posterior, Prediction(motion.F(x, u), motion.G(x, u))
+        x, _ = belief
+        given = {run: Control(motion, _row(u, run)) for run in np.ndindex(x.shape[:-1])}
+        return self._called(belief, given), Prediction(motion.F(x, u), motion.G(x, u))
 
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
@@ -67,12 +73,12 @@ class OwnFilter:
         x, P = prior
         told = self._beside(x, P, sensor, z, skip)
         handed = (told.refused == Refused.NOT) & (told.S != 0).any(axis=(-2, -1))
-        posterior = Gaussian(x.copy(), P.copy())
-        for run in np.ndindex(x.shape[:-1]):
-            if handed[run]:
-                given = Reading(_of_run(sensor, run), _row(z, run))
-                posterior.mean[run], posterior.covariance[run] = self._called(run, x, P, given)
-        return posterior, told
+        given = {
+            run: Reading(_of_run(sensor, run), _row(z, run))
+            for run in np.ndindex(x.shape[:-1])
+            if handed[run]
+        }
+        return self._called(prior, given), told
 
     def _beside(
         self, x: Array, P: Array, sensor: Sensor, z: Array, skip: Booleans | bool
@@ -84,17 +90,35 @@ class OwnFilter:
         _, told = kalman.update(Gaussian(x, symmetric(P)), reading, rule)
         return told
 
-    def _called(
-        self, run: tuple[int, ...], x: Array, P: Array, given: Control | Reading
-    ) -> Gaussian:
-        """What one run's call makes of its belief. Raises FaultError."""
+    def _called(self, belief: Belief, given: Mapping[Run, Control | Reading]) -> Gaussian:
+        """What each run's call makes of its belief; others keep theirs. Raises FaultError."""
+        x, P = belief
+        posterior = Gaussian(x.copy(), P.copy())
+        calls = [
+            (self._caller(run, x[run], P[run]), Asked(x[run], P[run], one, self.headings))
+            for run, one in given.items()
+        ]
+        answers = self.together(calls)
+        for run, (caller, asked) in zip(given, calls, strict=True):
+            with self._in(run):
+                after = believed(asked, next(answers), caller)
+            posterior.mean[run], posterior.covariance[run] = after
+        return posterior
+
+    def _caller(self, run: Run, x: Array, P: Array) -> Caller:
+        """Who answers for a run, which begins where nobody did yet."""
+        caller = self.callers.get(run)
+        if caller is None:
+            caller = self.callers[run] = self.new_caller()
+            with self._in(run):
+                caller.begin(x, P)
+        return caller
+
+    @contextmanager
+    def _in(self, run: Run) -> Iterator[None]:
+        """What fails here fails in this run."""
         try:
-            caller = self.callers.get(run)
-            if caller is None:
-                caller = self.callers[run] = self.new_caller()
-                caller.begin(x[run], P[run])
-            asked = Asked(x[run], P[run], given, self.headings)
-            return believed(asked, caller.call(asked), caller)
+            yield
         except FaultError as fault:
             if self.runs is None or fault.run is not None:
                 raise

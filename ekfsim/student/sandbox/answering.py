@@ -31,20 +31,24 @@ def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits)
     read, write, loads, alarm = os.read, os.write, json.loads, signal.setitimer
     while True:
         length, _, mark = HEAD.unpack(_read(read, requests, HEAD.size))
-        seconds, what, told = loads(_read(read, requests, length))
-        try:
-            alarm(signal.ITIMER_REAL, seconds)
-            with alarms:
-                message = answered(getattr(requested, what)(*told), mark)
-        except FaultError as error:
-            message = faulted(error.place, alarms.rung or error.wrong, mark)
-        except BaseException as error:  # of his, where it is called by ours: __array__ may exit
-            place = _place(error, asked["folder"]) or label
-            message = faulted(place, alarms.rung or words_of(error), mark)
-        finally:
-            alarm(signal.ITIMER_REAL, 0)
-        _flush()
-        _write(write, answers, message)
+        seconds, questions = loads(_read(read, requests, length))
+        alarm(signal.ITIMER_REAL, seconds)
+        for what, told in questions:
+            failed = True
+            try:
+                with alarms:
+                    message = answered(getattr(requested, what)(*told), mark)
+                failed = False
+            except FaultError as error:
+                message = faulted(error.place, alarms.rung or error.wrong, mark)
+            except BaseException as error:  # of his, where it is called by ours: __array__ may exit
+                place = _place(error, asked["folder"]) or label
+                message = faulted(place, alarms.rung or words_of(error), mark)
+            _flush()
+            _write(write, answers, message)
+            if failed:
+                break
+        alarm(signal.ITIMER_REAL, 0)
 
 
 def _prepare(asked: Mapping[str, Any], limits: Limits) -> None:

@@ -1,11 +1,12 @@
 """What goes between the two processes: a head, then text or plain numbers. Nothing is unpickled.
 
     head     16 bytes: how many follow (4), what they are (1), nothing (3), the mark (8)
-    REQUEST  JSON: [seconds, what, [of what]]
+    REQUEST  JSON: [seconds, [[what, [of what]], …]]
     NUMBERS  float64, the lowest byte first
     WORDS    UTF-8
     FAULT    UTF-8: where, and what is wrong
 
+Each question of a request has an answer of its own, up to the first fault, which ends the request.
 The mark is drawn anew for each request: what comes without it was written before it was asked for,
 or by somebody else.
 """

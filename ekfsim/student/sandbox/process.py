@@ -49,6 +49,7 @@ sys.path[at:at] = asked["paths"]
 from ekfsim.student.sandbox.keeper import main
 main(asked)
 """
+Question = tuple[str, Sequence[Any]]  # what, of what
 PACKAGES = [Path(module.__file__ or "").parent for module in (ekfsim, np)]
 
 
@@ -96,19 +97,35 @@ class Process:
 
     def ask(self, what: str, *told: Any, kind: int = NUMBERS) -> bytes:
         """What it answers, of that kind. Raises FaultError for whatever else comes of it."""
-        began = time.monotonic()
-        if self._left <= 0:
-            raise self.refused(self._limits.too_long)
-        mark = secrets.token_bytes(8)
-        request = json.dumps([self._left, what, told]).encode()
+        contents, fault = self.ask_all([(what, told)], kind)
+        if fault is not None:
+            raise fault
+        return contents[0]
+
+    def ask_all(
+        self, questions: Sequence[Question], kind: int = NUMBERS
+    ) -> tuple[list[bytes], FaultError | None]:
+        """What it answers to each question, of that kind, up to whatever else comes of one."""
+        contents: list[bytes] = []
+        mark, began = secrets.token_bytes(8), time.monotonic()
         try:
+            if self._left <= 0:
+                raise self.refused(self._limits.too_long)
+            request = json.dumps([self._left, questions]).encode()
             self._send(packed(Message(REQUEST, mark, request)), began)
-            answer = self._answer(mark, began)
+            for _ in questions:
+                contents.append(self._content(self._answer(mark, began), kind))
+        except FaultError as fault:
+            return contents, fault
         finally:
             self._left -= time.monotonic() - began
+        return contents, None
+
+    def _content(self, answer: Message, kind: int) -> bytes:
+        """What an answer holds, if it is of that kind. Raises FaultError."""
         if answer.kind == FAULT:
             place, wrong = fault_of(answer.content)
-            if self._left <= 0 or wrong in (self._limits.too_long, self._limits.too_busy):
+            if wrong in (self._limits.too_long, self._limits.too_busy):
                 self.end()
             raise FaultError(place, wrong)
         if answer.kind != kind:

@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -13,15 +13,16 @@ from ekfsim.errors import UsageError
 from ekfsim.geometry import Array
 from ekfsim.printable import in_a_line, short, shown
 from ekfsim.records import Control, Reading
-from ekfsim.student.asked import Answer, Asked, Caller
+from ekfsim.student.asked import Answer, Asked, Caller, Calls
 from ekfsim.student.fault import FaultError
 from ekfsim.student.sandbox.exchange import NUMBERS, WORDS
 from ekfsim.student.sandbox.folder import copy_of, remove
 from ekfsim.student.sandbox.kernel import lacking
 from ekfsim.student.sandbox.limits import Limits
-from ekfsim.student.sandbox.process import Process
+from ekfsim.student.sandbox.process import Process, Question
 from ekfsim.student.sandbox.told import Teller
 
+AT_ONCE = 64  # calls; each wait for an answer is a turn of the machine's
 MOST_PLACE, MOST_WORDS = 100, 400  # characters of where and of what is wrong
 
 
@@ -79,6 +80,24 @@ class Sandboxed:
         """file:line of the code that answers to it."""
         return self._own.place_of(given)
 
+    def together(self, calls: Calls) -> Iterator[Answer]:
+        """What comes of calls of its callers, many of them asked at once. Raises FaultError where
+        one fails.
+        """
+        for first in range(0, len(calls), AT_ONCE):
+            some = calls[first : first + AT_ONCE]
+            questions: list[Question] = []
+            for one, asked in some:
+                assert isinstance(one, _Run)
+                questions.append(one.question(asked))
+            contents, fault = self._ask_all(questions, NUMBERS)
+            for (_, asked), content in zip(some, contents, strict=False):
+                n = len(asked.x)
+                yield _answer(self._finite(content, (n + n * n,)), n)
+            if fault is not None:
+                self.teller = Teller()  # of what was told after it nothing was heard
+                raise fault
+
     def derivative(self, name: str, x: Array, given: Control | Reading) -> Array:
         """What the student's own function F, G or H returns. Raises FaultError."""
         n, told = len(x), self.teller.told(given)
@@ -128,7 +147,9 @@ class Sandboxed:
 
     def numbers(self, allowed: tuple[int, ...], what: str, *told: Any) -> Array:
         """Finite numbers that it answers, as many as is allowed. Raises FaultError."""
-        content = self._ask(NUMBERS, what, *told)
+        return self._finite(self._ask(NUMBERS, what, *told), allowed)
+
+    def _finite(self, content: bytes, allowed: tuple[int, ...]) -> Array:
         numbers = np.frombuffer(content[: len(content) // 8 * 8], "<f8").copy()
         if len(content) // 8 in allowed and all(map(math.isfinite, numbers.tolist())):
             return numbers
@@ -141,12 +162,23 @@ class Sandboxed:
         return short(in_a_line(answer), MOST_PLACE)
 
     def _ask(self, kind: int, what: str, *told: Any) -> bytes:
+        contents, fault = self._ask_all([(what, told)], kind)
+        if fault is not None:
+            raise fault
+        return contents[0]
+
+    def _ask_all(
+        self, questions: Sequence[Question], kind: int
+    ) -> tuple[list[bytes], FaultError | None]:
+        """What it answers, and what came of it where that is less than was asked."""
         if self._fatal is not None:
-            raise FaultError(*self._fatal)
+            return [], FaultError(*self._fatal)
         try:
-            return (self._process or self._begun()).ask(what, *told, kind=kind)
+            process = self._process or self._begun()
         except FaultError as fault:
-            raise self._told(fault) from None
+            return [], self._told(fault)
+        contents, failed = process.ask_all(questions, kind)
+        return contents, None if failed is None else self._told(failed)
 
     def _begun(self) -> Process:
         self._folder = copy_of(self._submission, shared=bool(self._through))
@@ -178,13 +210,14 @@ class _Run:
 
     def call(self, asked: Asked) -> Answer:
         """What the code makes of a motion input or a reading."""
-        x, P = asked.x, asked.P
-        told = self._sandbox.teller.told(asked.given)
-        numbers = self._sandbox.numbers(
-            (x.size + P.size,),
-            "call", self._number, x.tolist(), P.ravel().tolist(), told, asked.headings,
-        )  # fmt: skip
-        return _answer(numbers, len(x))
+        n, (what, told) = len(asked.x), self.question(asked)
+        return _answer(self._sandbox.numbers((n + n * n,), what, *told), n)
+
+    def question(self, asked: Asked) -> Question:
+        """The same call as it is told to the process."""
+        given = self._sandbox.teller.told(asked.given)
+        x, P = asked.x.tolist(), asked.P.ravel().tolist()
+        return "call", (self._number, x, P, given, asked.headings)
 
     def place_of(self, given: Control | Reading) -> str:
         """file:line of the code that answers to it."""

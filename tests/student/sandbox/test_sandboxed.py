@@ -175,6 +175,47 @@ def test_runs_side_by_side_have_objects_of_their_own_and_a_new_run_a_new_one(min
         assert [one.call(still).x[0] for one in (caller, other)] == [1, 2]
 
 
+def test_runs_side_by_side_are_asked_together(mine, monkeypatch):
+    """They answer as one by one, up to the one that fails, and go on as one by one after it."""
+    monkeypatch.setattr(sandboxed, "AT_ONCE", 4)
+    text = doing("if u[0] < 0: 1 / 0")
+    motions = [MoveTurn(0.1, 0.1 * k) for k in range(10)]  # a model that is new in every call
+    inputs = [np.array([1.0 + k, 0.5]) for k in range(10)]
+    here = InProcess(load(str(mine(text))))
+    right = [
+        here.call(Asked(ASKED.x, ASKED.P, Control(*one)))
+        for one in zip(motions, inputs, strict=True)
+    ]
+    inputs[6] = -inputs[6]
+    with Sandboxed(mine(text), limits=AMPLE) as caller:
+        calls = [
+            (caller.new_caller(), Asked(ASKED.x, ASKED.P, Control(*one)))
+            for one in zip(motions, inputs, strict=True)
+        ]
+        answers = caller.together(calls)
+        for expected, theirs in zip(right[:6], answers, strict=False):
+            assert np.array_equal(theirs.x, expected.x)
+            assert np.array_equal(theirs.P, expected.P)
+        with pytest.raises(FaultError, match=r"\Amine\.py:6: ZeroDivisionError"):
+            next(answers)
+        for expected, theirs in zip(right[7:], caller.together(calls[7:]), strict=True):
+            assert np.array_equal(theirs.P, expected.P)
+        assert np.array_equal(calls[7][0].call(calls[7][1]).P, right[7].P)
+
+
+def test_who_ends_among_others_has_answered_before(mine):
+    with Sandboxed(mine(doing("if u[0] < 0: os._exit(0)")), limits=AMPLE) as caller:
+        inputs = [np.array([length, 0.5]) for length in (1.0, 2.0, -3.0, 4.0)]
+        motion = ASKED.given.motion
+        answers = caller.together(
+            [(caller.new_caller(), Asked(ASKED.x, ASKED.P, Control(motion, u))) for u in inputs]
+        )
+        assert [round(float(np.hypot(*(next(answers).x - ASKED.x)[:2]))) for _ in "12"] == [1, 2]
+        for again in (answers, caller.together([(caller.new_caller(), ASKED)])):
+            with pytest.raises(FaultError, match="ended its process with status 0"):
+                next(again)
+
+
 def test_the_place_of_what_is_called_is_told(mine):
     with Sandboxed(mine(RIGHT), limits=AMPLE) as caller:
         caller.begin(ASKED.x, ASKED.P)

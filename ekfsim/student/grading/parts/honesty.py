@@ -56,7 +56,7 @@ def tally_of(scene: Scene, runs: int, pupil: Pupil) -> Tally:
 def _block(scene: Scene, numbers: Integers, pupil: Pupil) -> Tally:
     """The same of some runs side by side."""
     beginning = Beginning(first_belief(scene), scene.world.layout.headings)
-    filter = OwnFilter.around(pupil.new_caller, beginning)
+    filter = OwnFilter.around(pupil.new_caller, beginning, pupil.together)
     first = first_belief(scene, numbers.shape)
     steps = localize(entries_of(scene, numbers), filter, first, scene.guard, scene.world.layout)
     start = Watched.empty(numbers, steps_told(length_of(scene)))
