@@ -7,8 +7,8 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
+from ekfsim.filters.arithmetic.chi_square import band, quantile
 from ekfsim.filters.belief import Refused
-from ekfsim.filters.chi_square import band, quantile
 from ekfsim.records import Nees, Step
 
 LOST = 0.999  # NEES beyond this χ² quantile: lost

@@ -10,8 +10,8 @@ from ekfsim.diagnostics.summary import Errors, Summary
 from ekfsim.diagnostics.verdict import LOST
 from ekfsim.fast.many_steps import moved
 from ekfsim.fast.stretches import FEW, is_planar
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Gaussian
-from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array
 from ekfsim.geometry.outline import path_error
 from ekfsim.models.protocols import Motion

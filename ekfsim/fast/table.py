@@ -93,7 +93,7 @@ TWINS: tuple[Twin, ...] = (
     Twin(DESCEND, f"{ONE}.descent:descend", ALONE),
     Twin("ekfsim.filters.stretch:stretch", "ekfsim.fast.many_steps:stretch", ANY),
     Twin(
-        of="ekfsim.filters.chi_square:quantile",
+        of="ekfsim.filters.arithmetic.chi_square:quantile",
         form="ekfsim.fast.chi_square:quantile",
         when="up to 5 000 degrees of freedom, and a probability that is neither 0 nor 1",
     ),

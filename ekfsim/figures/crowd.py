@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ekfsim.diagnostics.verdict import LOST
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Refused
-from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.protocol import Filter
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap

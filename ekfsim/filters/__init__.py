@@ -6,11 +6,10 @@
     ukf.py     unscented                        protocol.py  what every filter offers
     pf.py      particles                        belief.py    Gaussian, Particles, Correction
     stretch.py many predictions in a row        tuning.py    numbers that a person may set
-    choice.py  the filter that a scene names    chi_square.py  quantiles of χ²
-    place.py   where one of one's own is found
+    choice.py  the filter that a scene names    place.py     where one of one's own is found
 
     variants/    about a plan; noise in the sigma points; a document's listing; counter-examples
-    arithmetic/  square roots of P, sigma points, the iterated filter's search
+    arithmetic/  square roots of P, sigma points, the iterated filter's search, quantiles of χ²
 
 The filters know no robot and no sensor: f, F, G, M, Q and h, H, R come from the models (see
 models/protocols.py). What is quicker than kalman.py and square_root.py as they stand is in

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ekfsim.filters.arithmetic.algebra import wrapped
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.arithmetic.square_root import (
     Conditioned,
     conditioned,
@@ -19,7 +20,6 @@ from ekfsim.filters.arithmetic.square_root import (
     square_root,
 )
 from ekfsim.filters.belief import Correction, Gaussian, Refused
-from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.twins import twinned
 

@@ -10,8 +10,8 @@ import numpy as np
 from ekfsim.diagnostics.coverage import within_cone
 from ekfsim.diagnostics.nees import OUTSIDE, ROUNDING, error, squared_mahalanobis
 from ekfsim.diagnostics.verdict import LOST
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Gaussian
-from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.ellipse import radius_factor
 from ekfsim.records import Nees

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from ekfsim.filters.chi_square import band
+from ekfsim.filters.arithmetic.chi_square import band
 from ekfsim.study.plan import Case
 from ekfsim.study.tally import Tally
 

@@ -34,7 +34,7 @@ def test_an_update_by_the_square_root_of_P_is_the_texts(rank, R, gate):
     posterior, correction = as_written(update)(Gaussian(x, P), reading, Rule(gate, False, (2,)))
     assert gate is None or rank == 0 or {0, 4} == set(correction.refused.tolist())
 
-    from ekfsim.filters.chi_square import quantile
+    from ekfsim.filters.arithmetic.chi_square import quantile
 
     limit = math.inf if gate is None else quantile(gate, 1)
     means, upper, room = x.T.copy(), P[:, *UPPER].T.copy(), np.empty((3, 3))

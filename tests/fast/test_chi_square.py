@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from ekfsim import twins
 from ekfsim.fast import chi_square as quick
-from ekfsim.filters.chi_square import quantile
+from ekfsim.filters.arithmetic.chi_square import quantile
 
 DOFS = st.one_of(st.integers(1, 12), st.integers(1, quick.LARGEST))
 PROBABILITIES = st.one_of(

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import chi2
 
-from ekfsim.filters.chi_square import band, quantile
+from ekfsim.filters.arithmetic.chi_square import band, quantile
 
 
 @given(st.floats(0.001, 0.9999), st.integers(1, 2000))

@@ -9,10 +9,10 @@ from problems import Bent, close, landmark, problem
 from systems_scenes import gnss
 
 from ekfsim.files.scenes.load import load_scene
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.arithmetic.square_root import square_root
 from ekfsim.filters.arithmetic.unscented import reach
 from ekfsim.filters.belief import Gaussian, Refused
-from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.ukf import UKF
 from ekfsim.localization import play

@@ -11,7 +11,7 @@ from scenes import NOISE, scene
 from ekfsim.commands import Move, Sense
 from ekfsim.diagnostics.nees import error, nees
 from ekfsim.diagnostics.verdict import LOST
-from ekfsim.filters.chi_square import quantile
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.localization import play
 from ekfsim.study.block import run_block
 from ekfsim.study.comparison import correlation, of_means, of_shares

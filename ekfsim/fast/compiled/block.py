@@ -16,7 +16,7 @@ from ekfsim.diagnostics.verdict import LOST
 from ekfsim.fast.compiled import beams, judging, steps
 from ekfsim.fast.many.nees import CLEAR
 from ekfsim.filters.arithmetic import tolerances
-from ekfsim.filters.chi_square import quantile
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.ellipse import cone_factor, radius_factor

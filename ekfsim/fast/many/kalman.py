@@ -8,10 +8,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.arithmetic.square_root import covariance as as_covariance
 from ekfsim.filters.arithmetic.tolerances import SHARP
 from ekfsim.filters.belief import Correction, Gaussian, Refused
-from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.kalman import Linearized, Rule
 from ekfsim.filters.kalman import update as update_of_any
 from ekfsim.geometry import Array, Booleans

@@ -12,9 +12,9 @@ from ekfsim.fast.one.square_root import (
     square_root_one,
     squared_one,
 )
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.arithmetic.tolerances import SHARP
 from ekfsim.filters.belief import Correction, Gaussian, Refused
-from ekfsim.filters.chi_square import quantile
 from ekfsim.filters.kalman import Linearized, Rule
 from ekfsim.geometry import Array
 

@@ -16,7 +16,7 @@ from ekfsim.figures.album import (
 )
 from ekfsim.figures.classroom.proofs import RUNS, shipped
 from ekfsim.figures.classroom.room import room
-from ekfsim.filters.chi_square import quantile
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.localization import play
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Reading, Step

@@ -10,7 +10,7 @@ from ekfsim.figures.album import BLACK, BLUE, SKY, VERMILLION, Album, labelled
 from ekfsim.figures.pylon.runs import Runs
 from ekfsim.figures.pylon.sight import INSIDE, Innovations, inside
 from ekfsim.figures.pylon.what_is_left import Tries, table, what_is_left
-from ekfsim.filters.chi_square import band
+from ekfsim.filters.arithmetic.chi_square import band
 
 
 def innovations(runs: Runs, album: Album) -> None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ekfsim.filters.chi_square import band
+from ekfsim.filters.arithmetic.chi_square import band
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.layout import INERTIAL
 from ekfsim.records import Step

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from ekfsim.figures.album import BLACK, BLUE, GREY, ORANGE, SKY, VERMILLION, Album, labelled
 from ekfsim.figures.pylon.runs import Told, as_noisy, turned_by_the_yaw_of
 from ekfsim.figures.pylon.sight import INSIDE, LONG, TURNING, Innovations, inside
-from ekfsim.filters.chi_square import quantile
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.geometry import Array, Booleans
 from ekfsim.localization import play
 from ekfsim.systems.instruments import Pylon

@@ -13,8 +13,8 @@ from pathlib import Path
 from ekfsim.errors import UsageError
 from ekfsim.files.keys.fields import aliases
 from ekfsim.files.keys.world import NoiseKeys
+from ekfsim.files.logs.degrees import degrees
 from ekfsim.files.logs.formats.classroom import COLUMNS, ENTRIES, TRUTH, TRUTH_COLUMNS, WORLD
-from ekfsim.files.logs.formats.degrees import degrees
 from ekfsim.files.results.writing import whole_folder
 from ekfsim.files.scenes.polygons import FloorPlan
 from ekfsim.geometry import Array

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 from ekfsim.diagnostics.summary import Errors, Summary
 from ekfsim.diagnostics.verdict import BAND, LOST, Evidence, Verdict
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Refused
-from ekfsim.filters.chi_square import quantile
 from ekfsim.records import Nees
 from ekfsim.scene import Scene
 from ekfsim.views.terminal.parting import Apart

@@ -4,8 +4,8 @@ import numpy as np
 
 from ekfsim.diagnostics.coverage import inside_cone, inside_ellipse
 from ekfsim.diagnostics.verdict import SURPRISING
+from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Particles
-from ekfsim.filters.chi_square import quantile
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse
 from ekfsim.records import Nees, Step
 from ekfsim.views.words.numbers import fine, heading, number, turn

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from ekfsim.files.logs.formats.degrees import degrees, radians
+from ekfsim.files.logs.degrees import degrees, radians
 
 
 def test_every_angle_comes_back():

@@ -17,8 +17,8 @@ import numpy as np
 from ekfsim.commands import Sense, Untold
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.keys.fields import FAR, FARTHEST
+from ekfsim.files.logs.degrees import radians
 from ekfsim.files.logs.folder import find, find_any, folder_of
-from ekfsim.files.logs.formats.degrees import radians
 from ekfsim.files.logs.header import places_of, separator_of
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.table import is_number
