@@ -72,7 +72,8 @@ def test_who_does_nothing_earns_nothing(asked, tmp_path, partial):
     lazy += "def update(x, P, z, sensor):\n    return x, P\n"
     score = steps(asked, tmp_path, lazy, partial)
     assert score.cents == 0
-    assert score.words[-2:] == ("0 of 8 moves are right", "0 of 8 readings are right")
+    nothing = "for 8 of them its own belief left nothing to do"
+    assert score.words[-2:] == ("0 of 8 moves are right", f"0 of 8 readings are right; {nothing}")
 
 
 def test_who_fails_at_readings_has_half_for_the_moves(asked, tmp_path, monkeypatch):

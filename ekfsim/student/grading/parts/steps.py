@@ -125,7 +125,9 @@ def _words(
             yield f"also, at {seen.steps} steps, the first {where}: {mistake.told}; {mistake.read}"
     for what, kind in (("moves", moves), ("readings", readings)):
         if kind.of and not (result.equal and kind.right == kind.of == kind.seen):
-            yield f"{kind.right} of {max(kind.of, kind.seen)} {what} are right"
+            never = kind.of - kind.seen
+            why = f"; for {never} of them its own belief left nothing to do" if never > 0 else ""
+            yield f"{kind.right} of {max(kind.of, kind.seen)} {what} are right{why}"
     if result.equal:
         yield f"all {result.steps} steps are right, to {result.largest:.1g} σ"
 
