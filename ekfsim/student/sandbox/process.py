@@ -37,7 +37,7 @@ from ekfsim.student.sandbox.keeper import KILLING, MOST_LEFT, TOO_MANY, descenda
 from ekfsim.student.sandbox.limits import ALONE, Limits
 
 STARTING = 120.0  # s in which Python and NumPy have started even on a busy machine
-GRACE = 0.25  # s beyond its time in which it can still say where it was
+GRACE = 2.0  # s beyond its time in which it can still say where it was, or how it has ended
 CHUNK = 2**16
 MOST_PARTS = 64  # of what it has printed when it is not waited for
 FORGED = "writes to the exchange itself; only what a function returns counts"
