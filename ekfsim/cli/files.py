@@ -125,7 +125,7 @@ def show(name: str, world: bool, out: Path | None, force: bool) -> None:
     A copy is the same to the last character. `ekfsim new FILE --from NAME` makes one of a commands
     file that plays from where it lies.
     """
-    from ekfsim.files.packaged import kind_of, resolve, source_name, world_of
+    from ekfsim.files.packaged import kind_of, packaged, resolve, source_name, world_of
     from ekfsim.files.results.writing import whole_text
     from ekfsim.files.source import as_written
 
@@ -139,7 +139,9 @@ def show(name: str, world: bool, out: Path | None, force: bool) -> None:
         return
     with whole_text(out, force) as file:
         file.write(text)
-    click.echo(in_a_line(f"{out}: a copy of {source_name(path)}"))
+    plays = f"; ekfsim new FILE --from {name} makes one that plays from where it lies"
+    copied = f"{out}: a copy of {source_name(path)}"
+    click.echo(in_a_line(copied + plays if path == packaged("commands").get(name) else copied))
 
 
 @click.command(short_help="Write a commented file to start from, or a copy of one.")

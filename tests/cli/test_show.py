@@ -33,7 +33,11 @@ def test_the_world_is_that_which_the_commands_name():
 def test_a_copy_is_the_same_whole_or_absent(place):
     tour = packaged("commands")["tour"].read_bytes()
     told = ekfsim("show", "tour", "-o", "lesson/tour.yaml")
-    assert (told.status, told.out) == (0, "lesson/tour.yaml: a copy of commands/tour.yaml\n")
+    assert (told.status, told.out) == (
+        0,
+        "lesson/tour.yaml: a copy of commands/tour.yaml; ekfsim new FILE --from tour makes one "
+        "that plays from where it lies\n",
+    )
     assert Path("lesson/tour.yaml").read_bytes() == tour
     again = ekfsim("show", "tour", "--world", "-o", "lesson/tour.yaml")
     assert again.status == 2
