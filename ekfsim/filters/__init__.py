@@ -20,12 +20,12 @@ from ekfsim.filters.ekf import EKF
 from ekfsim.filters.iekf import IEKF
 from ekfsim.filters.kf import KF
 from ekfsim.filters.pf import PF
-from ekfsim.filters.protocol import Filter
+from ekfsim.filters.protocol import Kind
 from ekfsim.filters.ukf import UKF
 from ekfsim.filters.variants.nominal import NominalKF
 from ekfsim.filters.variants.ukf_augmented import AugmentedUKF
 
-FILTERS: dict[str, type[Filter]] = {
+FILTERS: dict[str, Kind] = {
     "kf": KF,
     "kf-nominal": NominalKF,
     "ekf": EKF,

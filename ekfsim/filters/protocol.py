@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Protocol, Self
+from typing import TYPE_CHECKING, Protocol
 
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.filters.tuning import UNTUNED, Tuning
@@ -32,13 +32,6 @@ class Beginning:
 class Filter(Protocol):
     """A filter holds its settings and nothing else; beliefs go in and come out."""
 
-    # what a reader of its results should know of it, without a full stop; "" if nothing
-    remark: ClassVar[str]
-
-    @classmethod
-    def begin(cls, beginning: Beginning) -> Self:
-        """The filter for a run that begins so."""
-
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Belief, Prediction]:
         """The belief after a motion input u : (…, m)."""
 
@@ -51,11 +44,13 @@ class Filter(Protocol):
 
 
 class Kind(Protocol):
-    """What filters of one kind have in common: FILTERS holds the built-in ones."""
+    """What filters of one kind have in common, a class of them as a rule; FILTERS holds those that
+    are built in.
+    """
 
     @property
     def remark(self) -> str:
-        """Of its filters."""
+        """What a reader of their results should know, without a full stop; "" if nothing."""
 
     def begin(self, beginning: Beginning) -> Filter:
-        """A filter of the kind for a run that begins so."""
+        """A filter of the kind for a run that begins so; of a class, a classmethod."""

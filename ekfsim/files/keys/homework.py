@@ -76,7 +76,7 @@ class StepsKeys(Strict):
 
 
 class JacobiansKeys(Strict):
-    """The student's own derivatives, functions in his file, beside the numerical ones.
+    """The student's own derivatives, functions in the same file, beside numerical ones.
     Each is a test of its own.
     """
 
@@ -100,7 +100,7 @@ class HonestyKeys(Strict):
 
 
 class InputsKeys(Strict):
-    """The student's own commands files, beside his filter."""
+    """The student's own commands files, beside the filter."""
 
     files: int | None = Field(
         None,
@@ -172,7 +172,7 @@ class LimitsKeys(Strict):
 
     seconds: Annotated[float, Field(gt=0, le=3600, examples=[60])] = Field(
         60.0,
-        description="Of CPU, for each test: what his process calculates itself, however busy the "
+        description="Of CPU, for each test: what its process calculates itself, however busy the "
         "machine is. Who sleeps is waited for 4 times as long and 20 s.",
     )
     memory: Annotated[int, Field(ge=512, le=65536, examples=[512])] = Field(

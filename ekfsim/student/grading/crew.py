@@ -26,7 +26,7 @@ from ekfsim.student.grading.submissions import Submission
 from ekfsim.student.sandbox.limits import patience as waited
 from ekfsim.study.running.engines import one_thread_each
 
-SLOWER = 3  # by so much we may take longer than his code is waited for
+SLOWER = 3  # by so much we may take longer than a student's code is waited for
 START = 120.0  # s, until a process has begun
 MOST_MEMORY = 4096  # MiB of a process that grades
 ENDING = 5.0  # s

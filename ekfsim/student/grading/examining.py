@@ -1,6 +1,6 @@
 """One test of one submission, from what is asked to points and words.
 
-Whatever goes wrong here costs that test alone: a student's failure is his, ours is told as ours.
+Whatever goes wrong here costs that test alone: a failure of ours is told as ours, not a student's.
 """
 
 import signal

@@ -6,7 +6,7 @@ forms.py     two functions, a class with x and P, a class of the full protocol
 handed.py    motion and sensor as the code is handed them
 returned.py  what comes back: two values, shapes, finite numbers; then whether they can be
 calls.py     the calls, in this process
-derivatives.py  F, G and H, where he wrote his own
+derivatives.py  F, G and H, where a student wrote them, too
 filter.py    the filter around them
 whole.py     a class of the full protocol, looked after
 choice.py    the filter that a place stands for

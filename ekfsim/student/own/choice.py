@@ -39,7 +39,7 @@ class Own:
             code = load(self.place)
         code.home.mute = many
         if isinstance(code.form, Whole):
-            return WholeFilter.around(code, beginning)
+            return WholeFilter.around(code, code.form, beginning)
         return OwnFilter.around(partial(InProcess, code), beginning)
 
 

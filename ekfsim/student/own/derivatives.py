@@ -1,4 +1,4 @@
-"""A student's own derivatives: functions F, G and H in his file."""
+"""A student's own derivatives: functions F, G and H in the same file."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -14,7 +14,7 @@ from ekfsim.student.own.returned import WrongError, numbers
 def derivative(
     code: Code, name: str, x: Array, given: Control | Reading, provided: Sequence[str] | None
 ) -> Array:
-    """What his F(x, u, motion) : (n, n), G(x, u, motion) : (n, m) or H(x, sensor) : (k, n) returns.
+    """What the F(x, u, motion) : (n, n), G(x, u, motion) : (n, m) or H(x, sensor) : (k, n) returns.
 
     Raises FaultError where there is no such function, or where it fails or returns something else.
     """

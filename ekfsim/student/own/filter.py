@@ -42,11 +42,6 @@ class OwnFilter:
     callers: dict[Run, Caller] = field(default_factory=dict)  # one for each run
 
     @classmethod
-    def begin(cls, beginning: Beginning) -> Self:
-        """Around no code there is no filter: see `around`."""
-        raise NotImplementedError
-
-    @classmethod
     def around(
         cls,
         new_caller: Callable[[], Caller],

@@ -1,7 +1,7 @@
 """A class of one's own of the full protocol of filters: called as it is, and looked after."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -14,6 +14,7 @@ from ekfsim.models.protocols import Motion, Sensor
 from ekfsim.records import Control, Reading
 from ekfsim.student.asked import Asked
 from ekfsim.student.fault import FaultError
+from ekfsim.student.own.forms import Whole
 from ekfsim.student.own.loading import Code
 from ekfsim.student.own.returned import WrongError, judged, looked_at
 
@@ -29,19 +30,15 @@ class WholeFilter:
 
     remark: ClassVar[str] = ""
     code: Code
-    filter: Any
+    kind: Any  # the student's class
+    filter: Any  # and what began of it
     headings: tuple[int, ...]
 
     @classmethod
-    def begin(cls, beginning: Beginning) -> Self:
-        """Around no code there is no filter: see `around`."""
-        raise NotImplementedError
-
-    @classmethod
-    def around(cls, code: Code, beginning: Beginning) -> Self:
+    def around(cls, code: Code, form: Whole, beginning: Beginning) -> Self:
         """The filter for a run that begins so. Raises FaultError."""
-        whole = cls(code, None, beginning.headings)
-        return cls(code, whole._run("begin", code.form.kind.begin, beginning), beginning.headings)  # type: ignore[union-attr]
+        whole = cls(code, form.kind, None, beginning.headings)
+        return replace(whole, filter=whole._run("begin", whole.kind.begin, beginning))
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Belief, Prediction]:
         """As the student's filter."""
@@ -113,5 +110,4 @@ class WholeFilter:
         return theirs
 
     def _place(self, step: str) -> str:
-        kind = self.code.form.kind  # type: ignore[union-attr]
-        return self.code.place_of(getattr(kind, step))
+        return self.code.place_of(getattr(self.kind, step))

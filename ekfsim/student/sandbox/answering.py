@@ -41,7 +41,7 @@ def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits)
                 failed = False
             except FaultError as error:
                 message = faulted(error.place, alarms.rung or error.wrong, mark)
-            except BaseException as error:  # of his, where it is called by ours: __array__ may exit
+            except BaseException as error:  # of the code, where ours calls it: __array__ may exit
                 place = _place(error, asked["folder"]) or label
                 message = faulted(place, alarms.rung or words_of(error), mark)
             _flush()
@@ -85,7 +85,7 @@ class Alarms:
             raise TimeoutError(self.rung)
 
     def __enter__(self) -> None:
-        if self.rung:  # a thread of his went on between two questions
+        if self.rung:  # a thread of the code went on between two questions
             raise TimeoutError(self.rung)
         self._within = True
 

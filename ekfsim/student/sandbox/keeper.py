@@ -1,6 +1,6 @@
 """Over there: who starts the process with the student's code, and ends whatever that started.
 
-It holds no number of a student's and calls nothing of his. On Linux all that loses its parent below
+It holds no number of a student's and calls nothing of it. On Linux all that loses its parent below
 it becomes its child (PR_SET_CHILD_SUBREAPER), whatever session it has gone to: when it has no child
 left, nothing is left. It ends when the code's process does, when it is told to (SIGTERM), or when
 the other end of the exchange is closed, be it because the parent was killed: then it deletes the

@@ -12,7 +12,7 @@ LEAST_MEMORY = 512  # MiB; with less NumPy itself does not start everywhere
 OPEN_FILES = 128
 MEBI = 2**20
 LINUX = sys.platform == "linux"
-AGAIN = 0.1  # s of CPU after which who did not heed it is told again that his time is over
+AGAIN = 0.1  # s of CPU after which who did not heed it is told again that its time is over
 # One thread: each of OpenBLAS's takes its share of the memory, and waits for the others. To be set
 # before NumPy is imported.
 ALONE = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -90,7 +90,7 @@ def _keep(what: int, soft: int, hard: int) -> None:
 
 def _tasks() -> int:
     """Processes and threads that this user has already: they are counted in the limit, too, and
-    those that he starts afterwards.
+    those that are started afterwards.
     """
     tasks, user = 0, os.getuid()
     for name in os.listdir("/proc") if LINUX else ():

@@ -85,7 +85,7 @@ class Process:
             self._wait.register(pipe, select.POLLIN)
         try:
             _, self.fenced = map(int, np.frombuffer(self.ask("hello")))
-        except FaultError as fault:  # none of the student's: his code has not been read yet
+        except FaultError as fault:  # none of the student's: the code has not been read yet
             wrong = fault.wrong if self._left > 0 else f"did not start within {STARTING:g} s"
             told = short(in_a_line(" ".join(self.printed[0].split()[-30:])), 200)
             begun = f"the process for a student's code, through {' '.join(through) or 'nothing'}"

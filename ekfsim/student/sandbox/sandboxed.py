@@ -32,7 +32,7 @@ class Sandboxed:
     A fault of the code leaves the process alive; one that ended it, or took too long, is raised
     again by every later call. To be closed, or used in a `with`.
 
-        submission   his file, or his folder; it is copied, and never touched
+        submission   a file, or a folder; it is copied, and never touched
         file         in a folder, the file with the code
         name         of a class in it, "" for the one that is there
         provided     which equations of the models may be asked for; None: all

@@ -59,7 +59,7 @@ SIGMA_POINTS = Origins(
     linear=False,
 )
 
-BY_FILTER: dict[type[protocol.Filter], Origins] = {
+BY_FILTER: dict[protocol.Kind, Origins] = {
     EKF: Origins(),
     KF: _tangents("the first state estimate"),
     NominalKF: _tangents("on the nominal trajectory"),

@@ -18,4 +18,4 @@ class Pupil(Caller, Protocol):
         """What comes of calls of its callers, asked at once. Raises FaultError where one fails."""
 
     def derivative(self, name: str, x: Array, given: Control | Reading) -> Array:
-        """What his F, G or H makes of a motion input or a sensor. Raises FaultError."""
+        """What the student's F, G or H makes of a motion input or a sensor. Raises FaultError."""
