@@ -3,17 +3,20 @@
 #            are right is found where it is at each of those instants, at 1 Hz as at 20 Hz.
 # Behaviour: at 1 Hz it is found up to 1 m from there, and known to 9 mm. bayesfilter's run moves the belief by a period
 #            before each entry, the first one too, and takes all readings since the last entry as of the entry's own
-#            instant. A start that is known exactly is a period ahead, and stays so until readings say otherwise; readings
-#            made 0.1 s after each entry are used 0.9 s late, and the belief lags by that; four readings a period count
-#            as four of one instant, 0.375 m behind. Such a lag is the same at each step, so that the NIS is 0 and tells
-#            nothing. Right: a period that divides all gaps between readings, and a start of one period before the first.
+#            instant. A start that is known exactly is a period ahead, and stays so until readings say otherwise;
+#            readings made 0.1 s after each entry are used 0.9 s late, and the belief lags by that; four readings a
+#            period count as four of one instant, 0.375 m behind. Such a lag is the same at each step, so that the NIS
+#            is 0 and tells nothing. Right: a period that divides all gaps between readings, and a start of one period
+#            before the first.
 # Version:   bayesfilter 0.2.0 (PyPI)
-# Source:    run below; BayesianFilter.run: a prediction by the period at the first instant, too, then all readings up to it
+# Source:    run below; BayesianFilter.run: a prediction by the period at the first instant, too, then all readings up
+#            to it
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
-"$folder/venv/bin/pip" install -q bayesfilter==0.2.0 numpy==2.4.6 2> "$folder/pip.log" || { cat "$folder/pip.log"; exit 1; }
+"$folder/venv/bin/pip" install -q bayesfilter==0.2.0 numpy==2.4.6 \
+  2> "$folder/pip.log" || { cat "$folder/pip.log"; exit 1; }
 "$folder/venv/bin/python" - <<'PYTHON'
 import contextlib
 import os

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Guess:     who sets a filter's statePost keeps his own array as it was, and who reads the belief after each step and
 #            keeps it has one belief a step.
-# Behaviour: OpenCV works in the arrays that were handed to it, and hands out the same array each time: after three steps
-#            the caller's start, which he keeps for comparison, and each of the three beliefs that he has kept, from
-#            what correct returns or from statePost, are the last belief. Drawn as a track, it is one point.
+# Behaviour: OpenCV works in the arrays that were handed to it, and hands out the same array each time: after three
+#            steps the caller's start, which he keeps for comparison, and each of the three beliefs that he has kept,
+#            from what correct returns or from statePost, are the last belief. Drawn as a track, it is one point.
 # Version:   opencv-python-headless 5.0.0.93 (PyPI)
 # Source:    run below
 set -euo pipefail

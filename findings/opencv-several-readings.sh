@@ -3,8 +3,8 @@
 #            variances 1/2, 1/3, 1/4 after them; a reading that comes before the first prediction counts, too.
 # Behaviour: OpenCV's correct starts from the last prediction each time, not from what the reading before has taught: of
 #            several readings of an instant only the last one counts, means 3, 1, 2 and variance 1/2 three times. Before
-#            the first predict that prediction is 0 with variance 0, whatever statePost and errorCovPost were set to: the
-#            reading counts for nothing, the start is forgotten, and the filter is certain of 0.
+#            the first predict that prediction is 0 with variance 0, whatever statePost and errorCovPost were set to:
+#            the reading counts for nothing, the start is forgotten, and the filter is certain of 0.
 # Version:   opencv-python-headless 5.0.0.93 (PyPI)
 # Source:    run below; cv2.KalmanFilter.correct reads statePre and errorCovPre, writes statePost and errorCovPost
 set -euo pipefail

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Guess:     a pose estimator that is told standard deviations of its wheels, 0.1 m, and of a camera, 0.5 m, follows the
 #            camera more after 1 km by wheels than after 1 cm, and the second of two readings less than the first.
-# Behaviour: wpimath's estimator, told to wrap an Unscented Kalman Filter, has no covariance. The camera's share is always
-#            q / (q + r) of the two standard deviations, 1/6, not q² / (q² + r²), 1/26: after 1 cm, 1 m and 1 km, and for
-#            the tenth reading of a robot that stands still as for the first, so that ten readings count for 84 %.
+# Behaviour: wpimath's estimator, told to wrap an Unscented Kalman Filter, has no covariance. The camera's share is
+#            always q / (q + r) of the two standard deviations, 1/6, not q² / (q² + r²), 1/26: after 1 cm, 1 m and 1 km,
+#            and for the tenth reading of a robot that stands still as for the first: ten readings count for 84 %.
 # Version:   robotpy-wpimath 2026.2.2 (PyPI), DifferentialDrivePoseEstimator
 # Source:    run below; its docstring, and the root of q / r in the gain of a steady filter
 set -euo pipefail

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Guess:     a filter of variance 1 that is told "standard deviations of measurements" of 1 has variance 1/2, 1/3, 1/4 after
-#            readings of one instant.
+# Guess:     a filter of variance 1 that is told "standard deviations of measurements" of 1 has variance 1/2, 1/3, 1/4
+#            after readings of one instant.
 # Behaviour: only where a step takes a second. wpimath's KalmanFilter and ExtendedKalmanFilter divide the variance of a
 #            reading by the seconds of the last prediction: in the 0.02 s of a robot's loop a reading of 1 weighs as one
 #            of 7, the variance is 0.980 after the first and 0.943 after the third; a loop that runs twice as slowly
