@@ -61,9 +61,8 @@ class InProcess:
                 returned = self._run(step, asked.x.copy(), asked.P.copy(), value, handed)
                 return answer(returned, step, n)
             self._agree(asked)
-            self._agreed = None  # it may fail half-way
-            self._run(step, value, handed)
-            return self._told(asked)
+            before, self._agreed = self._agreed, None  # it may fail half-way
+            return self._told(asked, before, self._run(step, value, handed), step)
         except WrongError as wrong:
             raise FaultError(self.place_of(given), str(wrong)) from None
 
@@ -91,16 +90,29 @@ class InProcess:
                     self._code.home.blame(error, self._head("__init__"))
             self._turned = 0.0
 
-    def _told(self, asked: Asked) -> Answer:
-        """What the object believes now; its headings as far from those asked as it has turned."""
+    def _told(
+        self, asked: Asked, before: tuple[Array, Array] | None, returned: Any, step: str
+    ) -> Answer:
+        """What the object believes now; its headings as far from those asked as it has turned.
+
+        before : its belief then, returned : by its method, whose return is not looked for
+        """
         values: list[Any] = []
         for name in ("x", "P"):
             try:
                 values.append(getattr(self._object, name))
             except AttributeError:
                 kind = type(self._object).__name__
-                raise WrongError(f"{kind} has no attribute '{name}' after the call") from None
+                has = ", ".join(sorted(getattr(self._object, "__dict__", {})))
+                right = f"; it has {has}, and a belief is x and P" if has else ""
+                raise WrongError(
+                    f"{kind} has no attribute '{name}' after the call{right}"
+                ) from None
         theirs = looked_at(values[0], values[1], len(asked.x))
+        if self._keeps(before, theirs) and _is_another(returned, theirs):
+            raise WrongError(
+                f"{step} returns what it does not keep; write `self.x, self.P = …` in it"
+            )
         # what it has wrapped itself has not turned so far
         apart = np.abs(theirs.x - self._turned - asked.x), np.abs(theirs.x - asked.x)
         x = theirs.x - np.where(apart[0] <= apart[1], self._turned, 0.0)
@@ -111,11 +123,29 @@ class InProcess:
         self._agreed = wrapped, theirs.P.copy()
         return Answer(x, theirs.P)
 
+    def _keeps(self, before: tuple[Array, Array] | None, theirs: Answer) -> bool:
+        """Whether the object believes what it believed before."""
+        if before is None:
+            return False
+        x, P = before
+        return np.array_equal(theirs.x - self._turned, x) and np.array_equal(theirs.P, P)
+
     def _head(self, step: str) -> str:
         return where(self._called(step)) or self._code.label
 
     def _called(self, step: str) -> Any:
         return getattr(self._form if isinstance(self._form, Functions) else self._form.kind, step)
+
+
+def _is_another(returned: Any, theirs: Answer) -> bool:
+    """Whether that is a belief, and not the one that is kept."""
+    try:
+        x, P = (np.asarray(part, float) for part in returned)
+    except Exception:
+        return False
+    return (x.shape, P.shape) == (theirs.x.shape, theirs.P.shape) and not (
+        np.array_equal(x, theirs.x) and np.array_equal(P, theirs.P)
+    )
 
 
 def _step(given: Control | Reading) -> str:

@@ -59,12 +59,14 @@ def form_of(module: ModuleType, name: str, told: str) -> Form:
         raise UsageError(f"{told}: holds {len(kinds)} filters; name one of them: {names}")
     if kinds and not any(map(_plain, found)):
         return _checked(_of_class(kinds[0]), told)
+    near = [name for name in vars(module) if _plain(getattr(module, name)) and _named_nearly(name)]
     missing = " and no ".join(
         f"{step}({', '.join(taken)})"
         for (step, taken), one in zip(STEPS.items(), found, strict=True)
         if not _plain(one)
     )
-    raise UsageError(f"{told}: has no {missing}; {RIGHT}")
+    has = f"; it has {', '.join(near)}" if near else ""
+    raise UsageError(f"{told}: has no {missing}{has}; {RIGHT}")
 
 
 def told(form: Form) -> str:
@@ -106,6 +108,11 @@ def _of_class(kind: type) -> Form:
     return Whole(kind) if callable(getattr(kind, "begin", None)) else Stateful(kind)
 
 
+def _named_nearly(name: str) -> bool:
+    """Whether a function is one of the two, but for its name: ekf_predict, Update."""
+    return name not in STEPS and any(step in name.lower() for step in STEPS)
+
+
 def _plain(value: Any) -> bool:
     """Whether it may be one of the two functions."""
     return callable(value) and not isinstance(value, type)
@@ -133,6 +140,10 @@ def _checked(form: Form, told: str) -> Form:
             right = f"write {step}({of}{', '.join(taken)})"
             wrong = f"{step}{_signature(function)} does not take what it is given"
             raise UsageError(f"{place or told}: {wrong}; {right}")
+        names = [name for name in _names(function) if name in taken]
+        if len(names) == len(taken) and tuple(names) != taken:
+            wrong = f"{step} takes {', '.join(names)}, but is given {', '.join(taken)}"
+            raise UsageError(f"{where(function) or told}: {wrong}; write them in this order")
     if isinstance(form, Stateful) and not _takes(form.kind, ("x", "P")):
         place = where(form.kind.__init__)  # type: ignore[misc]
         wrong = f"{form.kind.__name__}{_signature(form.kind)} is not begun with x and P"
@@ -149,6 +160,14 @@ def _takes(function: Callable[..., Any], taken: tuple[str, ...]) -> bool:
     except ValueError:  # no signature is known
         return True
     return True
+
+
+def _names(function: Callable[..., Any]) -> tuple[str, ...]:
+    """What it takes, by name and in order; none where that is not known."""
+    try:
+        return tuple(inspect.signature(function).parameters)
+    except (TypeError, ValueError):
+        return ()
 
 
 def _signature(function: Callable[..., Any]) -> str:

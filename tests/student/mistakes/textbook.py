@@ -361,6 +361,7 @@ OF_OTHERS = {  # mistake, scene → the change
     ("sigma-in-P_u", "gnss"): ("motion.M(u)", "np.sign(motion.M(u)) * np.sqrt(abs(motion.M(u)))"),
     ("J_x-transposed", "landmarks"): ("F @ P @ F.T", "F.T @ P @ F"),
     ("J_x-after-move", "landmarks"): ("motion.F(x, u)", "motion.F(motion.f(x, u), u)"),
+    ("J_x-exchanged", "landmarks"): ("    P = F", "    F[:2, 2] = F[1::-1, 2]\n    P = F"),
     ("P-not-updated", "pylon"): ("    P = (np.eye(len(x)) - K @ H) @ P\n", ""),
     ("sigma-in-C_v", "mower"): ("sensor.R(x)", "np.sqrt(sensor.R(x))"),
     ("J_H-sign-x", "ranges"): (

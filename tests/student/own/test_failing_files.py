@@ -138,8 +138,12 @@ def test_a_wrong_revision_is_told_at_its_line(place):
         ("self.x, self.P = x, P", "self.state = x", "8: {}: AttributeError: 'Mine' object has no"),
         ("self.x, self.P = x, P", "raise ValueError('no')", "5: {}: ValueError: no"),
         ("self.x = motion.f(self.x, u)", "del self.x", "7: {}: Mine has no attribute 'x' after"),
+        ("self.x = motion.f(self.x, u)", "self.mu = self.x; del self.x",
+         "7: {}: Mine has no attribute 'x' after the call; it has P, mu, and a belief is x and P"),
+        ("self.x = motion.f(self.x, u)", "return motion.f(self.x, u), self.P",
+         "9: {}: predict returns what it does not keep; write `self.x, self.P = …` in it"),
     ],
-)
+)  # fmt: skip
 def test_a_class_is_told_at_its_line(place, old, new, told):
     assert str(fault(place, CLASS.replace(old, new, 1))).startswith(f"mine.py:{told.format(MOVE)}")
 
@@ -228,6 +232,17 @@ TWO = CLASS + CLASS.replace("class Mine", "class Other")
             "def predict(x, P, u, motion):\n    return x, P\n",
             "mine.py",
             f"mine.py: has no update(x, P, z, sensor); {RIGHT}",
+        ),
+        (
+            FUNCTIONS.replace("def update", "def kf_update"),
+            "mine.py",
+            f"mine.py: has no update(x, P, z, sensor); it has kf_update; {RIGHT}",
+        ),
+        (
+            FUNCTIONS.replace("(x, P, z, sensor)", "(z, sensor, x, P)"),
+            "mine.py",
+            "mine.py:7: update takes z, sensor, x, P, but is given x, P, z, sensor; "
+            "write them in this order",
         ),
         (
             FUNCTIONS.replace("(x, P, z, sensor)", "(x, P, z)"),

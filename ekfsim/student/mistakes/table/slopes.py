@@ -120,8 +120,8 @@ OF_SLOPES = (
     Mistake(
         "J_x-exchanged",
         "your P is the one with sine and cosine exchanged in J_x: ∂x/∂θ and ∂y/∂θ",
-        "eq 6: ∂x/∂θ = −d sin θ, ∂y/∂θ = d cos θ",
-        move_turn,
+        "eq 6: J_x, the derivatives of the first and of the second line of Φ by θ",
+        moves,
         tuple({"F": _exchanged_column(*signs)} for signs in ((-1, -1), (1, 1), (1, -1))),
     ),
     Mistake(
