@@ -1,6 +1,4 @@
-"""The commands that look at files and make them: check, schema, list, show, new,
-figures.
-"""
+"""The commands that look at files and make them: check, schema, list, show, new, figures."""
 
 import sys
 from pathlib import Path

@@ -22,6 +22,7 @@ from ekfsim.localization import play
 from ekfsim.models.layout import Layout
 from ekfsim.records import Nees, Step
 from ekfsim.scene import Scene
+from ekfsim.simulation.draws import BLOCK
 from ekfsim.study.counting import SIDES, Ends, Judged, bounds, counted, spread, worst
 from ekfsim.study.tally import AtSteps, OfRuns, Tally, dtype_of
 from ekfsim.twins import Way, taken, taking, twinned
@@ -41,6 +42,14 @@ def run_block(scene: Scene, first: int, runs: int, way: Way | None = None) -> Ta
         )
 
 
+def run_blocks(scene: Scene, runs: int) -> Tally:
+    """What becomes of the runs 0 … runs − 1 of a scene, block after block."""
+    return functools.reduce(
+        operator.add,
+        (run_block(scene, first, min(BLOCK, runs - first)) for first in range(0, runs, BLOCK)),
+    )
+
+
 def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
     """The runs first … first + runs − 1 in portions that fit the memory, each its first and how
     many.
@@ -55,8 +64,13 @@ def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
 def watched(scene: Scene, first: int, runs: int) -> "Watched":
     """The runs first … first + runs − 1, each told apart at its end."""
     numbers = np.arange(first, first + runs)
+    return watched_along(scene, numbers, play(scene, numbers))
+
+
+def watched_along(scene: Scene, numbers: Integers, steps: Iterable[Step]) -> "Watched":
+    """The same of steps that N runs of a scene have, whoever filters them. numbers : (N,)"""
     start = Watched.empty(numbers, steps_told(length_of(scene)))
-    return follow(start, instants(play(scene, numbers)))
+    return follow(start, instants(steps))
 
 
 def length_of(scene: Scene) -> int:

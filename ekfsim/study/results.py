@@ -6,9 +6,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from ekfsim.filters.arithmetic.chi_square import band
+from ekfsim.scene import Scene
 from ekfsim.study.plan import Case
 from ekfsim.study.tally import Tally
 
@@ -103,6 +104,11 @@ class Result:
 
     case: Case
     tally: Tally
+
+    @classmethod
+    def alone(cls, scene: Scene, tally: Tally) -> Self:
+        """Of runs of one scene, which no study sweeps."""
+        return cls(Case((), scene), tally)
 
     @cached_property
     def steps(self) -> tuple[AtStep, ...]:

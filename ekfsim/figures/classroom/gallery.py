@@ -15,7 +15,6 @@ from ekfsim.geometry import Integers
 from ekfsim.localization import play
 from ekfsim.scene import Scene
 from ekfsim.study.block import run_block
-from ekfsim.study.plan import Case
 from ekfsim.study.results import Result, Share
 from ekfsim.version import VERSION
 from ekfsim.views.study.words import percent, shared
@@ -92,7 +91,7 @@ def row(name: str, seed: int) -> list[str]:
 
 def result(scene: Scene) -> Result:
     """What is said of all runs of a scene."""
-    return Result(Case((), scene), run_block(scene, 0, RUNS))
+    return Result.alone(scene, run_block(scene, 0, RUNS))
 
 
 def sides(above: int, below: int, runs: int) -> str:

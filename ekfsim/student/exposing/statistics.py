@@ -20,8 +20,7 @@ from ekfsim.student.comparing.compare import believed
 from ekfsim.student.exposing.exposed import of_the_textbook
 from ekfsim.student.mistakes.mistake import Mistake
 from ekfsim.student.mistakes.mutant import Mutant
-from ekfsim.study.block import Watched, follow, instants, length_of, run_block, steps_told
-from ekfsim.study.plan import Case
+from ekfsim.study.block import run_block, watched_along
 from ekfsim.study.results import Result
 from ekfsim.study.verdict import Verdict, Word
 
@@ -29,16 +28,15 @@ from ekfsim.study.verdict import Verdict, Word
 def without_mistake(scene: Scene, runs: int) -> Result:
     """What a study says of the runs 0 … runs − 1 of the right filter."""
     played = of_the_textbook(scene)
-    return Result(Case((), played), run_block(played, 0, runs))
+    return Result.alone(played, run_block(played, 0, runs))
 
 
 def with_mistake(scene: Scene, mistake: Mistake, runs: int) -> Result:
     """What it says of the same runs of a filter with a mistake."""
     played, numbers = of_the_textbook(scene), np.arange(runs)
-    start = Watched.empty(numbers, steps_told(length_of(played)))
     with np.errstate(all="ignore"):  # of beliefs that are none
-        watched = follow(start, instants(_steps(played, mistake, numbers)))
-    return Result(Case((), played), watched.tally())
+        watched = watched_along(played, numbers, _steps(played, mistake, numbers))
+    return Result.alone(played, watched.tally())
 
 
 def seen(result: Result) -> str:

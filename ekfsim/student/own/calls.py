@@ -80,9 +80,9 @@ class InProcess:
 
     def _agree(self, asked: Asked) -> None:
         """Set the object's belief where it is not that which is asked from."""
-        if self._object is None:
+        if self._agreed is None:
             self.begin(asked.x, asked.P)
-        if self._agreed is None or not all(map(np.array_equal, self._agreed, (asked.x, asked.P))):
+        elif not all(map(np.array_equal, self._agreed, (asked.x, asked.P))):
             with self._code.home.entered():
                 try:
                     self._object.x, self._object.P = asked.x.copy(), asked.P.copy()

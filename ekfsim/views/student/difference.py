@@ -18,6 +18,7 @@ from ekfsim.student.mistakes.guessing import Guess
 from ekfsim.student.mistakes.mistake import elsewhere
 from ekfsim.views.student.telling import apart, counted, filled
 from ekfsim.views.words.numbers import ROUNDING, cleared
+from ekfsim.views.words.text_table import aligned
 
 MOST_ENTRIES = 12  # that are told of a step; of more only so many
 MOST_DECIMALS = 10  # that somebody rounds to
@@ -95,11 +96,7 @@ def _table(step: Compared, theirs: str, right: str) -> str:
     theirs, right = short(theirs, 20), short(right, 20)
     rows = [(one.entry, *apart(one.theirs, one.right), _size(one)) for one in step.differences]
     rows = [("", theirs, right, "difference"), *rows[:MOST_ENTRIES]]
-    widths = [max(len(row[i]) for row in rows) for i in range(4)]
-    lines = [
-        f"  {name:{widths[0]}}  {a:>{widths[1]}}  {b:>{widths[2]}}  {size:>{widths[3]}}\n"
-        for name, a, b, size in rows
-    ]
+    lines = [f"  {line}\n" for line in aligned(rows, names=1)]
     if len(step.differences) > MOST_ENTRIES:
         lines.append(f"  and {len(step.differences) - MOST_ENTRIES} entries more\n")
     if (unit(step.right) == LEAST).any():

@@ -16,14 +16,12 @@ from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Integers
 from ekfsim.localization import entries_of, first_belief, localize
 from ekfsim.scene import Scene
-from ekfsim.simulation.draws import BLOCK
 from ekfsim.student.fault import FaultError
 from ekfsim.student.grading.bench import Bench
 from ekfsim.student.grading.parts.pupil import Pupil
 from ekfsim.student.grading.scores import Scored
 from ekfsim.student.own.filter import OwnFilter
-from ekfsim.study.block import Watched, follow, instants, length_of, run_block, steps_told
-from ekfsim.study.plan import Case
+from ekfsim.study.block import run_blocks, watched_along
 from ekfsim.study.results import Result, Share
 from ekfsim.study.tally import Tally
 from ekfsim.study.verdict import COVERED, MEDIAN, MOST_LOST, NIS, Verdict, Word
@@ -39,7 +37,7 @@ def graded_honesty(score: Scored, keys: HonestyKeys, bench: Bench, pupil: Pupil)
         tally = tally_of(scene, keys.runs, pupil)
     except FaultError as fault:
         return score.failed(f"the code failed: {fault}", str(fault))
-    verdict = Verdict(Result(Case((), scene), tally))
+    verdict = Verdict(Result.alone(scene, tally))
     share = (not condemned_at_end(verdict)) / 2 + (not condemned_on_the_way(verdict)) / 2
     return replace(score, words=tuple(words(verdict))).earned(share)
 
@@ -59,14 +57,12 @@ def _block(scene: Scene, numbers: Integers, pupil: Pupil) -> Tally:
     filter = OwnFilter.around(pupil.new_caller, beginning, pupil.together)
     first = first_belief(scene, numbers.shape)
     steps = localize(entries_of(scene, numbers), filter, first, scene.guard, scene.world.layout)
-    start = Watched.empty(numbers, steps_told(length_of(scene)))
-    return follow(start, instants(steps)).tally()
+    return watched_along(scene, numbers, steps).tally()
 
 
 def of_reference(scene: Scene, runs: int) -> Verdict:
     """The verdict on the reference, in the same runs."""
-    blocks = (run_block(scene, first, min(BLOCK, runs - first)) for first in range(0, runs, BLOCK))
-    return Verdict(Result(Case((), scene), functools.reduce(operator.add, blocks)))
+    return Verdict(Result.alone(scene, run_blocks(scene, runs)))
 
 
 def condemned_at_end(verdict: Verdict) -> bool:

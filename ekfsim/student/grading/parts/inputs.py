@@ -22,12 +22,10 @@ from ekfsim.files.yaml.marked import Node
 from ekfsim.files.yaml.parsing import parse
 from ekfsim.printable import in_a_line, short, some
 from ekfsim.scene import Scene
-from ekfsim.simulation.draws import BLOCK
 from ekfsim.student.exposing.exposed import exposed
 from ekfsim.student.grading.scores import Scored
-from ekfsim.study.block import run_block
+from ekfsim.study.block import run_blocks
 from ekfsim.study.expectation import findings
-from ekfsim.study.plan import Case
 from ekfsim.study.results import Result
 
 MOST_BYTES = 200_000  # of one of them
@@ -143,10 +141,7 @@ def _promise(name: str, scene: Scene, most: int, found: Inputs) -> None:
         found.words.append(f"{told}: promises nothing; write e.g. expect: {{lost: [0, 0.02]}}")
         return
     runs = min(scene.expect.runs, most)
-    tally = run_block(scene, 0, min(runs, BLOCK))
-    for first in range(BLOCK, runs, BLOCK):
-        tally = tally + run_block(scene, first, min(BLOCK, runs - first))
-    result = findings(scene.expect, Result(Case((), scene), tally))
+    result = findings(scene.expect, Result.alone(scene, run_blocks(scene, runs)))
     broken = [one for one in result if not one.kept]
     for one in broken:
         side = f" {one.side} the band" if one.side else ""
