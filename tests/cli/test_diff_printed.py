@@ -94,6 +94,16 @@ def test_a_number_that_is_wrong_by_a_digit_is_found_and_the_next_step_is_not():
     assert f"P_xx  {rows[6][4]}" in " ".join(ended.out.split(" ")).replace("  P_xx", "P_xx")
 
 
+def test_few_digits_hide_no_wrong_P_after_a_move():
+    rows = table(digits="{:.4g}")
+    rows[0][7] = rows[0][4]  # P_yy is P_xx: the noise went the same way to all sides
+    written(rows)
+    ended = ekfsim("diff", "tour", "--csv", "theirs.csv")
+    assert ended.status == 1
+    assert "First at step 2" in ended.out
+    assert "P_yy" in ended.out
+
+
 def test_mistakes_are_named_from_six_digits():
     """With the twist of the counter-examples that a filter of ours can be set to make."""
     options = ("--set", "filter.crossCovariances=dropped")
@@ -104,7 +114,10 @@ def test_mistakes_are_named_from_six_digits():
     assert "Read again:" in ended.out
 
 
-FORMS = ["radians", "semicolons", "tabs", "spaces", "BOM", "nine", "order", "words", "degrees"]
+FORMS = [
+    *("radians", "semicolons", "tabs", "spaces", "BOM", "nine", "order", "words", "hats"),
+    "degrees",
+]
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -132,6 +145,10 @@ def test_a_table_may_be_written_in_many_ways(form):
         names, rows = ",".join(names.split(",")[::-1]), [row[::-1] for row in rows]
     elif form == "words":
         names = "Step,X [m],Y [m],Heading (deg),var_x,sigma_xy,sigma_xth,var_y,sigma_yth,var_theta"
+    elif form == "hats":
+        names = (
+            "k,x_hat,mu_y,theta_est,sigma_x^2,sigma_xy,sigma_xth,σ_y²,sigma_yth,sigma_th^2 [rad^2]"
+        )
     written(rows, names, separator)
     if form == "BOM":
         Path("theirs.csv").write_bytes(b"\xef\xbb\xbf" + Path("theirs.csv").read_bytes())

@@ -14,6 +14,7 @@ AXES = (("x",), ("y",), HEADING)
 COVARIANCE = ("p", "cov", "covariance", "sigma", "s", "c", "var", "px")
 UNITS = {"deg": "degrees", "degree": "degrees", "degrees": "degrees", "°": "degrees",
          "rad": "radians", "radian": "radians", "radians": "radians"}  # fmt: skip
+OF_THE_MEAN = re.compile(r"^(est(imated?)?|mu|mean)|(hat|est(imated?)?|mean)$")
 UNIT = r"deg\w*|°|rad\w*|m|m\^?2|m²|rad\^?2|rad²|m\s?[*·]?\s?rad|-"
 LIKE = "index,x,y,theta,P_xx,P_xy,P_xtheta,P_yy,P_ytheta,P_thetatheta"
 
@@ -36,7 +37,8 @@ def columns_of(names: Sequence[str], place: Place) -> Columns | list[Mistake]:
     plain = [_plain(name) for name in names]
     units = [UNITS.get(_unit(name), "") for name in names]
     index = _first(plain, INDEX)
-    mean = [_first(plain, axis) for axis in AXES]
+    bare = [OF_THE_MEAN.sub("", name) for name in plain]  # x_hat, mu_x
+    mean = [_first([*plain, *bare], axis) for axis in AXES]
     start = 0 if any(name in _pairs("00", 0) for name in plain) else 1
     pairs = dict[Pair, int]()
     for pair in PAIRS:
@@ -52,7 +54,7 @@ def columns_of(names: Sequence[str], place: Place) -> Columns | list[Mistake]:
         wrong = f"no column is named {missing[0]}"
         wrong += f", nor {', '.join(missing[1:])}" if missing[1:] else ""
         return [Mistake(place, "", wrong, right)]
-    x, y, theta = (at for at in mean if at is not None)
+    x, y, theta = (at % len(plain) for at in mean if at is not None)
     return Columns(index, (x, y, theta), whole, units[theta])
 
 
@@ -69,10 +71,11 @@ def _plain(name: str) -> str:
     """A name without case, unit, power and whatever stands between its letters.
 
     >>> _plain("P_x,theta"), _plain("sigma_xy^2 [m^2]"), _plain("theta (deg)"), _plain("P[0][1]")
-    ('pxtheta', 'sigmaxy', 'theta', 'p01')
+    ('pxtheta', 'varxy', 'theta', 'p01')
     """
     name = name.strip().strip("\"'").lower().replace("σ", "sigma")
     name = re.sub(rf"[(\[]\s*({UNIT})\s*[)\]]$|[_ ]({UNIT})$", "", name)
+    name = re.sub(r"^sigma_?(\w+)(\^2|²)\s*$", r"var\1", name)  # σ_x² is no σ_x
     return re.sub(r"[^\wθφ]|_", "", re.sub(r"\^2|²", "", name))
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ekfsim.errors import UsageError
+from ekfsim.files.source import mistake
 from ekfsim.filters.belief import Gaussian
 from ekfsim.localization import filter_of, first_belief, localize
 from ekfsim.records import Entry
@@ -45,9 +46,16 @@ def held_table(scene: Scene, path: Path, against: str) -> Held:
 
 
 def held_narrative(scene: Scene, path: Path, against: str) -> NarrativeFound:
-    """A narrative. Raises UsageError where it cannot be read."""
+    """A narrative. Raises UsageError where it cannot be read, InputError where nothing in it can be
+    calculated.
+    """
     scene = _of_classroom(scene, against)
-    return examined(narrative(path), _entries(scene), first_belief(scene), filter_of(scene))
+    told = narrative(path)
+    found = examined(told, _entries(scene), first_belief(scene), filter_of(scene))
+    if not found.checked and not found.wrong:
+        right = "they stand in lines like 'New state estimate is (x, y, theta) = (1.2, 0.5, 90)'"
+        raise mistake(told.file, 1, 1, "no number in it follows from others in it", right)
+    return found
 
 
 def _of_classroom(scene: Scene, against: str) -> Scene:

@@ -26,7 +26,7 @@ from ekfsim.student.printed.results import Results, steps_named
 from ekfsim.student.printed.table import Row
 
 COARSE = 0.1  # σ; an entry that is open by more cannot be judged
-BENT = 5  # per σ that is left open; so much more where what is carried is no straight line
+BENT = 5  # per σ that is left open; so much more, as what a reading carries is no straight line
 FAR = 100  # times what the reference leaves open: mistakes farther off are no candidates
 
 
@@ -137,11 +137,11 @@ class PrintedSteps:
         self._spreads[asked.index] = left, unit(right)
         in_x, in_P = sizes(theirs, right, self.layout)
         rounded = Rounding(0.0, 0.0) if made is None else rounding(asked, made, right.covariance)
-        σ = unit(right)
+        σ, bent = unit(right), BENT * isinstance(made, Correction)
         much_x, much_P = left.x / σ, left.P / np.outer(σ, σ)
         allowed = Rounding(
-            rounded.x + left.x * (SLACK + BENT * much_x),
-            rounded.P + left.P * (SLACK + BENT * much_P),
+            rounded.x + left.x * (SLACK + bent * much_x),
+            rounded.P + left.P * (SLACK + bent * much_P),
         )
         with np.errstate(over="ignore"):  # numbers may be absurd
             apart = differences(theirs, right, allowed, self.layout)

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 
+from ekfsim.errors import InputError
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
 from ekfsim.student.printed.held import held_narrative
@@ -53,6 +54,39 @@ def test_what_is_right_is_right(scene, text, tmp_path):
     found = found_in(scene, tmp_path, text)
     assert (found.wrong, found.remarks, found.steps) == ((), (), 23)
     assert found.checked > 600
+
+
+@pytest.mark.parametrize("k", [2.48, 2.4816, 2.486])
+def test_the_factor_of_the_ellipse_may_be_rounded(scene, text, tmp_path, k):
+    rounded = replaced(
+        text, rf"((?:minor|major) radius is ){NUMBER}", lambda n, v: f"{v * k / 2.48156:.6g}"
+    )
+    assert found_in(scene, tmp_path, rounded).wrong == ()
+
+
+def test_two_decimals_raise_no_false_alarm(scene, text, tmp_path):
+    def rounded(match):
+        return re.sub(NUMBER, lambda number: f"{float(number[0]):.2f}", match[0])
+
+    coarse = re.sub(r"^\[.*|radius is .*", rounded, text, flags=re.MULTILINE)
+    assert "[[0.00 0.00 0.00]" in coarse
+    assert found_in(scene, tmp_path, coarse).wrong == ()
+
+
+def test_decimals_may_have_commas(scene, text, tmp_path):
+    found = found_in(scene, tmp_path, re.sub(r"(?<=\d)\.(?=\d)", ",", text))
+    assert (found.wrong, found.checked) == ((), found_in(scene, tmp_path, text).checked)
+
+
+def test_what_cannot_be_read_is_told(scene, text, tmp_path):
+    between = text.replace(
+        "New state covariance matrix is:", "New state covariance matrix is:\nP", 3
+    )
+    line = between[: between.index("==>The robot moved")].count("\n") + 1
+    told = f"{tmp_path / 'told.txt'}:{line}: no covariance can be read of 3 steps, this the first"
+    assert told in found_in(scene, tmp_path, between).remarks
+    with pytest.raises(InputError, match="no number in it follows"):
+        found_in(scene, tmp_path, "==>The robot moved: far\n" * 3)
 
 
 def radii(P, k, inverse=False, size=2):

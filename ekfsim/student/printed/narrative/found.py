@@ -162,3 +162,19 @@ def _remarks(told: Narrative, run: Beside) -> Iterator[str]:
             f"{told.file}: the commands are those of the run, what was measured is not: only what "
             "hangs together is checked, and what is predicted in the map"
         )
+    yield from _unread(told)
+
+
+def _unread(told: Narrative) -> Iterator[str]:
+    """Where no state or no covariance stands; a reading that is not used needs none."""
+    for what in ("state", "covariance"):
+        unread = [
+            block
+            for block in told.blocks
+            if block.kind in ("move", "sense")
+            and not (block.unused or block.no_echo or block.no_wall)
+            and not any(f"{which} {what}" in block.facts for which in ("new", "revised"))
+        ]
+        if unread:
+            steps = "1 step" if len(unread) == 1 else f"{len(unread)} steps, this the first"
+            yield f"{told.file}:{unread[0].line}: no {what} can be read of {steps}"

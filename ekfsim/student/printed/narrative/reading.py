@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
@@ -16,6 +16,7 @@ POSE = rf"\(\s*{N}[\s,;]+{N}[\s,;]+{N}\s*\)"
 ROW = re.compile(rf"[\s\[\](),;]*(?:{N}[\s\[\](),;]*)+", re.IGNORECASE)
 ONE = re.compile(N, re.IGNORECASE)
 MATRIX = 9  # numbers
+POINT, COMMA = re.compile(r"\d\.\d"), re.compile(r"(?<=\d),(?=\d)")  # of decimals
 
 Kind = Literal["start", "move", "sense", "other"]
 # what is printed of a step, by a name of ours; its numbers are of the kind whose digits it shares
@@ -91,7 +92,7 @@ def narrative(path: Path) -> Narrative:
     """The narrative in a file. Raises UsageError where it cannot be read, InputError where it is
     none.
     """
-    lines = lines_of(path)
+    lines = _with_points(lines_of(path))
     blocks = [Block("start", lines.numbers[0] if lines.numbers else 1)]
     found = list(_facts(lines, blocks))
     digits = _digits(found)
@@ -108,6 +109,13 @@ def narrative(path: Path) -> Narrative:
         raise mistake(lines.file, 1, 1, wrong, "each begins with a line like '==>The robot moved: "
                       "distance=1.75, angle=90'")  # fmt: skip
     return Narrative(lines.file, tuple(blocks))
+
+
+def _with_points(lines: Lines) -> Lines:
+    """The same lines; where decimals have commas throughout, with points."""
+    if any(POINT.search(text) for text in lines.texts):
+        return lines
+    return replace(lines, texts=[COMMA.sub(".", text) for text in lines.texts])
 
 
 def _facts(lines: Lines, blocks: list[Block]) -> Iterator[_Found]:

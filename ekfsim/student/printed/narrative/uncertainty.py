@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +19,7 @@ TWO = (
     "this is the ellipse of 2 sigma, which holds 86.5 % in two dimensions; 95.4 % reach "
     "k = sqrt(-2 ln(1 - 0.954)) = 2.4816 sigma"
 )
+ROUNDED = 2e-3  # of a radius: k is taken as 2.48 as well, or as 2.486, which holds 95.45 %
 ROUND = 1e-3  # of λ₁; an ellipse whose axes differ by less has no direction to speak of
 
 
@@ -25,7 +27,8 @@ def uncertainty(block: Block, P: Sequence[Number]) -> Iterator[tuple[Check, Sequ
     """What is printed of ellipse and cone, with the covariance that it follows from."""
     for name, at in (("minor radius", 1), ("major radius", 0)):
         for printed in block.facts.get(name, ()):
-            yield Check(f"the {name}", printed, _radius(at, K), "m", _of_radius(at), read=READ), P
+            one = replace(printed, half=printed.half + _left_open(P, at))
+            yield Check(f"the {name}", one, _radius(at, K), "m", _of_radius(at), read=READ), P
     for printed in block.facts.get("orientation", ()):
         if not _is_round(_matrix(np.array([one.value for one in P]))):
             check = Check(
@@ -54,6 +57,17 @@ def _radius(at: int, k: float) -> Formula:
         return k * _roots(_matrix(numbers)[:2, :2])[at]
 
     return radius
+
+
+def _left_open(P: Sequence[Number], at: int) -> float:
+    """How far a radius may be off: k is rounded, and where P is all but singular the digits of its
+    two variances, together, leave more open than each by itself.
+    """
+    numbers, radius = np.array([one.value for one in P]), _radius(at, K)
+    wider = numbers + np.array([one.half * (i in (0, 4)) for i, one in enumerate(P)])
+    if not np.all(np.isfinite(numbers)):
+        return 0.0
+    return ROUNDED * radius(numbers) + radius(wider) - radius(numbers)
 
 
 def _of_radius(at: int) -> tuple[Guess, ...]:
