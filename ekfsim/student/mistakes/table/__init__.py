@@ -7,6 +7,7 @@
     readings.py  ν, J_H and C_v
     beams.py     h: along which beam, to which wall, from which estimate
     gains.py     S, K, x and P
+    repeated.py  updates that are made again, of which some of gains.py are
     beliefs.py   the belief that a step begins with, and whether it is revised at all
     numbers.py   noise of other numbers than the model's, which the student's own numbers tell
 

@@ -1,13 +1,13 @@
 """Mistakes of S, K, x and P, the last lines of an update."""
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
 from ekfsim.filters.arithmetic.algebra import gain_of_moments
 from ekfsim.geometry import Array
 from ekfsim.student.mistakes.mistake import Mistake
+from ekfsim.student.mistakes.table.repeated import again, anew, iterated
 from ekfsim.student.mistakes.table.steps import of_many, readings
 from ekfsim.student.mistakes.working import Piece, Working
 
@@ -21,44 +21,9 @@ def _gain_of(P: Array, s: Working) -> Array:
     return gain_of_moments(P @ s.H.T, s.H @ P @ s.H.T + s.R)
 
 
-def _again(s: Working) -> Working:
-    """The step after this one, with the same reading."""
-    once = Working(s.asked)
-    return Working(replace(s.asked, x=once.mean, P=once.covariance))
-
-
 def _number(s: Working) -> float:
     """K and H multiplied as if they were lists of numbers: K·H"""
     return float(np.sum(s.K[:, 0] * s.H[0]))
-
-
-def _anew(s: Working) -> tuple[Array, Array]:
-    """K and H at the estimate after the update."""
-    x = s.x + s.K @ s.innovation
-    H, R = s.model.H(x), s.model.R(x)
-    return gain_of_moments(s.P @ H.T, H @ s.P @ H.T + R), H
-
-
-def _iterated(times: int, noise: Callable[[Working, Array], Array]) -> dict[str, Piece]:
-    """The update whose h and J_H are taken again at the estimate that comes of it.
-
-    noise : C_v at such an estimate
-    """
-
-    def last(s: Working) -> tuple[Array, Array, Array]:
-        x = s.x
-        for _ in range(times):
-            H = s.model.H(x)
-            K = gain_of_moments(s.P @ H.T, H @ s.P @ H.T + noise(s, x))
-            at = x
-            x = s.x + K @ (s.model.residual(s.z, s.model.h(at)) - H @ (s.x - at))
-        return x, K, H
-
-    def covariance(s: Working) -> Array:
-        _, K, H = last(s)
-        return s.P - K @ H @ s.P
-
-    return {"mean": lambda s, _: last(s)[0], "covariance": lambda s, _: covariance(s)}
 
 
 def _heading_kept(s: Working, right: Callable[[], Array]) -> Array:
@@ -201,8 +166,8 @@ OF_GAINS = (
         readings,
         (
             {
-                "mean": lambda s, _: _again(s).mean,
-                "covariance": lambda s, _: _again(s).covariance,
+                "mean": lambda s, _: again(s).mean,
+                "covariance": lambda s, _: again(s).covariance,
             },
         ),
     ),
@@ -212,8 +177,8 @@ OF_GAINS = (
         "eqs 11, 12: K and J_H are those of the estimate before the reading",
         readings,
         _covariance(
-            lambda s: s.P - _anew(s)[0] @ _anew(s)[1] @ s.P,
-            lambda s: s.P - s.K @ _anew(s)[1] @ s.P,
+            lambda s: s.P - anew(s)[0] @ anew(s)[1] @ s.P,
+            lambda s: s.P - s.K @ anew(s)[1] @ s.P,
         ),
     ),
     Mistake(
@@ -222,7 +187,7 @@ OF_GAINS = (
         "eqs 8 to 12: once for each reading; the filter iekf is the iterated one",
         readings,
         tuple(
-            _iterated(times, noise)
+            iterated(times, noise)
             for times in (5, 2, 3, 4, 10, 20)
             for noise in (lambda s, _: s.R, lambda s, at: s.model.R(at))
         ),
