@@ -58,7 +58,8 @@ More names, each with a page of its own such as `help(ekfsim.Scene)`: Scene and 
 played; Entry, Step and Playback, what was; Gaussian, Summary, Verdict and Evidence, what is
 believed and judged; EKF, and FILTERS by their names; MoveTurn and Laser, the classroom's models;
 Look, the options of a picture. Mistakes in files raise `ekfsim.InputError`, missing files
-`ekfsim.UsageError`; both are an `ekfsim.EkfsimError`.
+`ekfsim.UsageError`; both are an `ekfsim.EkfsimError`, and so is what a filter of your own raises
+where its code fails, with file, line and step.
 """
 
 from importlib import import_module
