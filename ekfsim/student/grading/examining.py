@@ -27,7 +27,7 @@ from ekfsim.student.grading.parts.jacobians import graded_jacobian
 from ekfsim.student.grading.parts.steps import graded_steps
 from ekfsim.student.grading.scores import Check, Scored, checks_of
 from ekfsim.student.grading.submissions import Submission
-from ekfsim.student.sandbox.limits import Limits, patience
+from ekfsim.student.sandbox.limits import Limits, TimeOverError, patience
 from ekfsim.student.sandbox.sandboxed import Sandboxed
 
 MOST_PRINTED = 300  # characters of what the code printed that are told
@@ -66,7 +66,7 @@ class Examiner:
             try:
                 with at_most(seconds):
                     return graded_inputs(score, keys, submission.path)
-            except TimeoutError:
+            except TimeOverError:
                 told = f"the files take longer than {seconds:g} s of CPU to read and to play"
                 return score.failed(told, told)
         file, missing = submission.filter(self.homework.keys.filter)
@@ -114,12 +114,12 @@ def _keys_of(homework: Homework, check: Check) -> PartKeys:
 
 @contextmanager
 def at_most(seconds: float) -> Iterator[None]:
-    """Raise TimeoutError where this process calculates longer in the block; of its main thread
+    """Raise TimeOverError where this process calculates longer in the block; of its main thread
     alone.
     """
 
     def end(number: int, frame: FrameType | None) -> None:
-        raise TimeoutError
+        raise TimeOverError
 
     before = signal.signal(signal.SIGPROF, end)
     signal.setitimer(signal.ITIMER_PROF, seconds)

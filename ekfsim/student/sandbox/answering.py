@@ -15,7 +15,7 @@ from typing import Any
 from ekfsim.student.fault import FaultError
 from ekfsim.student.sandbox.exchange import HEAD, answered, faulted
 from ekfsim.student.sandbox.kernel import fence, give_up_privileges
-from ekfsim.student.sandbox.limits import ALONE, Limits, charge, keep_to
+from ekfsim.student.sandbox.limits import ALONE, Limits, TimeOverError, charge, keep_to
 
 
 def serve(requests: int, answers: int, asked: Mapping[str, Any], limits: Limits) -> None:
@@ -82,11 +82,11 @@ class Alarms:
     def _ring(self, number: int, frame: FrameType | None) -> None:
         self.rung = self.rung or self._told[signal.Signals(number)]
         if self._within:
-            raise TimeoutError(self.rung)
+            raise TimeOverError(self.rung)
 
     def __enter__(self) -> None:
         if self.rung:  # a thread of the code went on between two questions
-            raise TimeoutError(self.rung)
+            raise TimeOverError(self.rung)
         self._within = True
 
     def __exit__(self, *_: object) -> None:

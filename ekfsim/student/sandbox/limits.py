@@ -18,6 +18,12 @@ AGAIN = 0.1  # s of CPU after which who did not heed it is told again that its t
 ALONE = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
+class TimeOverError(BaseException):
+    """Raised in the midst of code whose time is over: neither `except OSError`, as os.path.exists
+    has it, nor `except Exception` holds it up.
+    """
+
+
 @dataclass(frozen=True)
 class Limits:
     """What one process with a student's code may take until it ends.
