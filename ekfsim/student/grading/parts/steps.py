@@ -67,13 +67,14 @@ def graded_steps(score: Scored, keys: StepsKeys, bench: Bench, caller: Caller) -
         result = replace(result, fault_run=faults[0][0], fault=faults[0][1])
     share = _share(keys.partial, result, [kind for kind in (moves, readings) if kind.of])
     told = _words(result, max(len(faults) - 1, 0), moves, readings, len(runs))
-    score = replace(score, words=tuple(told))
-    if result.fault is not None:
-        score = replace(score, fault=str(result.fault))
-    if result.first is not None:
-        score = replace(score, first_wrong=_where(name, result.first, len(runs)))
     shown = (Shown(one.name, name, seen.steps) for one, seen in result.named.items())
-    return replace(score, shown=tuple(shown)).earned(share)
+    return replace(
+        score,
+        words=tuple(told),
+        fault="" if result.fault is None else str(result.fault),
+        first_wrong="" if result.first is None else _where(name, result.first, len(runs)),
+        shown=tuple(shown),
+    ).earned(share)
 
 
 def _share(partial: Partial, result: Found, kinds: list[Counts]) -> float:
