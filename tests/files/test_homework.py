@@ -1,10 +1,13 @@
 """A homework file: what it names, and every mistake at its place."""
 
 import pytest
+from jsonschema import Draft202012Validator
 
 from ekfsim.errors import InputError
 from ekfsim.files.homework import check_homework, read_homework
 from ekfsim.files.template import template
+from ekfsim.files.yaml.parsing import parse
+from ekfsim.files.yaml.schema import json_schema
 
 PARTS = {
     "steps": "steps: {scenes: [tour]}",
@@ -144,6 +147,33 @@ def test_a_mistake_is_told_at_its_place(homework, parts, mistake):
     assert told(path) == [f"homework.yaml:{mistake}"]
     with pytest.raises(InputError):
         read_homework(path)
+
+
+@pytest.mark.parametrize(
+    ("kind", "right"),
+    [
+        ("inputs: {}", False),
+        ("inputs: {files: 1}", True),
+        ("steps: {scenes: [tour, tour]}", False),
+        ("honesty: {scenes: [square]}", True),
+    ],
+)
+@pytest.mark.parametrize(
+    ("more", "right_too"),
+    [
+        ("", True),
+        ("filter: mine.py", True),
+        ("filter: mine.txt", False),
+        ("filter: /mine.py", False),
+        ("provided: [f, f]", False),
+        ("provided: []", True),
+    ],
+)
+def test_the_schema_refuses_what_is_refused(homework, kind, right, more, right_too):
+    path = homework(more, "parts:", part("a", 10, kind))
+    root, _ = parse(path.read_text(), str(path))
+    verdict = Draft202012Validator(json_schema("homework")).is_valid(root.plain())
+    assert verdict == (told(path) == []) == (right and right_too)
 
 
 def test_a_scene_s_own_mistakes_are_told_in_its_file_once(homework, tmp_path):

@@ -18,6 +18,8 @@ ONE_KIND: JsonDict = {
     "oneOf": [{"required": [kind]} for kind in KINDS],
     "examples": [{"name": "Each step", "points": 40, "steps": STEPS}],
 }
+ONE_AT_LEAST: JsonDict = {"anyOf": [{"required": ["files"]}, {"required": ["exposed"]}]}
+ONCE: JsonDict = {"uniqueItems": True}
 Visibility = Literal["visible", "hidden", "after_due_date", "after_published"]
 Equation = Annotated[
     Literal["f", "F", "G", "M", "Q", "h", "H", "R", "residual"], Field(examples=["f"])
@@ -48,7 +50,12 @@ def once(words: list[Any]) -> list[Any]:
 Points = Annotated[float, Field(ge=0, le=MOST_POINTS, examples=[40]), AfterValidator(in_hundredths)]
 Scenes = Annotated[
     list[Name],
-    Field(title="a list of scenes", min_length=1, examples=[["tour", "square"]]),
+    Field(
+        title="a list of scenes",
+        min_length=1,
+        examples=[["tour", "square"]],
+        json_schema_extra=ONCE,
+    ),
     AfterValidator(once),
 ]
 Runs = Annotated[int, Field(ge=1, le=1000, examples=[20])]
@@ -82,7 +89,12 @@ class JacobiansKeys(Strict):
 
     functions: Annotated[
         list[Jacobian],
-        Field(title="a list of functions", min_length=1, examples=[["F", "G", "H"]]),
+        Field(
+            title="a list of functions",
+            min_length=1,
+            examples=[["F", "G", "H"]],
+            json_schema_extra=ONCE,
+        ),
         AfterValidator(once),
     ] = Field(description="Which: F(x, u, motion), G(x, u, motion), H(x, sensor).")
     scenes: Scenes = Field(description="Where: at the beliefs of the reference along these scenes.")
@@ -101,6 +113,8 @@ class HonestyKeys(Strict):
 
 class InputsKeys(Strict):
     """The student's own commands files, beside the filter."""
+
+    model_config = ConfigDict(json_schema_extra=ONE_AT_LEAST)
 
     files: int | None = Field(
         None,
@@ -196,11 +210,12 @@ class HomeworkKeys(Strict):
         description="The name of the file with the filter in a submitted folder; where absent, "
         "its only .py.",
         examples=["filter.py"],
+        json_schema_extra={"pattern": r"^(?!/).*\.py$"},
     )
     provided: (
         Annotated[
             list[Equation],
-            Field(title="a list of equations"),
+            Field(title="a list of equations", json_schema_extra=ONCE),
             AfterValidator(once),
         ]
         | None
