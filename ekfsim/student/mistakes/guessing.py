@@ -1,6 +1,6 @@
 """Which mistakes a student's numbers are those of."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import combinations, product
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from ekfsim.filters.arithmetic.algebra import symmetric
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
-from ekfsim.records import Reading
+from ekfsim.records import Control, Reading
 from ekfsim.student.asked import Answer, Asked
 from ekfsim.student.mistakes.known import KNOWN
 from ekfsim.student.mistakes.mistake import Mistake
@@ -16,7 +16,8 @@ from ekfsim.student.mistakes.working import FORMS, Pieces, Working, right, usabl
 
 SAME = 1e-9  # σ; numbers that are nearer than this are the same
 LAST_DIGITS = 16 * float(np.finfo(float).eps)  # of a number: what the order of its terms changes
-USUAL = 2  # ways of making a mistake that are tried together with another mistake
+USUAL = {Control: 3, Reading: 2}  # ways of a mistake that are tried together with another
+FEW = 3  # ways that are found of the numbers themselves; of more, none is tried with another
 
 Guess = tuple[Mistake, ...]
 # whether a step with some changes leads to a student's numbers; its last argument is `unit`
@@ -79,20 +80,36 @@ def fits(mistakes: Guess, asked: Asked, theirs: Answer, unit: Array, gives: Give
 
 
 def pairs(asked: Asked, theirs: Answer, unit: Array, gives: Gives = gives) -> list[Guess]:
-    """The pairs of mistakes that show in this step, each made in one of its most usual ways."""
+    """The pairs of mistakes that show in this step, each made in one of its most usual ways; where
+    there is none, a mistake together with one that fits itself to the numbers, and not by itself.
+    """
     if not usable(asked):
         return []
     same = Answer(*right(asked))
+    most = USUAL[type(asked.given)]
     showing = {
-        mistake: [way for way in mistake.ways[:USUAL] if not _shows_nothing(asked, way, same, unit)]
+        mistake: [way for way in mistake.ways[:most] if not _shows_nothing(asked, way, same, unit)]
         for mistake in KNOWN
         if mistake.where(asked) and not mistake.general
     }
-    return [
-        pair
-        for pair in combinations(showing, 2)
-        if _made([showing[mistake] for mistake in pair], asked, theirs, unit, gives)
-    ]
+    fitted = {
+        mistake: list(mistake.fitted(asked, theirs))
+        for mistake in KNOWN
+        if mistake.where(asked) and mistake.general
+    }
+    ways = showing | fitted
+
+    def made(pairs: Iterable[Guess]) -> list[Guess]:
+        return [
+            pair
+            for pair in pairs
+            if _made([ways[mistake] for mistake in pair], asked, theirs, unit, gives)
+        ]
+
+    found = made(combinations(showing, 2))
+    if found or any(fits((mistake,), asked, theirs, unit, gives) for mistake in fitted):
+        return found
+    return made(product(showing, (mistake for mistake in fitted if len(fitted[mistake]) <= FEW)))
 
 
 def _shows_nothing(asked: Asked, way: Pieces, same: Answer, unit: Array) -> bool:

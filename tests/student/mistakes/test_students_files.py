@@ -157,6 +157,7 @@ def behind(text):
         ("bearing-sign", "K-without-S"),
         ("innovation-sign", "P-not-updated"),
         ("J_H-without-theta", "Joseph-without-noise"),
+        ("P-plus", "C_v-of-its-own"),
     ],
     ids="+".join,
 )

@@ -29,12 +29,17 @@ def _instead(value: Array) -> Piece:
 
 
 def _variance(asked: Asked, theirs: Answer) -> Iterator[Pieces]:
-    """C_v from what a reading left of P: P⁻ − P = c cᵀ/S with c = P⁻ J_H'."""
+    """C_v from what a reading left of P, P⁻ − P = c cᵀ/S with c = P⁻ J_H'; and from how the mean
+    has moved, by c ν/S.
+    """
     s = Working(asked)
     c = s.cross[:, 0]
     less = c @ (s.P - theirs.P) @ c
     if less > 0:
         yield {"R": _instead(np.square(c @ c) / less - (s.S - s.R))}
+    moved = c @ (theirs.x - s.x)
+    if moved != 0:
+        yield {"R": _instead(c @ c * s.innovation / moved - (s.S - s.R))}
 
 
 def _variances(asked: Asked, theirs: Answer) -> Iterator[Pieces]:
