@@ -25,6 +25,7 @@ from ekfsim.student.comparing.difference import (
 from ekfsim.student.comparing.reference import made_by
 from ekfsim.student.comparing.rounding import LEAST, NONE, deviations, rounding
 from ekfsim.student.fault import FaultError
+from ekfsim.student.own.returned import WrongError, refuse_boundless
 
 NEGATIVE = 1e-9  # of a variance; so much below 0 it may be by rounding, and the square of `LEAST`
 
@@ -141,6 +142,10 @@ def _passes(asked: Asked, guard: Guard) -> bool:
 
 def _unusable(theirs: Answer, asked: Asked, right: Gaussian, layout: Layout) -> str:
     """Why an answer cannot be a belief, "" where it can."""
+    try:
+        refuse_boundless(theirs.x, theirs.P)
+    except WrongError as wrong:
+        return str(wrong)
     σ = np.maximum(deviations(asked.P), unit(right))
     slight = np.sqrt(NEGATIVE * np.square(σ) + LEAST**2)
     if float(np.linalg.eigvalsh(symmetric(theirs.P) / np.outer(slight, slight))[0]) >= -1:

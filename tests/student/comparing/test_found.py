@@ -134,6 +134,13 @@ def test_what_comes_after_a_belief_that_can_be_none_is_looked_for_in_the_next_ru
     assert result.ended.step.unusable
 
 
+@pytest.mark.parametrize("by", [1e30, 1e300, 1e307])
+def test_numbers_that_are_too_large_to_calculate_with_end_it(by):
+    result = of(update=lambda x, P, z, sensor: (x, by * P))
+    assert result.steps == 2
+    assert result.ended.step.unusable.endswith(": nothing is so uncertain")
+
+
 @pytest.mark.parametrize("runs", [1, 3])
 def test_the_first_difference_is_that_of_the_first_run(runs):
     result = of(runs, update=other_way)

@@ -73,7 +73,10 @@ def _bend(asked: Asked, theirs: Answer) -> Iterator[Pieces]:
 def _row(asked: Asked, theirs: Answer) -> Iterator[Pieces]:
     """J_H from what a reading left of P: P⁻ − P = c cᵀ with c = P⁻ J_H'/√S."""
     s = Working(asked)
-    lost, directions = np.linalg.eigh(symmetric(s.P - theirs.P))
+    try:
+        lost, directions = np.linalg.eigh(symmetric(s.P - theirs.P))
+    except np.linalg.LinAlgError:  # P is too large to calculate with
+        return
     if lost[-1] <= 0:
         return
     c = np.sqrt(lost[-1]) * directions[:, -1]
