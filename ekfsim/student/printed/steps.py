@@ -84,11 +84,11 @@ class PrintedSteps:
                 kept = isinstance(made, Correction) and not made.used
                 if row is not None:
                     yield self._compared(asked, row, right, None if kept else made, halves)
-                earlier = replace(asked, earlier=None)
+                earlier = asked.as_earlier()
             if row is not None:
                 belief, halves = _belief(row, self.layout), row.halves
             elif not kept:
-                belief = None
+                belief = earlier = None
 
     def gives(self, asked: Asked, changes: tuple[Pieces, ...], theirs: Answer, unit: Array) -> bool:
         """Whether a step with these changes has the printed numbers, as far as they go."""

@@ -310,15 +310,17 @@ def is_running(number):
 
 
 STAYS = """\
+told, tells = os.pipe()
 if os.fork() == 0:
     os.setsid()
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     if os.fork() == 0:
         os.write(1, f"{os.getpid()}\\n".encode())
+        os.write(tells, b".")
         time.sleep(60)
     os._exit(0)
 os.wait()
-time.sleep(0.05)"""
+os.read(told, 1)"""
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="nobody takes in orphans elsewhere")

@@ -1,6 +1,6 @@
 """Each step of a student's filter beside the reference, from the student's own belief."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from ekfsim.files.keys.homework import Partial, StepsKeys
@@ -15,6 +15,9 @@ from ekfsim.student.fault import FaultError
 from ekfsim.student.grading.bench import Bench, tells
 from ekfsim.student.grading.scores import Scored, Shown
 from ekfsim.student.mistakes.guessing import Guess
+from ekfsim.student.mistakes.mistake import elsewhere
+
+Said = Callable[[str], str]
 
 
 @dataclass
@@ -66,7 +69,10 @@ def graded_steps(score: Scored, keys: StepsKeys, bench: Bench, caller: Caller) -
     if faults:
         result = replace(result, fault_run=faults[0][0], fault=faults[0][1])
     share = _share(keys.partial, result, [kind for kind in (moves, readings) if kind.of])
-    told = _words(result, max(len(faults) - 1, 0), moves, readings, len(runs))
+    told = _words(
+        result, max(len(faults) - 1, 0), moves, readings, len(runs),
+        str if bench.scene(name, runs[0]).commanded else elsewhere,
+    )  # fmt: skip
     shown = (Shown(one.name, name, seen.steps) for one, seen in result.named.items())
     return replace(
         score,
@@ -96,11 +102,11 @@ def _where(scene: str, at: At, runs: int) -> str:
 
 
 def _words(
-    result: Found, failures: int, moves: Counts, readings: Counts, runs: int
+    result: Found, failures: int, moves: Counts, readings: Counts, runs: int, said: Said
 ) -> Iterator[str]:
     """What is found, the first fault and the first wrong number first.
 
-    failures : how many more steps fail
+    failures : how many more steps fail      said : what is said of a mistake, in whose names
     """
     if result.fault is not None:
         run = f"run {result.fault_run}: " if runs > 1 else ""
@@ -116,14 +122,15 @@ def _words(
             f"first wrong number: {run}{step.asked.step}: {most.entry} is {most.theirs:.9g}, "
             f"where {most.right:.9g} is right: {in_sigmas(most.size)}{others}"
         )
-        yield from _guessed(result.guesses)
+        yield from _guessed(result.guesses, said)
     if result.ended is not None:
         yield f"{result.ended.step.asked.step}: {result.ended.step.unusable}"
     guessed = {one for guess in result.guesses[:1] for one in guess}
     for mistake, seen in result.named.items():
         if mistake not in guessed:
             where = seen.first.step.asked.step
-            yield f"also, at {seen.steps} steps, the first {where}: {mistake.told}; {mistake.read}"
+            told, read = said(mistake.told), said(mistake.read)
+            yield f"also, at {seen.steps} steps, the first {where}: {told}; {read}"
     for what, kind in (("moves", moves), ("readings", readings)):
         if kind.of and not (result.equal and kind.right == kind.of == kind.seen):
             never = kind.of - kind.seen
@@ -133,10 +140,10 @@ def _words(
         yield f"all {result.steps} steps are right, to {result.largest:.1g} σ"
 
 
-def _guessed(guesses: Iterable[Guess]) -> Iterator[str]:
+def _guessed(guesses: Iterable[Guess], said: Said) -> Iterator[str]:
     best, *others = [*guesses] or [()]
     for mistake in best:
-        yield f"{mistake.name}: {mistake.told}; read again {mistake.read}"
+        yield f"{mistake.name}: {said(mistake.told)}; read again {said(mistake.read)}"
     if others:
         names = ", or ".join(" with ".join(one.name for one in guess) for guess in others[:3])
         yield f"it could as well be {names}"
