@@ -147,6 +147,14 @@ def test_what_is_handed_out_is_all_that_there_is(asked, tmp_path):
     assert score.fault.endswith("motion.F is not provided; write this one yourself")
 
 
+def test_of_another_robot_mistakes_are_told_in_its_own_names(asked, tmp_path):
+    score = steps(asked, tmp_path, pupils.MINUS, scene="proof-marker-behind", runs=1)
+    told = next(words for words in score.words if words.startswith("innovation-sign: "))
+    assert "h − z" in told
+    assert "J_H" not in told
+    assert "eq" not in told
+
+
 def test_other_systems_are_graded_too(asked):
     """Their reference in the place of a student's filter."""
     _, bench, _ = asked("steps: {scenes: [pioneer]}")
