@@ -237,6 +237,8 @@ def test_the_zip_holds_all_that_the_program_needs(autograder, place):
     for script in ("setup.sh", "run_autograder"):
         subprocess.run(["bash", "-n", source / script], check=True)
         assert "@" not in (source / script).read_text().replace('"$@"', "").replace("[@]", "")
+    # tried as the students' code is begun: setpriv itself may still begin a Python that nobody may
+    assert '$nobody env -i "$root/venv/bin/python" -I -c' in (source / "run_autograder").read_text()
     first = Path("autograder.zip").read_bytes()
     ekfsim("autograder", "steps.yaml", "-o", "autograder.zip", "--force")
     assert Path("autograder.zip").read_bytes() == first
