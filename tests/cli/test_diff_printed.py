@@ -197,6 +197,10 @@ def test_the_results_of_a_handed_out_log_are_held_against_it():
     [
         ("", "theirs.csv:1:1: the file is empty; it begins with a line like index,x,y,theta,"),
         ("1,2,3\n", "theirs.csv:1:1: '1,2,3' names no columns; the first line is e.g. index,"),
+        (
+            "index,x,y,theta,Pxx,Pxy,Pxt,Pyy,P_xx,Pyt,Ptt\n",
+            "theirs.csv:1:1: 2 columns are named 'Pxx'; keep the one that holds the number",
+        ),
         ("index,x,y\n", "theirs.csv:1:1: no column is named theta, nor P_xx, P_xy, P_xtheta, "),
         (f"{NAMES}\n2,1,2\n", "theirs.csv:2:1: 3 columns stand in this row; it must have 10, as"),
         (f"{NAMES}\n2,1,?,3,1,0,0,1,0,1\n", "theirs.csv:2:5: '?' is not a number; write e.g. 0"),

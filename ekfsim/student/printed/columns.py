@@ -55,6 +55,10 @@ def columns_of(names: Sequence[str], place: Place) -> Columns | list[Mistake]:
         wrong += f", nor {', '.join(missing[1:])}" if missing[1:] else ""
         return [Mistake(place, "", wrong, right)]
     x, y, theta = (at % len(plain) for at in mean if at is not None)
+    for at in sorted({x, y, theta, *whole.values()}):
+        if plain.count(plain[at]) > 1:
+            wrong = f"{plain.count(plain[at])} columns are named {quoted(names[at])}"
+            return [Mistake(place, "", wrong, "keep the one that holds the number")]
     return Columns(index, (x, y, theta), whole, units[theta])
 
 

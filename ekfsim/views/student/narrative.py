@@ -30,6 +30,8 @@ def _headline(found: NarrativeFound) -> str:
             f"{found.file} is right: all {found.checked} numbers of {steps} that can be "
             "calculated from those before them are these, as far as its digits go."
         )
+    if found.checked < len(found.wrong):  # what cannot be read was not calculated
+        return f"{found.file} is wrong in {counted(len(found.wrong), 'place')}."
     return (
         f"{found.file} is wrong in {len(found.wrong)} of the {found.checked} numbers of {steps} "
         "that can be calculated from those before them."
