@@ -47,7 +47,7 @@ def outcome(asked: Asked, *changes: Pieces) -> Gaussian | None:
     return Gaussian(x, P) if np.isfinite(x).all() and np.isfinite(P).all() else None
 
 
-ELSEWHERE = {"J_x": "F", "J_u": "G", "P_u": "M", "J_H": "H", "C_v": "R"}
+ELSEWHERE = {"J_x": "F", "J_u": "G", "P_u": "M", "J_H": "H", "C_v": "R", "Φ": "f"}
 
 
 def elsewhere(text: str) -> str:
@@ -57,4 +57,4 @@ def elsewhere(text: str) -> str:
     'F is taken at the estimate before the move'
     """
     text = re.sub(r"^eqs? [\d, ]+(to \d+)?: ", "", text)
-    return re.sub(r"J_x|J_u|P_u|J_H|C_v", lambda name: ELSEWHERE[name[0]], text)
+    return re.sub(r"J_x|J_u|P_u|J_H|C_v|Φ", lambda name: ELSEWHERE[name[0]], text)

@@ -267,6 +267,8 @@ SPELT_OTHERWISE = (  # mistakes of the table, written in another way
         "r, hx, hy, ht = min(hits, key=lambda hit: abs(hit[0]))\n    return abs(r), hx, hy, ht * np.sign(r)"),
     ("J_x-exchanged", JX, "[[1, 0, d * c], [0, 1, -d * s], [0, 0, 1]]"),
     ("J_x-exchanged", JX, "[[1, 0, d * c], [0, 1, d * s], [0, 0, 1]]"),
+    ("y-sign", NEW, NEW.replace("+ d * s", "- d * s"), JX, "[[1, 0, -d * s], [0, 1, -d * c], [0, 0, 1]]",
+        JU, "[[c, 0], [-s, 0], [0, 1]]"),
     ("sigma-in-P_u", PU, "np.diag([sd, sa])"),
     ("sigma-in-P_u", PU, "np.diag([sd**2, abs(sa)])"),
     ("P_u-ratio-not-squared", PU, "np.diag([sd**2, motion.angle_ratio * a**2])"),

@@ -216,7 +216,7 @@ OF_BEAMS = (
     Mistake(
         "wall-behind",
         "your beam looks backwards as well: it meets a wall behind the robot",
-        "eq 8: h is the distance to the first wall ahead, r ≥ 0",
+        "eq 8: h is the distance to the first wall ahead of the beam",
         beams,
         (
             *ways_to(choice=_either_way)[:1],
@@ -252,21 +252,21 @@ OF_BEAMS = (
     ),
     Mistake(
         "stale-estimate",
-        "your h and J_H are those of the estimate before the earlier readings of this place",
+        "your h, or h and J_H, are of the estimate before an earlier reading of this place",
         "eqs 8, 11: h and J_H are taken at the newest estimate",
         after_a_reading,
         (*_stale(_of_the_batch), *_stale(_earlier)),
     ),
     Mistake(
         "stale-J_H",
-        "your J_H is that of the estimate before the earlier readings of this place",
+        "your J_H is that of the estimate before an earlier reading of this place",
         "eq 11: J_H is taken at the newest estimate",
         after_a_reading,
         ({"x_H": _of_the_batch}, {"x_H": _earlier}),
     ),
     Mistake(
         "estimate-before-move",
-        "your h and J_H are those of the estimate before the move",
+        "your h, or h and J_H, are of the estimate before the move",
         "eqs 8, 11: h and J_H are taken at the newest estimate, after the move",
         after_a_move,
         _stale(_earlier),

@@ -50,7 +50,7 @@ OF_BELIEFS = (
     ),
     Mistake(
         "x-before-move",
-        "your update is the one with the x of before the move: the predicted x is not used",
+        "your update is the one with the x of before the move, or with the x and P of before it",
         "eqs 8, 10: x is that of eq 4",
         after_a_move,
         (

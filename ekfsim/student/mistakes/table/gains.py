@@ -260,7 +260,7 @@ OF_GAINS = (
     ),
     Mistake(
         "P-minus-K-R-K",
-        "your P is P − K C_v K' where P − K S K' belongs",
+        "your P is P − K C_v K' or P − K K' where P − K S K' belongs",
         "eq 12: (I − K J_H) P, which is P − K S K'",
         readings,
         _covariance(lambda s: s.P - s.K @ s.R @ s.K.T, lambda s: s.P - s.K @ s.K.T),

@@ -96,11 +96,18 @@ _SINE_FIRST: Piece = _driven(lambda θ, _: np.pi / 2 - θ)
 _SOUTH: Piece = _entry(1, lambda before, after: 2 * before - after)
 
 
-def _southward(s: Working, right: Callable[[], Array]) -> Array:
-    """A Jacobian with the other sign in its row of y."""
-    return np.array([[1.0], [-1.0], [1.0]]) * (right() - np.eye(*right().shape)) + np.eye(
-        *right().shape
-    )
+def _southward_slope(_: Working, right: Callable[[], Array]) -> Array:
+    """J_x of an f with y − d sin θ."""
+    J = right().copy()
+    J[1, 2] *= -1
+    return J
+
+
+def southward(_: Working, right: Callable[[], Array]) -> Array:
+    """J_u with the other sign in its row of y: ∂y/∂d = −sin θ."""
+    J = right().copy()
+    J[1] *= -1
+    return J
 
 
 def _half_turns(s: Working, right: Callable[[], Array]) -> Array:
@@ -126,7 +133,7 @@ OF_MOVES = (
     ),
     Mistake(
         "degrees-in-f",
-        "your turn a is in degrees where it is added to θ in radians, or θ is after it",
+        "your turn a is added in degrees to θ in radians, or the new θ is in degrees",
         "eq 3: θ + a, both in radians",
         move_turn,
         (
@@ -182,29 +189,29 @@ OF_MOVES = (
     ),
     Mistake(
         "y-sign",
-        "your y grows where it should shrink: y − d sin θ",
+        "your y moves the wrong way: y − d sin θ in place of y + d sin θ",
         "eq 3: y + d sin θ",
         move_turn,
-        ({"f": _SOUTH}, {"f": _SOUTH, "F": _southward, "G": _southward}),
+        ({"f": _SOUTH}, {"f": _SOUTH, "F": _southward_slope, "G": southward}),
     ),
     Mistake(
         "turn-sign",
         "your θ turns the other way round, θ − a in place of θ + a",
-        "eq 3: the last line of Φ",
+        "eq 3: the line of θ in Φ, which adds the turn",
         moves,
         ({"f": _entry(2, lambda before, after: 2 * before - after)},),
     ),
     Mistake(
         "turn-forgotten",
         "your θ stays as it was: the turn is not added",
-        "eq 3: the last line of Φ",
+        "eq 3: the line of θ in Φ, which adds the turn",
         moves,
         ({"f": _entry(2, lambda before, _: before)},),
     ),
     Mistake(
         "heading-modulo-pi",
-        "your θ is brought into (0, π], and so turned round where it is negative",
-        "eq 3: θ + a may be any angle; a whole turn, 2π, may be taken off it, half a one may not",
+        "your θ is brought into [0, π), and so turned round where it is negative",
+        "eqs 3, 10: θ may be any angle; a whole turn, 2π, may be taken off it, half a one may not",
         everywhere,
         ({"mean": _half_turns},),
     ),

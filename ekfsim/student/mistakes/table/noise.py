@@ -257,7 +257,7 @@ OF_NOISE = (
     ),
     Mistake(
         "cross-dropped",
-        "your P has lost what x, y and θ have in common: entries beside its diagonal are 0",
+        "your P has 0 for σ_xθ and σ_yθ, or in every place beside its diagonal",
         "eq 2: P is a whole matrix; σ_xθ and σ_yθ say how x and y err with the heading",
         everywhere,
         ({"covariance": shadows}, {"covariance": diagonal}),

@@ -192,7 +192,7 @@ OF_NUMBERS = (
     ),
     Mistake(
         "P_u-of-its-own",
-        "your P_u has other numbers than the model's, perhaps the same for all motions",
+        "your P_u has other numbers than the model's, perhaps the same for all moves",
         "eq 1: σ_d = odometryDstSigmaRatio * d, σ_a = odometryAngSigmaRatio * a",
         move_turn,
         ({"M": _instead(np.diag([0.01, 0.01]))},),

@@ -130,7 +130,7 @@ OF_READINGS = (
     ),
     Mistake(
         "J_H-theta-without-range",
-        "your step is the one with ∂h/∂θ without the factor r in J_H",
+        "your step is the one with ∂h/∂θ without the range as a factor in J_H",
         "eq 11: ∂h/∂θ grows with the range; the further the wall, the more a turn changes",
         beams,
         ({"H": _theta_without_r},),
@@ -185,14 +185,14 @@ OF_READINGS = (
     Mistake(
         "J_H-of-a-point",
         "your step is the one with the J_H of a point where the beam ends, not of a wall",
-        "eq 11: the derivatives of h; beside the robot's way the beam slides along the wall",
+        "eq 11: the derivatives of h; from another place the beam meets the wall at another point",
         beams,
         ({"H": _of_a_point}, {"H": _of_a_turned_point}),
     ),
     Mistake(
         "J_H-without-slant",
         "your step is the one with J_H not divided by the cosine between beam and normal",
-        "eq 11: the derivatives of h, ∂h/∂p = −n / n·d",
+        "eq 11: ∂h/∂x and ∂h/∂y are the wall's normal towards the robot over that cosine",
         beams,
         ({"H": _unit_normal(True)}, {"H": _unit_normal(False)}),
     ),

@@ -6,7 +6,7 @@ import numpy as np
 
 from ekfsim.geometry import Array
 from ekfsim.student.mistakes.mistake import Mistake
-from ekfsim.student.mistakes.table.moves import exchanged, towards
+from ekfsim.student.mistakes.table.moves import exchanged, southward, towards
 from ekfsim.student.mistakes.table.steps import move_turn, moves
 from ekfsim.student.mistakes.working import Piece, Pieces, Working
 
@@ -55,13 +55,6 @@ def _across(s: Working, _: Callable[[], Array]) -> Array:
     return np.array([[-np.sin(θ), 0.0], [np.cos(θ), 0.0], [0.0, 1.0]])
 
 
-def _minus_sine(s: Working, right: Callable[[], Array]) -> Array:
-    """∂/∂d = (cos θ, −sin θ, 0)"""
-    J = np.array(right())
-    J[1] *= -1
-    return J
-
-
 def _at(direction: Callable[[float, float], float]) -> Pieces:
     """Both Jacobians at another heading."""
     return {"x_F": towards(direction), "x_G": towards(direction)}
@@ -92,14 +85,14 @@ OF_SLOPES = (
     Mistake(
         "J_x-sign-x",
         "your P is the one with the other sign of ∂x/∂θ in J_x",
-        "eq 6: J_x, the derivative of the first line of Φ by θ",
+        "eq 6: J_x, the derivative of the line of x in Φ by θ",
         moves,
         ({"F": bent(-1.0, [0])},),
     ),
     Mistake(
         "J_x-sign-y",
         "your P is the one with the other sign of ∂y/∂θ in J_x",
-        "eq 6: J_x, the derivative of the second line of Φ by θ",
+        "eq 6: J_x, the derivative of the line of y in Φ by θ",
         moves,
         ({"F": bent(-1.0, [1])},),
     ),
@@ -120,7 +113,7 @@ OF_SLOPES = (
     Mistake(
         "J_x-exchanged",
         "your P is the one with sine and cosine exchanged in J_x: ∂x/∂θ and ∂y/∂θ",
-        "eq 6: J_x, the derivatives of the first and of the second line of Φ by θ",
+        "eq 6: J_x, the derivatives of the lines of x and y in Φ by θ",
         moves,
         tuple({"F": _exchanged_column(*signs)} for signs in ((-1, -1), (1, 1), (1, -1))),
     ),
@@ -154,7 +147,7 @@ OF_SLOPES = (
     ),
     Mistake(
         "J_x-one-sided",
-        "your P is the one with J_x P alone, without J_x' on the right",
+        "your P is the one with J_x on one side of P alone: J_x P or P J_x'",
         "eq 7: J_x P J_x'",
         moves,
         ({"spread": lambda s, _: s.F @ s.P}, {"spread": lambda s, _: s.P @ s.F.T}),
@@ -185,7 +178,7 @@ OF_SLOPES = (
         "your P is the one with the other sign of ∂y/∂d in J_u",
         "eq 6: ∂x/∂d = cos θ, ∂y/∂d = sin θ",
         move_turn,
-        ({"G": _minus_sine},),
+        ({"G": southward},),
     ),
     Mistake(
         "J_u-without-turn",
