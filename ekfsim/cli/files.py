@@ -173,11 +173,12 @@ def new(file: Path, kind: str | None, complete: bool, model: str | None, force: 
         raise UsageError(f"{file}: --complete is of a filter; leave it out, or say --kind filter")
     with whole_text(file, force) as out:
         out.write(template(cast("Kind", f"{told}-complete" if complete else told)))
-    way = (
-        f"ekfsim play tour --filter {file} plays it"
-        if told == "filter"
-        else f"ekfsim check {file} validates it"
-    )
+    if told != "filter":
+        way = f"ekfsim check {file} validates it"
+    elif file.suffix == ".py":
+        way = f"ekfsim play tour --filter {file} plays it"
+    else:
+        way = "it is played under a name that ends in .py"
     click.echo(in_a_line(f"{file}: a {told} file to start from; {way}"))
 
 

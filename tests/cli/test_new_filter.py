@@ -87,7 +87,9 @@ def test_a_filter_overwrites_nothing_and_its_kind_may_be_told():
     assert ekfsim("new", "mine.py").status == 2
     assert Path("mine.py").read_text() == "x = 1\n"
     assert ekfsim("new", "mine.py", "--force").status == 0
-    assert ekfsim("new", "sub/my-ekf", "--kind", "filter").status == 0
+    told = ekfsim("new", "sub/my-ekf", "--kind", "filter")
+    assert told.status == 0
+    assert told.out.endswith("it is played under a name that ends in .py\n")
     assert Path("sub/my-ekf").read_text() == Path("mine.py").read_text()
 
 

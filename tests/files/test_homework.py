@@ -5,6 +5,7 @@ from jsonschema import Draft202012Validator
 
 from ekfsim.errors import InputError
 from ekfsim.files.homework import check_homework, read_homework
+from ekfsim.files.scenes.check_study import check
 from ekfsim.files.template import template
 from ekfsim.files.yaml.parsing import parse
 from ekfsim.files.yaml.schema import json_schema
@@ -198,3 +199,10 @@ def test_other_kinds_of_files_are_told_apart(homework, tmp_path):
     assert told(other)[0].endswith(
         "this is no homework file; its first key is homework: TITLE; see `ekfsim new homework.yaml`"
     )
+
+
+def test_a_homework_without_its_title_is_told_as_one(homework):
+    path = homework("parts:", part("a", 10, "steps"), head="name: EKF\ntotal: 10\n")
+    first, second = (str(mistake) for mistake in check(path).mistakes)
+    assert "homework: the key is missing" in first
+    assert "unknown key 'name'; known keys here: homework" in second
