@@ -163,6 +163,10 @@ def new(file: Path, kind: str | None, complete: bool, model: str | None, force: 
         if kind is not None or complete:
             other = "--complete" if complete else "--kind"
             raise UsageError(f"{other} and --from: a copy is of the kind that it is copied from")
+        if file.suffix == ".py":
+            raise UsageError(
+                f"{file}: a copy of commands is no filter; name it e.g. {file.stem}.yaml"
+            )
         text = starting_from(model, file)
         with whole_text(file, force) as out:
             out.write(text)

@@ -117,7 +117,7 @@ def _between_keys(keys: HomeworkKeys, root: Node, file: str) -> Iterator[Mistake
             yield mistake(("parts", n), wrong, right)
         if part.inputs is not None and part.inputs.files is part.inputs.exposed is None:
             yield mistake(
-                ("parts", n, "inputs"), "asks for nothing", "write files: 3, or exposed: 10"
+                ("parts", n, "inputs"), "asks for nothing", "write files: 3, or exposed: 100"
             )
         for k, name in enumerate(part.jacobians.functions if part.jacobians else ()):
             if keys.provided is None or name in keys.provided:

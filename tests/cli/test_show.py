@@ -110,3 +110,12 @@ def test_what_cannot_be_started_from(place, args, line):
     told = ekfsim("new", "mine.yaml", *args)
     assert (told.status, told.out, told.err) == (2, "", f"ekfsim: {line}\n")
     assert not Path("mine.yaml").exists()
+
+
+def test_a_copy_of_commands_is_no_filter(place):
+    ended = ekfsim("new", "mine.py", "--from", "tour")
+    assert (ended.status, ended.err) == (
+        2,
+        "ekfsim: mine.py: a copy of commands is no filter; name it e.g. mine.yaml\n",
+    )
+    assert not Path("mine.py").exists()

@@ -107,7 +107,7 @@ def test_a_scene_beside_the_file_is_found_and_counts(homework, tmp_path):
         ),
         (
             [part("a", 10, "inputs: {}")],
-            "4:35: parts[0].inputs: asks for nothing; write files: 3, or exposed: 10",
+            "4:35: parts[0].inputs: asks for nothing; write files: 3, or exposed: 100",
         ),
         (
             [part("a", 10, "jacobians")],

@@ -128,8 +128,8 @@ class InputsKeys(Strict):
         description="So many of the known mistakes exposed by them are worth all points. With "
         "`files`, each is worth half.",
         ge=1,
-        le=100,
-        examples=[10],
+        le=1000,
+        examples=[100],
     )
     runs: Runs = Field(300, description="Of each study of an `expect` at most so many runs.")
     commands: int = Field(
