@@ -34,7 +34,7 @@ def main(asked: Mapping[str, Any]) -> None:
     """
     requests, answers, limits = os.dup(0), os.dup(1), Limits(**asked["limits"])
     prctl(SET_CHILD_SUBREAPER, 1)
-    parent, keeper = os.getppid(), os.getpid()
+    keeper = os.getpid()
     student = os.fork()
     if student == 0:
         try:
@@ -58,7 +58,7 @@ def main(asked: Mapping[str, Any]) -> None:
     except InterruptedError:
         status = _left(student)
     _end_all(student)
-    if os.getppid() != parent:  # it can delete no more what it has made
+    if _closed(requests):  # perhaps the parent was killed, and deletes nothing more
         from ekfsim.student.sandbox.folder import remove
 
         remove(Path(asked["folder"]))
@@ -72,14 +72,14 @@ def _enough(number: int, frame: object) -> None:
 
 def _seen_to_its_end(student: int, requests: int, limits: Limits) -> int:
     """Wait until the process ends, or should: the status to end with."""
-    waited = select.poll()
-    waited.register(requests, 0)  # nothing but the other end's closing
+    waited = _closing(requests)
     if hasattr(os, "pidfd_open"):
         with suppress(OSError):
             waited.register(os.pidfd_open(student), select.POLLIN)
     counted = os.getuid() == 0 and sys.platform == "linux"  # for others, the kernel counts
     while True:
-        closed = any(descriptor == requests for descriptor, _ in waited.poll(TICK * 1000))
+        waited.poll(TICK * 1000)
+        closed = _closed(requests)
         done, status, took = os.wait4(student, os.WNOHANG)
         if done:
             code = os.waitstatus_to_exitcode(status)
@@ -90,6 +90,18 @@ def _seen_to_its_end(student: int, requests: int, limits: Limits) -> int:
             return _left(student)
         if counted and sum(1 for _ in descendants(os.getpid())) > limits.processes:
             return TOO_MANY
+
+
+def _closing(requests: int) -> select.poll:
+    """What waits for nothing but the closing of the exchange's other end."""
+    waited = select.poll()
+    waited.register(requests, 0)
+    return waited
+
+
+def _closed(requests: int) -> bool:
+    """Whether it is closed: a killed parent's is, a moment before its children lose it."""
+    return bool(_closing(requests).poll(0))
 
 
 def _left(student: int) -> int:
