@@ -25,8 +25,8 @@ def is_place(text: str) -> bool:
 def parts(place: str) -> tuple[str, str]:
     """The file or the module of a place, and the name in it, "" where it tells none.
 
-    >>> parts("/tmp/mine.py:MyEKF"), parts("mine.py"), parts("my.filters:MyEKF")
-    (('/tmp/mine.py', 'MyEKF'), ('mine.py', ''), ('my.filters', 'MyEKF'))
+    >>> parts("/home/anna/mine.py:MyEKF"), parts("mine.py"), parts("my.filters:MyEKF")
+    (('/home/anna/mine.py', 'MyEKF'), ('mine.py', ''), ('my.filters', 'MyEKF'))
     """
     found = FILE.fullmatch(place)
     if found:

@@ -123,6 +123,13 @@ def test_what_it_prints_goes_beside_the_narrative(place, changed):
     assert (drawn.status, drawn.err) == (0, "x (3,)\n")
 
 
+def test_a_fault_is_told_in_a_line_of_its_own(place, changed):
+    changed("print('here', end=''); return x, P * np.nan")
+    told = ekfsim("run", "short.yaml", "--filter", "mine.py").err.splitlines()
+    assert told[0] == "here"
+    assert re.fullmatch(r"mine\.py:\d+: step 2 .*: P\[0, 0\] is nan", told[1])
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are sent as POSIX has them")
 @pytest.mark.parametrize(
     ("number", "status", "caught"), [(signal.SIGINT, 130, False), (signal.SIGTERM, 143, True)]

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from around import CLASS
 from jsonschema import Draft202012Validator
 from program import ekfsim, lay_out
 
@@ -14,17 +15,6 @@ from ekfsim.filters.choice import registered
 from ekfsim.views.study import folder as study_folder
 
 METADATA = "Metadata-Version: 2.1\nName: {}\nVersion: 1.0\n"
-CLASS = """
-class Mine:
-    def __init__(self, x, P):
-        self.x, self.P = x, P
-
-    def predict(self, u, motion):
-        self.x, self.P = predict(self.x, self.P, u, motion)
-
-    def update(self, z, sensor):
-        self.x, self.P = update(self.x, self.P, z, sensor)
-"""
 
 
 def install(folder, package, entries, text):

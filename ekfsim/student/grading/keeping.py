@@ -11,14 +11,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
 
 from ekfsim.errors import UsageError
 from ekfsim.files.homework import Homework
 from ekfsim.files.results.writing import told, whole_text
 from ekfsim.student.grading.scores import Check, Grade
 from ekfsim.student.grading.submissions import Submission
-from ekfsim.study.running.journal import program
+from ekfsim.study.running.journal import hold, program
 
 LOCK = "lock"
 
@@ -87,20 +86,8 @@ def kept_in(work: Path, results: Path, checks: tuple[Check, ...]) -> Iterator[Ke
         work.mkdir(parents=True, exist_ok=True)
         file = open(work / LOCK, "wb")  # noqa: SIM115
     with file:
-        _lock(file, work)
+        hold(file, work, "grader")
         yield Kept(work, results, checks)
-
-
-def _lock(file: BinaryIO, folder: Path) -> None:
-    with suppress(ImportError, OSError):
-        import fcntl
-
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise UsageError(
-                f"{folder}: another grader is at work there; wait for it, or choose another name"
-            ) from None
 
 
 def remove(work: Path) -> None:

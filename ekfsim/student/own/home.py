@@ -10,7 +10,7 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType, TracebackType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -31,6 +31,43 @@ class Nowhere(io.TextIOBase):
     def write(self, text: str) -> int:
         """As if it were written."""
         return len(text)
+
+
+class Aside(io.TextIOBase):
+    """Standard error, where what is printed stands in lines of its own: one that is left open ends
+    where its call does, and what is told next begins anew.
+    """
+
+    def __init__(self) -> None:
+        self._stream = sys.stderr
+        self._open = False
+
+    @property
+    def buffer(self) -> Any:
+        """For who prints bytes."""
+        return self._stream.buffer
+
+    def fileno(self) -> int:
+        """That of standard error."""
+        return self._stream.fileno()
+
+    def isatty(self) -> bool:
+        """Whether somebody looks at it."""
+        return self._stream.isatty()
+
+    def write(self, text: str) -> int:
+        """Print it."""
+        self._open = not text.endswith("\n") if text else self._open
+        return self._stream.write(text)
+
+    def flush(self) -> None:
+        """Let out what was printed."""
+        self._stream.flush()
+
+    def end(self) -> None:
+        """End the line that is open."""
+        if self._open:
+            self.write("\n")
 
 
 NOWHERE = Nowhere()
@@ -55,7 +92,8 @@ class Home:
         printed here goes to standard error, and there is nothing to be read: a narrative is being
         told.
         """
-        heard = NOWHERE if self.mute else sys.stderr
+        aside = Aside()
+        heard = NOWHERE if self.mute else aside
         with redirect_stdout(heard), redirect_stderr(heard), np.errstate(all="ignore"):
             outside, here = (sys.stdin, sys.dont_write_bytecode), _here()
             sys.stdin, sys.dont_write_bytecode = io.StringIO(), True
@@ -72,6 +110,7 @@ class Home:
                     os.chdir(here)
                 if self.folder is not None:
                     self._leave(hidden, len(sys.modules) != known)
+                aside.end()
 
     def _leave(self, hidden: dict[str, ModuleType | None], more: bool) -> None:
         """Take the folder's modules out of what everybody knows, and put back what they hid."""
@@ -129,7 +168,7 @@ def words_of(error: BaseException) -> str:
     """An exception in a line: its kind and what it says; of ours only that."""
     try:
         text = " ".join(str(error)[: 10 * MOST_WORDS].split())
-    except Exception:
+    except Exception:  # its class is the student's, and so is what makes a text of it
         text = ""
     if len(text) > MOST_WORDS:
         text = f"{text[:MOST_WORDS]}…"

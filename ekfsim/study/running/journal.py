@@ -89,7 +89,7 @@ def journal_in(folder: Path, plan: Plan, resume: bool, force: bool) -> Iterator[
         )
     journal, ours = None, False
     try:
-        _lock(file, folder)  # before anything in it is touched: it may be another's
+        hold(file, folder, "study")  # before anything in it is touched: it may be another's
         if os.fstat(file.fileno()).st_size and not (resume or force):
             right = "go on with --resume, or begin anew with --force"
             raise UsageError(f"{folder}: holds what was done of a study that did not end; {right}")
@@ -113,9 +113,11 @@ def remove(folder: Path) -> None:
         folder.rmdir()
 
 
-def _lock(file: BinaryIO, folder: Path) -> None:
-    """Raises UsageError where another process holds the journal. Where nothing can be locked,
-    nothing is.
+def hold(file: BinaryIO, folder: Path, kind: str) -> None:
+    """Keep a file in the folder of what is half done for this process alone.
+
+    Raises UsageError where another holds it, a study or what the kind is. Where nothing can be
+    locked, nothing is.
     """
     with suppress(ImportError, OSError):
         import fcntl
@@ -124,7 +126,7 @@ def _lock(file: BinaryIO, folder: Path) -> None:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise UsageError(
-                f"{folder}: another study is at work there; wait for it, or choose another name"
+                f"{folder}: another {kind} is at work there; wait for it, or choose another name"
             ) from None
 
 

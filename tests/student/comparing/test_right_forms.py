@@ -5,6 +5,7 @@ from itertools import islice
 
 import numpy as np
 import pytest
+from around import CLASS
 
 from ekfsim import load_scene
 from ekfsim.cli.asked import scene_of
@@ -78,17 +79,6 @@ def predict(*given):
 
 def update(*given):
     return turned(*_update(*given), -2 * np.pi)
-"""
-CLASS = """
-class Mine:
-    def __init__(self, x, P):
-        self.x, self.P = x, P
-
-    def predict(self, u, motion):
-        self.x, self.P = predict(self.x, self.P, u, motion)
-
-    def update(self, z, sensor):
-        self.x, self.P = update(self.x, self.P, z, sensor)
 """
 STEPS = 35  # of each scene; the first are those with the most singular beliefs
 SCENES = {

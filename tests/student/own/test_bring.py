@@ -9,6 +9,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from around import CLASS as AROUND
 
 import ekfsim
 from ekfsim.errors import UsageError
@@ -20,18 +21,8 @@ from ekfsim.study.running.engines import Failed, do_packed
 from ekfsim.version import VERSION
 
 CELL = template("filter-complete")
-CLASS = """
-class MyEKF:
-    def __init__(self, x, P):
-        self.x, self.P = x, P
-
-    def predict(self, u, motion):
-        self.x, self.P = predict(self.x, self.P, u, motion)
-
-    def update(self, z, sensor):
-        self.x, self.P = update(self.x, self.P, z, sensor)
-"""
-PLACE = "/tmp/ipykernel_4711/{}.py"
+CLASS = AROUND.replace("Mine", "MyEKF")
+PLACE = "/anywhere/ipykernel_4711/{}.py"
 
 
 @pytest.fixture(autouse=True)
