@@ -31,7 +31,7 @@ from ekfsim.scene import Scene
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import Frame, Picture
 from ekfsim.views.picture.look import STANDARD
-from ekfsim.views.terminal.playback import views
+from ekfsim.views.playback.playback import views
 from ekfsim.world import Map, Noise, Obstacle, Told, World
 
 SIDE = 10.0  # m

@@ -21,7 +21,7 @@ from ekfsim.diagnostics.summary import Summary
 from ekfsim.geometry import Array
 from ekfsim.localization import play
 from ekfsim.scene import Scene
-from ekfsim.views.terminal.playback import views
+from ekfsim.views.playback.playback import views
 from ekfsim.views.words.closing import conclude
 from ekfsim.views.words.narrative import narrate
 from ekfsim.world import Map, Noise, Obstacle, Told, World

@@ -94,7 +94,7 @@ if TYPE_CHECKING:
     from ekfsim.student.own.bring import bring as bring
     from ekfsim.views.picture.frames import draw as draw
     from ekfsim.views.picture.look import Look as Look
-    from ekfsim.views.terminal.playback import Playback as Playback
+    from ekfsim.views.playback.playback import Playback as Playback
     from ekfsim.views.words.closing import conclude as conclude
     from ekfsim.views.words.narrative import narrate as narrate
     from ekfsim.world import World as World
@@ -123,7 +123,7 @@ _HOMES = {
     "views.picture.frames": ("draw",),
     "views.picture.look": ("Look",),
     "views.words.narrative": ("narrate",),
-    "views.terminal.playback": ("Playback",),
+    "views.playback.playback": ("Playback",),
     "world": ("World",),
 }
 _HOME_OF = {name: f"ekfsim.{home}" for home, names in _HOMES.items() for name in names}

@@ -69,7 +69,7 @@ def render(
     from ekfsim.views.film import animation
     from ekfsim.views.picture import limits
     from ekfsim.views.picture.lettering import boxes
-    from ekfsim.views.terminal.playback import Tally, together
+    from ekfsim.views.playback.playback import Tally, together
     from ekfsim.views.words.captions import texts
 
     scene, tally = scene_of(**chosen), Tally()
@@ -113,7 +113,7 @@ def run(
     from ekfsim.diagnostics.summary import Summary
     from ekfsim.files.results.outputs import Outputs, kept
     from ekfsim.localization import play as steps_of
-    from ekfsim.views.terminal.playback import together
+    from ekfsim.views.playback.playback import together
     from ekfsim.views.words.closing import conclude_all
     from ekfsim.views.words.narrative import narrate
 

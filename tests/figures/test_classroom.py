@@ -13,7 +13,7 @@ from ekfsim.figures.classroom.proofs import shipped
 from ekfsim.localization import play
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import Frame
-from ekfsim.views.terminal.playback import views
+from ekfsim.views.playback.playback import views
 
 
 class Kept(Album):

@@ -14,7 +14,7 @@ from ekfsim.localization import play
 from ekfsim.raycast.walls import Walls
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import Frame
-from ekfsim.views.terminal.playback import views
+from ekfsim.views.playback.playback import views
 
 PLACES = [(500_000.0, 5_000_000.0), (9.9e7, -9.9e7)]
 ULP = 1.5e-8  # m, at 1e8

@@ -23,7 +23,7 @@ from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.picture.frames import HANDLERS
 from ekfsim.views.picture.look import Look
-from ekfsim.views.terminal.playback import views
+from ekfsim.views.playback.playback import views
 
 WRONG_WALL = "diverge-01-wrong-wall"
 

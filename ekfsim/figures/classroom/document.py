@@ -13,7 +13,8 @@ from ekfsim.localization import play
 from ekfsim.scene import Scene
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import Frame
-from ekfsim.views.terminal.playback import View, views
+from ekfsim.views.playback.playback import views
+from ekfsim.views.playback.view import View
 
 
 def draw_classroom(scene: Scene, album: Album) -> None:

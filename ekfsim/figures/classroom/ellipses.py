@@ -29,7 +29,8 @@ from ekfsim.records import Step
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import HANDLERS, draw
 from ekfsim.views.picture.look import Look
-from ekfsim.views.terminal.playback import View, views
+from ekfsim.views.playback.playback import views
+from ekfsim.views.playback.view import View
 
 THETA, STARTS, LOOP = "theta", "proof-unsure-start", "proof-coverage"
 DOCUMENT = 0.954  # the document's probability

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from ekfsim.scene import Scene
 from ekfsim.views.picture.frames import draw
 from ekfsim.views.picture.look import Look
-from ekfsim.views.terminal.playback import View
+from ekfsim.views.playback.view import View
 
 MARGIN = 0.4  # m around a room
 NEVER_IN_THESE = ("… is refused",)

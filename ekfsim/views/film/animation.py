@@ -16,7 +16,7 @@ from ekfsim.views.film.png import Pixels
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import STANDARD, Look
-from ekfsim.views.terminal.playback import View
+from ekfsim.views.playback.view import View
 
 BEAM, OTHER, LAST = 0.8, 1.2, 3.2  # s that a view stays
 DRIVEN = 0.4  # the same for a driven or recorded robot, whose run has thousands

@@ -21,7 +21,7 @@ from ekfsim.filters.belief import Particles
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import conditioned, cone_halfwidth, outline
 from ekfsim.views.picture.outlined import OutlinedText
-from ekfsim.views.terminal.playback import View
+from ekfsim.views.playback.view import View
 from ekfsim.views.words.captions import conditioned_label, cone_label, ellipse_label
 from ekfsim.world import World
 

@@ -30,7 +30,7 @@ from ekfsim.views.picture.look import STANDARD, Look
 from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.picture.panels import CloseUp, Main, reading
 from ekfsim.views.picture.replay import Replay
-from ekfsim.views.terminal.playback import View
+from ekfsim.views.playback.view import View
 from ekfsim.views.words.captions import notes, source, spread, title, too_large
 
 INCHES, DPI = (9.0, 7.0), 100  # 900 × 700 pixels
@@ -53,7 +53,7 @@ def draw(
     moves the same artists: `picture = draw(view, scene, ax)`, then `picture.show(other, None)`.
     """
     if isinstance(view, Step):
-        view = View(0, view, False, [], 0)
+        view = View(0, view)
     main = Main(
         ax,
         scene,

@@ -16,7 +16,7 @@ from ekfsim.models.sensors.laser import Laser
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.picture.sights import sight
-from ekfsim.views.terminal.playback import View
+from ekfsim.views.playback.view import View
 from ekfsim.world import World
 
 MARGIN = 0.05  # of the larger side, all around: room for the robot's body and the line widths

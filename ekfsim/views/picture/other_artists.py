@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 
 from ekfsim.geometry.ellipse import outline
 from ekfsim.views.picture.artists import NOSE, closed, direction, line, marks, place
-from ekfsim.views.terminal.playback import View
+from ekfsim.views.playback.view import View
 
 
 class Style(NamedTuple):

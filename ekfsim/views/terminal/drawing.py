@@ -13,6 +13,7 @@ from ekfsim.geometry.ellipse import cone_halfwidth, outline
 from ekfsim.records import Control, Reading
 from ekfsim.scene import Scene
 from ekfsim.views.picture.sights import instants
+from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.braille import (
     Bounds,
     Canvas,
@@ -24,7 +25,6 @@ from ekfsim.views.terminal.braille import (
     printable,
     shorten,
 )
-from ekfsim.views.terminal.playback import View
 from ekfsim.views.terminal.readings import (
     Item,
     direction,

@@ -21,9 +21,10 @@ from ekfsim.scene import Scene
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import Look, get_ready
+from ekfsim.views.playback.playback import UntilFailure
+from ekfsim.views.playback.view import View
 from ekfsim.views.terminal import drawing as terminal
 from ekfsim.views.terminal.keyboard import Key, Keyboard, keys
-from ekfsim.views.terminal.playback import UntilFailure, View
 from ekfsim.views.terminal.player import Player, Screen
 
 if TYPE_CHECKING:

@@ -10,8 +10,9 @@ from ekfsim.localization import play
 from ekfsim.printable import shown
 from ekfsim.records import Step
 from ekfsim.scene import Scene
+from ekfsim.views.playback.playback import Playback
+from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.keyboard import HELP, Action, Counted, Key
-from ekfsim.views.terminal.playback import Playback, View
 from ekfsim.views.words.closing import conclude_all
 from ekfsim.views.words.long_form import WORDS
 from ekfsim.views.words.narrative import narrate

@@ -10,8 +10,8 @@ from ekfsim.geometry import Array
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.records import Entry, Reading, Step
 from ekfsim.views.picture.sights import sight, told
+from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.braille import Canvas, Pen, ansi
-from ekfsim.views.terminal.playback import View
 
 READ = ansi("#D55E00")
 BEAM, REFUSED_BEAM = Pen(READ, "-"), Pen(READ, "-", on=2, off=3)

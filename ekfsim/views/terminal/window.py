@@ -14,8 +14,8 @@ from ekfsim.scene import Scene
 from ekfsim.views.picture.frames import DPI, INCHES, Picture
 from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import STANDARD, Look
+from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.keyboard import CHARACTERS, Action, Key
-from ekfsim.views.terminal.playback import View
 
 BACKENDS = {  # matplotlib's, each with the modules of which it needs one
     "macosx": ("matplotlib.backends._macosx",),

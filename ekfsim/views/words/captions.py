@@ -11,7 +11,7 @@ from ekfsim.records import Control, Entry, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.picture.lettering import shortened
 from ekfsim.views.picture.sights import Sight, instants, told
-from ekfsim.views.terminal.playback import View
+from ekfsim.views.playback.view import View
 from ekfsim.views.words.beams import Beam, called, length
 
 REFUSALS = {

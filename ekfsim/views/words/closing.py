@@ -11,7 +11,7 @@ from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Refused
 from ekfsim.records import Nees
 from ekfsim.scene import Scene
-from ekfsim.views.terminal.parting import Apart
+from ekfsim.views.playback.parting import Apart
 from ekfsim.views.words.numbers import number, turn
 from ekfsim.views.words.text_table import aligned
 

@@ -8,7 +8,7 @@ from ekfsim.filters.belief import Correction, Refused
 from ekfsim.geometry import Array
 from ekfsim.models.protocols import Quantity
 from ekfsim.records import Control, Reading
-from ekfsim.views.terminal.playback import View
+from ekfsim.views.playback.view import View
 from ekfsim.views.words.long_form import SHORT, Form
 from ekfsim.views.words.numbers import (
     MANY,

@@ -12,7 +12,7 @@ from ekfsim.filters.belief import Correction, posed
 from ekfsim.geometry import Array
 from ekfsim.records import Control, Step
 from ekfsim.scene import Scene
-from ekfsim.views.terminal.playback import View
+from ekfsim.views.playback.view import View
 from ekfsim.views.words.numbers import fine, matrix, number, pose, state
 from ekfsim.views.words.origins import Origins, named, origins
 from ekfsim.views.words.told_beams import corners, others_met, wall_name, walls_of

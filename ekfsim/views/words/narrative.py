@@ -9,7 +9,7 @@ from ekfsim.filters.belief import Correction, Refused
 from ekfsim.printable import shown
 from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
-from ekfsim.views.terminal.playback import View
+from ekfsim.views.playback.view import View
 from ekfsim.views.words import driven as driven_narrative
 from ekfsim.views.words.driven import REFUSED
 from ekfsim.views.words.long_form import SHORT, Form, LongForm

@@ -18,7 +18,8 @@ from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import ellipse
 from ekfsim.records import Control, Step
 from ekfsim.scene import Scene
-from ekfsim.views.terminal.playback import View, views
+from ekfsim.views.playback.playback import views
+from ekfsim.views.playback.view import View
 from ekfsim.views.words.narrative import narrate
 
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")

@@ -19,7 +19,7 @@ from ekfsim.student.own.forms import Functions
 from ekfsim.student.own.home import Home
 from ekfsim.student.own.loading import Code
 from ekfsim.views.picture import limits
-from ekfsim.views.terminal.playback import views
+from ekfsim.views.playback.playback import views
 from ekfsim.views.words.closing import conclude
 from ekfsim.views.words.narrative import narrate
 

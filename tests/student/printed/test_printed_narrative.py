@@ -10,7 +10,7 @@ from ekfsim.errors import InputError
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
 from ekfsim.student.printed.held import held_narrative
-from ekfsim.views.terminal.playback import views
+from ekfsim.views.playback.playback import views
 from ekfsim.views.words.narrative import narrate
 
 K = math.sqrt(-2 * math.log(1 - 0.954))

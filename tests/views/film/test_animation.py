@@ -16,7 +16,7 @@ from ekfsim.views.film import animation, gif, video
 from ekfsim.views.film.animation import render
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import Frame
-from ekfsim.views.terminal.playback import views
+from ekfsim.views.playback.playback import views
 
 RUN = scene(
     Move(1.0, 0.5),

@@ -19,7 +19,7 @@ from ekfsim.views.picture import frames, limits, panels
 from ekfsim.views.picture.frames import Frame, Picture, draw
 from ekfsim.views.picture.look import Look
 from ekfsim.views.picture.panels import close_width
-from ekfsim.views.terminal.playback import views
+from ekfsim.views.playback.playback import views
 from ekfsim.views.words.beams import beam
 from ekfsim.world import Map
 

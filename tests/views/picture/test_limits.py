@@ -10,7 +10,7 @@ from ekfsim.filters.belief import Gaussian
 from ekfsim.localization import play
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.limits import Limits, including
-from ekfsim.views.terminal.playback import views
+from ekfsim.views.playback.playback import views
 
 
 @pytest.mark.parametrize(

@@ -15,8 +15,8 @@ from ekfsim.localization import play
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.frames import Picture
 from ekfsim.views.picture.other_artists import STYLES
+from ekfsim.views.playback.playback import Playback, together, views
 from ekfsim.views.terminal import drawing as terminal
-from ekfsim.views.terminal.playback import Playback, together, views
 
 COURSE = (Move(2.0, 0.9), Sense(0.3), Move(1.5, -0.7), Sense(-0.8))
 RUN = replace(

@@ -9,7 +9,7 @@ from ekfsim.localization import play
 from ekfsim.views.picture import limits, replay
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.picture.look import Look
-from ekfsim.views.terminal.playback import views
+from ekfsim.views.playback.playback import views
 
 SIGMA = (0.1, 0.1, 0.1)
 

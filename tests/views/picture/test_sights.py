@@ -32,8 +32,9 @@ from ekfsim.views.picture.frames import Frame, Picture
 from ekfsim.views.picture.look import Look
 from ekfsim.views.picture.sight_artists import recorded_fixes
 from ekfsim.views.picture.sights import bare, kinds, sight
+from ekfsim.views.playback.playback import views
+from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.drawing import draw
-from ekfsim.views.terminal.playback import View, views
 from ekfsim.views.words.beams import beam
 from ekfsim.views.words.captions import source, title
 
@@ -358,31 +359,22 @@ def test_titles_tell_the_instant_and_what_was_measured():
     assert re.fullmatch(r"t = 2\.00 s: marker \d", told[2])
     assert told[2] == told[3]
     step = step_of(BearingOnly(4.0, 6.0, 0.1), [0.1], [0.2])
-    assert title(View(0, step, True, [], 0), 0) == "t = 3.50 s: thing 1"
-    assert (
-        title(View(0, replace(step, entry=replace(step.entry, t=None)), True, [], 0), 0)
-        == "7: thing 1"
-    )
+    assert title(View(0, step, True), 0) == "t = 3.50 s: thing 1"
+    assert title(View(0, replace(step, entry=replace(step.entry, t=None)), True), 0) == "7: thing 1"
 
 
 def test_what_was_measured_is_told_in_units():
     run = systems_scenes.mower()
     picture, _ = drawn(run)
     picture.show(
-        View(
-            0,
-            step_of(MarkerAngles(4.0, 6.0, 0.2, 0.1, 0.1), [0.1, -0.02], [-0.3, -0.03]),
-            True,
-            [],
-            0,
-        )
+        View(0, step_of(MarkerAngles(4.0, 6.0, 0.2, 0.1, 0.1), [0.1, -0.02], [-0.3, -0.03]), True)
     )
     assert (
         picture.notes.get_text()
         == "measured azimuth 5.73°, elevation −1.15°; expected −17.2°, −1.72°"
     )
     step = step_of(RangeBearing(4.0, 6.0, 0.1, 0.1), [1.25, 0.0], [1.5, -0.1], refused=Refused.GATE)
-    picture.show(View(0, step, True, [], 0))
+    picture.show(View(0, step, True))
     assert picture.notes.get_text() == (
         "measured range 1.25 m, bearing 0°; expected 1.5 m, −5.73°\n"
         "refused by the gate: too far from what was predicted"
@@ -395,9 +387,7 @@ def test_the_terminal_tells_and_draws_a_refused_reading_otherwise():
     box = (-5.1, 7.0, -1.0, 6.0)
     pictures = {}
     for refused in (Refused.NOT, Refused.GATE):
-        view = View(
-            0, step_of(sensor, [3.0, -math.pi / 2], [3.0, 0.0], refused=refused), True, [], 0
-        )
+        view = View(0, step_of(sensor, [3.0, -math.pi / 2], [3.0, 0.0], refused=refused), True)
         pictures[refused] = draw(view, run, 0.954, (80, 24), box, colour=False, ascii=True).split(
             "\n"
         )

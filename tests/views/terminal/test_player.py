@@ -7,8 +7,8 @@ from scenes import scene
 from ekfsim.commands import Move, Sense
 from ekfsim.diagnostics.summary import Summary
 from ekfsim.localization import play
+from ekfsim.views.playback.playback import views
 from ekfsim.views.terminal.keyboard import HELP, Action
-from ekfsim.views.terminal.playback import views
 from ekfsim.views.terminal.player import Player
 from ekfsim.views.words.closing import conclude
 from ekfsim.views.words.long_form import WORDS

@@ -14,9 +14,10 @@ from ekfsim.filters.belief import Gaussian
 from ekfsim.localization import play
 from ekfsim.records import Entry
 from ekfsim.scene import Scene
+from ekfsim.views.playback.playback import Playback
+from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.braille import cells
 from ekfsim.views.terminal.drawing import draw
-from ekfsim.views.terminal.playback import Playback, View
 from ekfsim.world import Landmark, Map, Noise, Obstacle, Told, World
 
 LIMITS = (0.0, 10.0, 0.0, 8.0)

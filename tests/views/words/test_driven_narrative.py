@@ -15,7 +15,8 @@ from ekfsim.localization import play
 from ekfsim.models.sensors.echo import Echo
 from ekfsim.records import Entry, Reading, Step
 from ekfsim.version import VERSION
-from ekfsim.views.terminal.playback import View, views
+from ekfsim.views.playback.playback import views
+from ekfsim.views.playback.view import View
 from ekfsim.views.words.narrative import narrate
 from ekfsim.views.words.numbers import matrix, pose, state
 
@@ -132,7 +133,7 @@ def test_a_direction_is_told_above_minus_180_and_a_difference_as_it_is():
         np.array(1.0), np.array(0),
     )  # fmt: skip
     step = Step(Entry(1, reading, t=1.0), FIRST, FIRST, correction=c)
-    before, after = (narrate(View(1, step, beam, [], 0), recording()) for beam in (True, False))
+    before, after = (narrate(View(1, step, beam), recording()) for beam in (True, False))
     assert "azimuth = 180 degrees" in before
     assert "The predicted reading was azimuth = 180 degrees" in after
     assert "The innovation is azimuth = -180 degrees" in after
@@ -147,7 +148,7 @@ def sighted(z, h, refused, K=0.5, S=0.04, nis=1.0):
     step = Step(
         Entry(3, Reading(BEAM, np.array([z]), "ultrasonic 2"), t=2.5), FIRST, FIRST, correction=c
     )
-    return [narrate(View(1, step, beam, [], 0), recording()) for beam in (True, False)]
+    return [narrate(View(1, step, beam), recording()) for beam in (True, False)]
 
 
 @pytest.mark.parametrize(
@@ -195,7 +196,7 @@ def test_a_reading_of_very_many_numbers_is_shortened():
         np.array(0),
     )  # fmt: skip
     step = Step(Entry(1, reading, t=1.0), FIRST, FIRST, correction=c)
-    before, after = (narrate(View(1, step, beam, [], 0), recording()) for beam in (True, False))
+    before, after = (narrate(View(1, step, beam), recording()) for beam in (True, False))
     shown = ", ".join(f"amplitude = {n} V" for n in range(8))
     assert before == f"==>At t = 1 s echo was read: {shown}, … (12 numbers)\n\n"
     assert "[1 1 1]\n…]\nThe innovation is" in after

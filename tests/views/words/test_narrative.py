@@ -16,7 +16,8 @@ from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.provenance import VERSION
 from ekfsim.records import Control, Entry, Nees, Reading, Step
-from ekfsim.views.terminal.playback import View, views
+from ekfsim.views.playback.playback import views
+from ekfsim.views.playback.view import View
 from ekfsim.views.words.narrative import narrate
 from ekfsim.views.words.numbers import heading
 from ekfsim.views.words.origins import BY_FILTER
@@ -39,7 +40,7 @@ def nees(value=0.279, dof=3, impossible=False):
 
 
 def said(step, beam=False, place=PLACE, **settings):
-    return narrate(View(1, step, beam, [], 0), place, **settings)
+    return narrate(View(1, step, beam), place, **settings)
 
 
 def moved(command=Move(1.75, TURN), bump=-1, measured=nees(), truth=TRUTH):  # noqa: B008
@@ -137,7 +138,7 @@ def test_a_kidnapping_and_a_word():
 
 def test_the_start_says_what_made_it():
     step = next(iter(play(PLACE)))
-    told = narrate(View(0, step, False, [], 0), PLACE)
+    told = narrate(View(0, step), PLACE)
     assert told.startswith(f"ekfsim {VERSION}, ")
     assert "seed 0, run 0" in told.splitlines()[0]
     assert "First state estimate is (x, y, theta) = (1, 1, 30)\n" in told
@@ -550,5 +551,5 @@ def test_the_certainty_of_a_perfect_beam_is_told():
             PLACE.world, told=replace(PLACE.world.told, noise=noise, sigma=np.full(3, sigma))
         )
         scene = replace(PLACE, world=world, filter=filter)
-        text = narrate(View(0, next(iter(play(scene))), False, [], 0), scene)
+        text = narrate(View(0, next(iter(play(scene))), False), scene)
         assert ("is told that the range has no noise" in text) == expected

@@ -1,5 +1,6 @@
 import gc
 import weakref
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -7,11 +8,14 @@ from recordings import recording, speeds
 from scenes import rich, scene, unbounded
 
 from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
+from ekfsim.diagnostics.nees import nees
+from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.files.results.outputs import kept
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.belief import posed
 from ekfsim.localization import play
-from ekfsim.records import Control, Reading, Step
-from ekfsim.views.terminal.playback import GATHERED, Playback, Tally, views
+from ekfsim.records import Control, Reading
+from ekfsim.views.playback.playback import GATHERED, Playback, Tally, views
 
 COURSE = (
     Sense(0.0),
@@ -87,17 +91,18 @@ def counted(steps, computed):
         yield step
 
 
-def test_a_step_is_computed_when_first_asked_for_and_only_once():
+def test_a_step_is_computed_when_the_view_before_it_is_asked_for_and_only_once():
+    """One ahead: whether a view is the last is to be known when it is shown."""
     computed = []
     playback = Playback(counted(play(scene(*COURSE)), computed))
     assert computed == []
     assert playback.view(0).number == 0
-    assert computed == [0]
+    assert computed == [0, 1]
     third = playback.view(3)
-    assert computed == [0, 1, 2]
+    assert computed == [0, 1, 2, 3]
     assert playback.view(3) is third
     assert playback.view(1).step is playback.view(2).step
-    assert computed == [0, 1, 2]
+    assert computed == [0, 1, 2, 3]
 
 
 def test_after_the_last_view_there_is_none():
@@ -138,11 +143,11 @@ def test_but_no_more_than_a_person_would_wait_for(inputs):
         assert view.since == steps[first].entry.t
 
 
-def test_a_full_view_does_not_wait_for_what_comes_after():
+def test_a_view_waits_for_the_one_that_comes_after_and_no_longer():
     computed = []
-    playback = Playback(counted(play(speeds(2 * GATHERED, 10_000)), computed))
+    playback = Playback(counted(play(speeds(3 * GATHERED, 10_000)), computed))
     assert playback.view(1).inputs == GATHERED
-    assert len(computed) == GATHERED + 1
+    assert len(computed) == 2 * GATHERED + 1
 
 
 def test_only_a_command_and_a_reading_have_no_belief_before():
@@ -176,7 +181,7 @@ def test_steps_between_are_not_kept():
         for step in play(speeds(3 * GATHERED, 10_000)):
             prior = step.prior.mean.copy()
             alive.append(weakref.ref(prior))
-            yield Step(step.entry, step.prior._replace(mean=prior), step.posterior)
+            yield replace(step, prior=step.prior._replace(mean=prior))
 
     seen = list(views(watched()))
     gc.collect()
@@ -207,3 +212,38 @@ def test_every_step_is_handed_on_before_its_view_is_shown():
         assert view.step.entry.index in handed
     assert handed == list(range(9))
     assert sum(isinstance(step.entry.given, Reading) for step in play(recording())) == 4
+
+
+def test_the_true_way_is_broken_where_the_robot_is_carried_away():
+    seen = all_views(scene(*COURSE))
+    way = seen[-1].true.points()
+    (broken,) = np.flatnonzero(np.isnan(way[:, 0]))
+    kidnapped = next(v for v in seen if isinstance(v.step.entry.command, Kidnap))
+    assert (way[broken + 1] == [2, 2]).all()
+    assert (kidnapped.true.points()[-1] == [2, 2]).all()
+    truths = [v.step.entry.truth[:2] for v in seen if not v.beam]
+    np.testing.assert_array_equal(np.delete(way, broken, axis=0), truths)
+
+
+def test_odometry_alone_follows_the_inputs_from_the_first_estimate():
+    """Without readings the filter's mean is nothing else."""
+    seen = all_views(scene(*(each for each in COURSE if not isinstance(each, Sense))))
+    for view in seen:
+        np.testing.assert_allclose(view.reckoned.points()[-1], view.pose.mean[:2], atol=1e-12)
+
+
+def test_a_view_is_judged_by_what_it_shows_and_the_last_one_closes():
+    made = load_scene("diverge-01-wrong-wall")
+    evidence, seen = Evidence(), all_views(made)
+    for view in seen:
+        if not view.beam:
+            evidence.add(view.step)
+        assert view.judged.lost_from == evidence.lost_from
+        if view.step.entry.truth is not None and view.judged.nees is not None:
+            value = nees(view.belief, view.step.entry.truth).value
+            np.testing.assert_allclose(view.judged.nees.value, value, rtol=1e-9)
+    assert [v.number for v in seen if v.judged.closing is not None] == [len(seen) - 1]
+    closing = seen[-1].judged.closing
+    assert closing is not None
+    assert closing.verdict.value == "lost"
+    assert closing == evidence

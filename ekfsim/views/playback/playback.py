@@ -2,95 +2,55 @@
 
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeVar
 
-import numpy as np
-
 from ekfsim.commands import Move, Untold
+from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.errors import StepError
 from ekfsim.files.results.outputs import kept
-from ekfsim.filters.belief import Belief, Gaussian, posed
-from ekfsim.geometry import Array
+from ekfsim.filters.belief import Belief
 from ekfsim.models.layout import Layout
 from ekfsim.records import Control, Reading, Step
-from ekfsim.views.terminal.parting import Apart, Parting
+from ekfsim.views.playback.parting import Parting
+from ekfsim.views.playback.trail import Trail, Way, Ways
+from ekfsim.views.playback.view import Judged, View
 
 T = TypeVar("T")
 GATHERED = 200  # motion inputs of a driven or recorded robot in one view, at most
-
-
-@dataclass(frozen=True, slots=True)
-class View:
-    """What is on the screen after so many presses of `n`.
-    View 0 is the world before anything happens.
-
-    A reading has two: first the beam, while the estimate is still the old one, then the revised
-    estimate without it. The motion inputs of a driven or recorded robot that follow each other
-    share one, and its step is the last of them.
-    """
-
-    number: int
-    step: Step
-    beam: bool
-    settled: list[Array]  # earlier estimated positions; shared by all views, and only ever grows
-    corners: int  # how many of them lie behind this view
-    inputs: int = 1  # how many steps the view gathers
-    # the belief before the first of them, where more than one may be gathered
-    before: Belief | None = None
-    since: float | None = None  # s, the instant of the first of the steps, as stamped
-    start: float = 0.0  # s, the stamp of the start
-    others: tuple["View", ...] = ()  # the same view as other filters have it, that watch beside
-    apart: tuple[Apart, ...] = ()  # of each of them: whether it believes something else
-
-    @property
-    def belief(self) -> Belief:
-        """The belief that is shown: the prior while the beam is, the posterior after."""
-        return self.step.prior if self.beam else self.step.posterior
-
-    @property
-    def layout(self) -> Layout:
-        """What the entries of the estimated state are."""
-        return self.step.layout
-
-    @property
-    def pose(self) -> Gaussian:
-        """What that belief says of the pose, which is drawn : (3,), (3, 3)"""
-        return posed(self.belief, self.layout)
-
-    @property
-    def span(self) -> tuple[float, float] | None:
-        """The first and the last instant of its steps, in s since the start;
-        None where there is no clock.
-        """
-        last = self.step.entry.t
-        return (
-            None
-            if last is None
-            else ((last if self.since is None else self.since) - self.start, last - self.start)
-        )
-
-    def path(self) -> Array:
-        """All estimated positions from the start to the one that is drawn : (n, 2) m"""
-        return np.array([*self.settled[: self.corners], _position(self.belief, self.layout)])
 
 
 def views(steps: Iterable[Step]) -> Iterator[View]:
     """Every view of a run, in order.
     Until the next motion the path's last corner moves with each revised estimate.
     """
-    settled: list[Array] = []
-    number, start = itertools.count(), None
-    for first, step, inputs in _seen(steps):
+    settled, ways, evidence = Trail(), Ways(), Evidence()
+    number, start, nees = itertools.count(), None, None
+    for group, over in _groups(steps):
+        first, step = group[0], group[-1]
         start = first.entry.t or 0.0 if start is None else start
+        for each in group:
+            ways.take(each)
+        ways.mark(step)
         before = first.prior if _gathered(first) else None
         if before is not None or isinstance(step.entry.command, Move | Untold):
-            settled.append(_position(first.prior, first.layout))
-        if isinstance(step.entry.given, Reading):
-            yield View(next(number), step, True, settled, len(settled), start=start)
-        yield View(
-            next(number), step, False, settled, len(settled), inputs, before, first.entry.t, start
-        )
+            settled.append(*_position(first.prior, first.layout))
+        shown = View(
+            next(number), step, isinstance(step.entry.given, Reading), Way.now(settled),
+            Way.now(ways.true), Way.now(ways.reckoned), Judged(nees, evidence.lost_from),
+            start=start,
+        )  # fmt: skip
+        if shown.beam:
+            yield shown
+            shown = replace(shown, number=next(number), beam=False)
+        for each in group:
+            evidence.add(each)
+        nees = step.nees
+        yield replace(
+            shown,
+            judged=Judged(nees, evidence.lost_from, evidence if over else None),
+            inputs=len(group), before=before, since=first.entry.t,
+        )  # fmt: skip
 
 
 def together(
@@ -113,30 +73,36 @@ def together(
         yield replace(view, others=tuple(same), apart=apart)
 
 
-def _seen(steps: Iterable[Step]) -> Iterator[tuple[Step, Step, int]]:
-    """The steps that a view gathers: the first, the last and how many.
-    Those between are not kept.
+def _groups(steps: Iterable[Step]) -> Iterator[tuple[list[Step], bool]]:
+    """The steps that a view gathers, and whether the run is over with them. It is known of each
+    whether another follows before it is shown; where a run fails, nothing is over.
     """
-    first: Step | None = None
-    last: Step | None = None
-    inputs = 0
     coming = UntilFailure(steps)
-    for step in coming:
-        gathered = _gathered(step)
-        if first is not None and last is not None and not gathered:
-            yield first, last, inputs
-            first = None
-        if not gathered:
-            yield step, step, 1
-            continue
-        first, last, inputs = (step, step, 1) if first is None else (first, step, inputs + 1)
-        if inputs == GATHERED:
-            yield first, last, inputs
-            first = None
-    if first is not None and last is not None:
-        yield first, last, inputs
+    groups = _gathering(coming)
+    group = next(groups, None)
+    while group is not None:
+        following = next(groups, None)
+        yield group, following is None and coming.failure is None
+        group = following
     if coming.failure is not None:
         raise coming.failure
+
+
+def _gathering(steps: Iterable[Step]) -> Iterator[list[Step]]:
+    gathered: list[Step] = []
+    for step in steps:
+        if gathered and not _gathered(step):
+            yield gathered
+            gathered = []
+        if not _gathered(step):
+            yield [step]
+            continue
+        gathered.append(step)
+        if len(gathered) == GATHERED:
+            yield gathered
+            gathered = []
+    if gathered:
+        yield gathered
 
 
 def _gathered(step: Step) -> bool:
@@ -146,9 +112,10 @@ def _gathered(step: Step) -> bool:
     return step.entry.command is None and isinstance(step.entry.given, Control)
 
 
-def _position(belief: Belief, layout: Layout) -> Array:
-    """The estimated position : (2,) m"""
-    return layout.pose(belief.mean)[:2]
+def _position(belief: Belief, layout: Layout) -> tuple[float, float]:
+    """The estimated position, x and y in m."""
+    x, y, _ = layout.pose(belief.mean).tolist()
+    return x, y
 
 
 class UntilFailure(Iterator[T]):
