@@ -2,7 +2,7 @@
 
 playback/   views, one for each press of `n`
 words/      the narrative and its numbers    picture/   what matplotlib draws of a step
-terminal/   a run at the keyboard            film/      frames, GIF, MP4
-study/      what is told of many runs        student/     what is told of students' filters
-worksheet/  the narrative with gaps
+curves/     a run over its steps             film/      frames, GIF, MP4
+terminal/   a run at the keyboard            worksheet/ the narrative with gaps
+study/      what is told of many runs        student/   what is told of students' filters
 """

@@ -1,0 +1,30 @@
+"""Which rows of a long run are enough for a plot: its peaks are among them."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from ekfsim.geometry import Array, Integers
+
+ENOUGH = 1000  # stretches of a run, each about as wide as the thinnest line that can be seen
+
+
+def peaks(columns: Array, stretches: int = ENOUGH) -> Integers:
+    """The rows of the least and the greatest number of every column in each of so many stretches,
+    with the first and the last row of each; all rows where they are no more than the stretches.
+    In ascending order.
+
+    columns : (N, m), nan where there is nothing to draw; → (k,)
+    """
+    n = len(columns)
+    if n <= stretches:
+        return np.arange(n)
+    edges = np.linspace(0, n, stretches + 1).astype(np.int64)
+    kept = np.zeros(n, np.bool_)
+    kept[edges[:-1]] = kept[edges[1:] - 1] = True
+    # a nan is neither the least nor the greatest
+    low, high = (np.where(np.isnan(columns), bound, columns) for bound in (np.inf, -np.inf))
+    for first, end in pairwise(edges.tolist()):
+        kept[first + low[first:end].argmin(axis=0)] = True
+        kept[first + high[first:end].argmax(axis=0)] = True
+    return np.flatnonzero(kept)
