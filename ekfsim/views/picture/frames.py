@@ -22,7 +22,7 @@ from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.views.film.png import Encoder, Pixels
 from ekfsim.views.picture import limits as limits_of_run
-from ekfsim.views.picture.artists import empty
+from ekfsim.views.picture.artists import VERMILLION, empty
 from ekfsim.views.picture.labels import label_landmarks, label_obstacles
 from ekfsim.views.picture.lettering import drawable, families, wrapped
 from ekfsim.views.picture.limits import Limits, including
@@ -32,6 +32,7 @@ from ekfsim.views.picture.panels import CloseUp, Main, reading
 from ekfsim.views.picture.replay import Replay
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.captions import notes, source, spread, title, too_large
+from ekfsim.views.words.judgement import judgement, warns
 
 INCHES, DPI = (9.0, 7.0), 100  # 900 × 700 pixels
 MAIN = (0.085, 0.08, 0.58, 0.76)  # left, bottom, width, height as shares of the figure
@@ -42,6 +43,7 @@ HANDLERS: dict[type, Any] = {
 }
 ROOMY = 15  # entries of the legend that stand in its place at ease
 COLUMNS, LINES = 118, 3  # of the notes: characters in a line, and lines
+WARNING, BLACK = "⚠ ", "#000000"  # before a judgement that warns; the colour of one that does not
 
 
 def draw(
@@ -78,7 +80,8 @@ class Picture:
         self.main = Main(figure.add_axes(MAIN), scene, limits, look.probability, look.conditional)
         self.close = CloseUp(figure.add_axes(CLOSE), scene, look.probability, look.conditional)
         self.title = self._text(0.02, 0.955, 13, "title")
-        self.notes = self._text(0.02, 0.922, 9.5, "notes")
+        self.judgement = self._text(0.02, 0.928, 9.5, "judgement")
+        self.notes = self._text(0.02, 0.902, 9.5, "notes")
         self.spread = self._text(CLOSE[0], 0.052, 8, "spread")
         made = figure.text(
             0.98,
@@ -127,6 +130,10 @@ class Picture:
         if not self.main.limits.hold(outline(x, P[:2, :2], self._probability)):
             told = [*told, too_large(view, self._probability)]
         self.title.set_text(title(view, self._total))
+        warned = warns(view, self._probability)
+        judged = judgement(view, self._scene, self._probability, COLUMNS - len(WARNING))
+        self.judgement.set_text(f"{WARNING if warned else ''}{judged}")
+        self.judgement.set_facecolor(VERMILLION if warned else BLACK)
         self.notes.set_text("\n".join(wrapped(told, COLUMNS, LINES)))
         self.spread.set_text(spread(view, self._probability))
         return grown
@@ -135,7 +142,7 @@ class Picture:
         """What differs from view to view, in the order it is drawn."""
         yield from sorted(self.main.moving, key=Artist.get_zorder)
         yield from sorted(self.close.moving, key=Artist.get_zorder)
-        yield from (self.title, self.notes, self.spread)
+        yield from (self.title, self.judgement, self.notes, self.spread)
 
     def _text(self, x: float, y: float, points: float, gid: str) -> OutlinedText:
         text = OutlinedText(x, y, points, self.figure.transFigure, self.figure.dpi_scale_trans, gid)
