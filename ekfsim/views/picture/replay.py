@@ -67,8 +67,8 @@ class Recorder:
 class Replay:
     """Draws artists on one canvas, with the strokes that each was drawn with the last time.
 
-    Patches and collections are taken to keep their style, path effects to move nothing (a rim does
-    not), and all coordinate systems to be linear.
+    Collections are taken to keep their style, path effects to move nothing (a rim does not), and
+    all coordinate systems to be linear.
     """
 
     def __init__(self, canvas: Any) -> None:
@@ -109,6 +109,13 @@ def _repeatable(artist: Artist) -> bool:
 
 def _style(artist: Artist) -> object:
     """What tells whether an artist is to be drawn as before."""
+    if isinstance(artist, Patch):
+        return (
+            artist.get_facecolor(),
+            artist.get_edgecolor(),
+            artist.get_linestyle(),
+            artist.get_linewidth(),
+        )
     if not isinstance(artist, Line2D):
         return ()
     return (
