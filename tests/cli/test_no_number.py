@@ -15,7 +15,7 @@ from ekfsim.filters import FILTERS
 from ekfsim.localization import play
 from ekfsim.views.picture.sights import sight
 from ekfsim.views.playback.playback import views
-from ekfsim.views.words.beams import beam
+from ekfsim.views.words.beams.beam import beam
 from ekfsim.views.words.captions import notes, spread, title
 from ekfsim.views.words.narrative import narrate
 

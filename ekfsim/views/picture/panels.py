@@ -24,7 +24,7 @@ from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.picture.sight_artists import BeamArtists, FixArtists, SightArtists
 from ekfsim.views.picture.sights import Sight, kinds, sight
 from ekfsim.views.playback.view import View
-from ekfsim.views.words.beams import Beam, beam, length
+from ekfsim.views.words.beams.beam import Beam, beam, length
 from ekfsim.views.words.captions import away, watching
 
 BODY = 0.022  # of the picture's longer side: the robot's radius

@@ -29,7 +29,7 @@ from ekfsim.views.picture.artists import (
     ray,
 )
 from ekfsim.views.picture.sights import NOWHERE, Sight
-from ekfsim.views.words.beams import Beam
+from ekfsim.views.words.beams.beam import Beam
 
 FIX = "#7A7A7A"
 IN_AIR, IN_WALL = "o", "X"  # markers at the end of a reading

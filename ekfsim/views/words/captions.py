@@ -12,7 +12,7 @@ from ekfsim.scene import Scene
 from ekfsim.views.picture.lettering import shortened
 from ekfsim.views.picture.sights import Sight, instants, told
 from ekfsim.views.playback.view import View
-from ekfsim.views.words.beams import Beam, called, length
+from ekfsim.views.words.beams.beam import Beam, called, length
 
 REFUSALS = {
     Refused.NO_ECHO: "no echo: nothing to learn",

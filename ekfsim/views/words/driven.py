@@ -9,6 +9,7 @@ from ekfsim.geometry import Array
 from ekfsim.models.protocols import Quantity
 from ekfsim.records import Control, Reading
 from ekfsim.views.playback.view import View
+from ekfsim.views.words.beams.told import doubts, expected_wall
 from ekfsim.views.words.long_form import SHORT, Form
 from ekfsim.views.words.numbers import (
     MANY,
@@ -21,7 +22,6 @@ from ekfsim.views.words.numbers import (
     quantity,
     state,
 )
-from ekfsim.views.words.told_beams import doubts, expected_wall
 from ekfsim.views.words.uncertainty import crowd, judged, rest, surprise, uncertainty
 
 REFUSED = {

@@ -11,11 +11,11 @@ from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.playback.view import View
 from ekfsim.views.words import driven as driven_narrative
+from ekfsim.views.words.beams.told import doubts, expected_wall
 from ekfsim.views.words.driven import REFUSED
 from ekfsim.views.words.long_form import SHORT, Form, LongForm
 from ekfsim.views.words.numbers import fill, fill_vector, fine, matrix, number, pose, turn
 from ekfsim.views.words.opening import opening, plain
-from ekfsim.views.words.told_beams import doubts, expected_wall
 from ekfsim.views.words.uncertainty import crowd, judged, rest, surprise, uncertainty
 
 DERIVATIVES = "  dh/dx = %.6g, dh/dy = %.6g, dh/dth = %.6g\n"

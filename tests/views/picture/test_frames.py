@@ -20,7 +20,7 @@ from ekfsim.views.picture.frames import Frame, Picture, draw
 from ekfsim.views.picture.look import Look
 from ekfsim.views.picture.panels import close_width
 from ekfsim.views.playback.playback import views
-from ekfsim.views.words.beams import beam
+from ekfsim.views.words.beams.beam import beam
 from ekfsim.world import Map
 
 SIGMA = (0.3, 0.1, 0.2)

@@ -35,7 +35,7 @@ from ekfsim.views.picture.sights import bare, kinds, sight
 from ekfsim.views.playback.playback import views
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.drawing import draw
-from ekfsim.views.words.beams import beam
+from ekfsim.views.words.beams.beam import beam
 from ekfsim.views.words.captions import source, title
 
 POSE_AT = np.array([1.0, 2.0, math.pi / 2])  # looks north

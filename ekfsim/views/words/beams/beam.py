@@ -18,7 +18,7 @@ from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.picture.lettering import shortened
 from ekfsim.views.picture.sights import beam_length
-from ekfsim.views.words.told_beams import elsewhere, others_met
+from ekfsim.views.words.beams.told import elsewhere, others_met
 from ekfsim.world import BOUNDARY, Map
 
 TOUCHING = 1e-9  # of the range: what rounding makes of an end on the wall

@@ -1,0 +1,5 @@
+"""What is said of a beam to a wall.
+
+beam.py  as it is drawn: where it ends, and where else it might have ended
+told.py  as it is narrated: the wall that it was expected to meet, and what is doubtful about that
+"""
