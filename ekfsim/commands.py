@@ -53,10 +53,11 @@ class Untold:
 
 
 Command = Move | Sense | Kidnap | Say | Repeat
-Plain = Move | Sense | Kidnap | Say | Untold  # what is left when every Repeat is expanded
+Expanded = Move | Sense | Kidnap | Say  # what is left when every Repeat is expanded
+Plain = Expanded | Untold  # what an entry may hold
 
 
-def expand(commands: Iterable[Command]) -> Iterator[Move | Sense | Kidnap | Say]:
+def expand(commands: Iterable[Command]) -> Iterator[Expanded]:
     """Every command in the order of its execution, with the repetitions written out.
 
     >>> [c.angle for c in expand([Sense(0.0), Repeat(2, (Sense(1.0),))])]
@@ -79,3 +80,30 @@ def expanded_length(commands: Iterable[Command]) -> int:
     return sum(
         c.times * expanded_length(c.commands) if isinstance(c, Repeat) else 1 for c in commands
     )
+
+
+def first(commands: Iterable[Command], n: int | None) -> Iterator[Command]:
+    """The first n of the commands that `expand` yields, in the repetitions that are whole; all
+    where n is None.
+
+    >>> list(first([Repeat(3, (Sense(1.0), Sense(2.0)))], 5))[1:]
+    [Sense(angle=1.0)]
+    """
+    if n is None:
+        yield from commands
+        return
+    for command in commands:
+        if n <= 0:
+            return
+        if not isinstance(command, Repeat):
+            yield command
+            n -= 1
+            continue
+        length = expanded_length(command.commands)
+        whole = min(command.times, n // max(length, 1))
+        if whole:
+            yield Repeat(whole, command.commands)
+            n -= whole * length
+        if whole < command.times:
+            yield from first(command.commands, n)
+            return

@@ -1,6 +1,7 @@
 """A scene: a world, what is done in it or was recorded of it, and how the filter is set."""
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Literal
 
 from ekfsim.commands import Command
@@ -49,6 +50,7 @@ class Scene:
     expect: Expect | None = None
     world_source: str = "world"  # how outputs name the two files they were made from
     commands_source: str = "commands"
+    world_file: Path | None = None  # where the world was read, to be named by another file
     log_source: str | None = None  # how outputs name the log, where the run was recorded
     settings: tuple[str, ...] = ()  # KEY=VALUE each: what overrules numbers of the two files
     # more filters that watch the same run, to be shown beside the first

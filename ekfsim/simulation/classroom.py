@@ -1,10 +1,10 @@
 """The classroom's robot obeys commands: world + commands + draws → Entries."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from ekfsim.commands import Kidnap, Move, Say, Sense, expand
+from ekfsim.commands import Expanded, Kidnap, Move, Say, Sense, expand
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.soa import soa_zeros
@@ -21,11 +21,26 @@ from ekfsim.world import World
 
 def obey(scene: Scene, draws: Draws) -> Iterator[Entry]:
     """The log of a robot that obeys: the start, then an entry for each expanded command."""
-    world, drawn = scene.world, 0
+    yield from obeyed(scene.world, draws, expand(scene.commands))
+
+
+def obeyed(
+    world: World,
+    draws: Draws,
+    commands: Iterable[Expanded],
+    before: Entry | None = None,
+    drawn: int = 0,
+) -> Iterator[Entry]:
+    """An entry for each command, behind that of the start; or behind an entry that there was
+    already, before which so many numbers were drawn.
+    """
     motion = MoveTurn(world.told.noise.odometry_distance, world.told.noise.odometry_angle)
-    truth = true_start(world, draws)
-    yield Entry(0, None, truth)
-    for index, command in enumerate(expand(scene.commands), start=1):
+    if before is None:
+        before = Entry(0, None, true_start(world, draws))
+        yield before
+    assert before.truth is not None
+    truth = before.truth
+    for index, command in enumerate(commands, start=before.index + 1):
         match command:
             case Move():
                 drawn += 1

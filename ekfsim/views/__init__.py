@@ -1,6 +1,7 @@
 """How people see a run. Everything here is a function of Steps.
 
 playback/   views, one for each press of `n`
+driving/    a run whose commands come one by one
 words/      the narrative and its numbers    picture/   what matplotlib draws of a step
 curves/     a run over its steps             film/      frames, GIF, MP4
 terminal/   a run at the keyboard            worksheet/ the narrative with gaps

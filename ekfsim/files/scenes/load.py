@@ -232,7 +232,7 @@ def scene_in(
     if mistakes or found.value is None or not isinstance(keys, CommandsKeys):
         return Loaded(None, mistakes, warnings)
     scene = scene_of(keys, found.value, source_name(source), source_name(path))
-    scene = replace(scene, filter=filter_beside(path, scene.filter))
+    scene = replace(scene, filter=filter_beside(path, scene.filter), world_file=source.absolute())
     return Loaded(scene, mistakes, warnings)
 
 

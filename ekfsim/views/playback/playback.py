@@ -11,7 +11,7 @@ from ekfsim.errors import StepError
 from ekfsim.files.results.outputs import kept
 from ekfsim.filters.belief import Belief
 from ekfsim.models.layout import Layout
-from ekfsim.records import Control, Reading, Step
+from ekfsim.records import Control, Nees, Reading, Step
 from ekfsim.views.playback.parting import Parting
 from ekfsim.views.playback.trail import Trail, Way, Ways
 from ekfsim.views.playback.view import Judged, View
@@ -21,36 +21,51 @@ GATHERED = 200  # motion inputs of a driven or recorded robot in one view, at mo
 
 
 def views(steps: Iterable[Step]) -> Iterator[View]:
-    """Every view of a run, in order.
+    """Every view of a run, in order."""
+    made = Unrolling()
+    for group, over in _groups(steps):
+        yield from made.take(group, over)
+
+
+class Unrolling:
+    """Makes views of steps as they come.
     Until the next motion the path's last corner moves with each revised estimate.
     """
-    settled, ways, evidence = Trail(), Ways(), Evidence()
-    number, start, nees = itertools.count(), None, None
-    for group, over in _groups(steps):
+
+    def __init__(self) -> None:
+        self._settled, self._ways, self._evidence = Trail(), Ways(), Evidence()
+        self._numbers = itertools.count()
+        self._start: float | None = None
+        self._nees: Nees | None = None
+
+    def take(self, group: Sequence[Step], over: bool = False) -> list[View]:
+        """The views of the steps that come next, which one view gathers; of the last ones, where
+        the run is over with them.
+        """
         first, step = group[0], group[-1]
-        start = first.entry.t or 0.0 if start is None else start
+        self._start = first.entry.t or 0.0 if self._start is None else self._start
         for each in group:
-            ways.take(each)
-        ways.mark(step)
+            self._ways.take(each)
+        self._ways.mark(step)
         before = first.prior if _gathered(first) else None
         if before is not None or isinstance(step.entry.command, Move | Untold):
-            settled.append(*_position(first.prior, first.layout))
+            self._settled.append(*_position(first.prior, first.layout))
         shown = View(
-            next(number), step, isinstance(step.entry.given, Reading), Way.now(settled),
-            Way.now(ways.true), Way.now(ways.reckoned), Judged(nees, evidence.lost_from),
-            start=start,
+            next(self._numbers), step, isinstance(step.entry.given, Reading),
+            Way.now(self._settled), Way.now(self._ways.true), Way.now(self._ways.reckoned),
+            Judged(self._nees, self._evidence.lost_from), start=self._start,
         )  # fmt: skip
-        if shown.beam:
-            yield shown
-            shown = replace(shown, number=next(number), beam=False)
+        made = [shown] if shown.beam else []
         for each in group:
-            evidence.add(each)
-        nees = step.nees
-        yield replace(
+            self._evidence.add(each)
+        self._nees, evidence = step.nees, self._evidence
+        revised = replace(
             shown,
-            judged=Judged(nees, evidence.lost_from, evidence if over else None),
+            number=next(self._numbers) if shown.beam else shown.number, beam=False,
+            judged=Judged(self._nees, evidence.lost_from, evidence if over else None),
             inputs=len(group), before=before, since=first.entry.t,
         )  # fmt: skip
+        return [*made, revised]
 
 
 def together(
@@ -65,12 +80,14 @@ def together(
     held = itertools.zip_longest(others, partings)
     beside = [views(each if p is None else kept(each, [p.hold])) for each, p in held]
     for view, *same in zip(first, *beside, strict=True):
-        if not same:
-            yield view
-            continue
-        index = view.step.entry.index - (1 if view.beam else 0)  # what is shown of it
-        apart = tuple(parting.until(index) for parting in partings)
-        yield replace(view, others=tuple(same), apart=apart)
+        yield side_by_side(view, same, partings) if same else view
+
+
+def side_by_side(view: View, same: Sequence[View], partings: Iterable[Parting]) -> View:
+    """A view, with the same one as other filters have it."""
+    index = view.step.entry.index - (1 if view.beam else 0)  # what is shown of it
+    apart = tuple(parting.until(index) for parting in partings)
+    return replace(view, others=tuple(same), apart=apart)
 
 
 def _groups(steps: Iterable[Step]) -> Iterator[tuple[list[Step], bool]]:
