@@ -1,5 +1,4 @@
-"""What is drawn in one Axes: the world, the belief with the truth beside it, the beam.
-Made once, then moved.
+"""What is drawn in one Axes is made once, then moved: what it is made of, and the world.
 
 Each artist carries a gid. Colours are Okabe and Ito's; whatever a colour tells, a line style or a
 marker tells too.
@@ -17,12 +16,8 @@ from matplotlib.colors import to_rgba
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
-from ekfsim.filters.belief import Particles
 from ekfsim.geometry import Array
-from ekfsim.geometry.ellipse import conditioned, cone_halfwidth, outline
 from ekfsim.views.picture.outlined import OutlinedText
-from ekfsim.views.playback.view import View
-from ekfsim.views.words.captions import conditioned_label, cone_label, ellipse_label
 from ekfsim.world import World
 
 BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = (
@@ -82,83 +77,27 @@ class WorldArtists:
         yield from compress((self.obstacles, self.told, self.landmarks, self.meant), self._shown)
 
 
-class BeliefArtists:
-    """The estimate with its ellipse, cone and path, and the truth."""
-
-    def __init__(
-        self,
-        axes: Axes,
-        probability: float,
-        conditional: bool,
-        driven: bool,
-        body: bool = True,
-        crowd: bool = False,
-        true: bool = True,
-    ) -> None:
-        """driven : whether the path has a corner for each of many instants, not for each command;
-        body : whether to draw the robot. For the legend, crowd : whether the belief may be
-        particles; true : whether the truth is known
-        """
-        self._driven = driven
-        self._probability, self._crowd, self._true = probability, crowd, true
-        self.cone = _area(axes, SKY, 0.35, "--", 1.0, 2.0, "cone", cone_label(probability))
-        label = ellipse_label(probability)
-        self.ellipse = _area(axes, GREEN, 0.18, "-", 1.6, 3.1, "ellipse", label)
-        self.conditioned = dict(_edges(axes, probability)) if conditional else {}
-        self.particles = axes.scatter(
-            [], [], s=[GRAIN], c=CROWD, alpha=0.45, linewidths=0, zorder=2.2, label="particles"
-        )
-        self.particles.set_gid("particles")
-        self.path = line(axes, "path", "path of the estimates", 3, BLUE, 1.2)
-        self.path.set(marker="" if driven else ".", markersize=5)
-        self.body = _area(axes, BLUE, 0.55, "-", 1.0, 2.1, "body", "estimate") if body else None
-        self.reference = marks(axes, "reference", "estimate", 4.5, BLUE, "o", 7)
-        self.reference.set(markerfacecolor="white", markeredgewidth=1.5)
-        self.heading = line(axes, "true-heading", "truth", 5, TRUTH, 1.6)
-        self.truth = marks(axes, "truth", "truth", 5.1, TRUTH, "o", 4)
-
-    def show(self, view: View, unit: float) -> None:
-        """Move everything to a view. unit : m, what the robot's body measures in this Axes"""
-        x, P = view.pose
-        half = cone_halfwidth(float(P[2, 2]), self._probability)
-        self.cone.set_xy(sector(x, half, CONE * unit))
-        self.ellipse.set_xy(outline(x, P[:2, :2], self._probability))
-        for sign, edge in self.conditioned.items():
-            place(edge, outline(*conditioned(x, P, sign * half), self._probability))
-        if isinstance(view.belief, Particles):
-            scatter(self.particles, view.layout.pose(view.belief.states), view.belief.weights)
-        elif not empty(self.particles):
-            self.particles.set_offsets(NOWHERE)
-        path = view.path()
-        place(self.path, path)
-        dot = "" if self._driven or len(path) > DOTS else "."
-        if self.path.get_marker() != dot:
-            self.path.set_marker(dot)
-        if self.body is not None:
-            self.body.set_xy(robot(x, unit))
-        place(self.reference, x[None, :2])
-        true = view.step.entry.truth
-        segment = np.empty((0, 2)) if true is None else ray(true, TRUE_HEADING * unit)
-        place(self.heading, segment)
-        place(self.truth, segment[:1])
-
-    def call(self, name: str) -> None:
-        """Name the filter in the legend, where others are drawn beside it."""
-        for artist in (self.body, self.reference):
-            if artist is not None and name:
-                artist.set_label(f"{name}: estimate")
-
-    def handles(self) -> Iterator[Artist | tuple[Artist, ...]]:
-        """What the legend shows of it."""
-        yield self.reference if self.body is None else (self.body, self.reference)
-        yield self.path
-        yield self.ellipse
-        yield self.cone
-        yield from self.conditioned.values()
-        if self._crowd:
-            yield self.particles
-        if self._true:
-            yield self.heading, self.truth
+def area(
+    axes: Axes,
+    color: str,
+    alpha: float,
+    dashes: Dashes,
+    width: float,
+    zorder: float,
+    gid: str,
+    label: str,
+) -> Polygon:
+    """An area that is still to be placed. alpha : of its face"""
+    made = Polygon(
+        NOWHERE,
+        facecolor=to_rgba(color, alpha),
+        edgecolor=color,
+        linestyle=dashes,
+        linewidth=width,
+    )
+    made.set(zorder=zorder, gid=gid, label=label)
+    axes.add_patch(made)
+    return made
 
 
 def line(
@@ -189,6 +128,8 @@ def empty(artist: Artist) -> bool:
     match artist:
         case Line2D():
             return not len(cast(Sized, artist.get_xdata(orig=True)))
+        case Polygon():
+            return not len(cast(Sized, artist.get_path().vertices))
         case PathCollection():
             return not len(cast(Sized, artist.get_offsets()))
         case LineCollection():
@@ -247,35 +188,3 @@ def _rings(
     )
     axes.add_collection(made, autolim=False)
     return made
-
-
-def _edges(axes: Axes, probability: float) -> Iterator[tuple[int, Line2D]]:
-    """The ellipses for the heading at either edge of its cone."""
-    for sign, gid, color, dashes in (
-        (1, "ellipse-plus", PURPLE, (6, 2)),
-        (-1, "ellipse-minus", ORANGE, (1, 1)),
-    ):
-        label = conditioned_label(probability, sign)
-        yield sign, line(axes, gid, label, 2.4, color, 1.8, (0, dashes))
-
-
-def _area(
-    axes: Axes,
-    color: str,
-    alpha: float,
-    style: str,
-    width: float,
-    zorder: float,
-    gid: str,
-    label: str,
-) -> Polygon:
-    area = Polygon(
-        np.zeros((1, 2)),
-        facecolor=to_rgba(color, alpha),
-        edgecolor=color,
-        linestyle=style,
-        linewidth=width,
-    )
-    area.set(zorder=zorder, gid=gid, label=label)
-    axes.add_patch(area)
-    return area

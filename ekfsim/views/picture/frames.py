@@ -98,7 +98,7 @@ class Picture:
         self.legend = figure.legend(
             handles, words, loc="upper left", bbox_to_anchor=(CLOSE[0] - 0.015, 0.845),
             borderaxespad=0.0,
-            fontsize=7 if crowded else 8, labelspacing=0.2 if crowded else 0.45, handlelength=2.4,
+            fontsize=6.3 if crowded else 8, labelspacing=0.2 if crowded else 0.45, handlelength=2.4,
             frameon=False,
             handler_map=HANDLERS,
         )  # fmt: skip

@@ -17,9 +17,10 @@ from ekfsim.models.sensors.infrared import InfraredBeam
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
 from ekfsim.scene import Scene
-from ekfsim.views.picture.artists import BeliefArtists, WorldArtists
+from ekfsim.views.picture.artists import WorldArtists
+from ekfsim.views.picture.belief.belief import BeliefArtists
+from ekfsim.views.picture.belief.others import OtherArtists
 from ekfsim.views.picture.limits import Limits
-from ekfsim.views.picture.other_artists import OtherArtists
 from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.picture.sight_artists import BeamArtists, FixArtists, SightArtists
 from ekfsim.views.picture.sights import Sight, kinds, sight

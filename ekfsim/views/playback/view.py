@@ -64,6 +64,15 @@ class View:
         return posed(self.belief, self.layout)
 
     @property
+    def earlier(self) -> Gaussian | None:
+        """What was believed of the pose before its steps, where the view shows something else."""
+        before = self.step.prior if self.before is None else self.before
+        if self.beam or before is self.belief:
+            return None
+        was, now = posed(before, self.layout), self.pose
+        return None if all(map(np.array_equal, was, now)) else was
+
+    @property
     def span(self) -> tuple[float, float] | None:
         """The first and the last instant of its steps, in s since the start;
         None where there is no clock.

@@ -10,11 +10,12 @@ from numpy.testing import assert_allclose
 from scenes import DESK, scene
 
 from ekfsim.commands import Move, Sense
+from ekfsim.diagnostics.coverage import inside_ellipse
 from ekfsim.geometry.ellipse import outline
 from ekfsim.localization import play
 from ekfsim.views.picture import limits
+from ekfsim.views.picture.belief.others import STYLES
 from ekfsim.views.picture.frames import Picture
-from ekfsim.views.picture.other_artists import STYLES
 from ekfsim.views.playback.playback import Playback, together, views
 from ekfsim.views.terminal import drawing as terminal
 
@@ -63,7 +64,7 @@ def test_estimate_path_and_ellipse_of_each_are_drawn_in_both_axes(view):
             assert_allclose(artist(axes, f"reference-{name}").get_xydata(), [x[:2]])
             assert_allclose(artist(axes, f"path-{name}").get_xydata(), other.path())
             assert_allclose(
-                artist(axes, f"ellipse-{name}").get_xydata()[:-1], outline(x, P[:2, :2], 0.954)
+                artist(axes, f"ellipse-{name}").get_xydata(), outline(x, P[:2, :2], 0.954)
             )
             along = np.diff(artist(axes, f"heading-{name}").get_xydata(), axis=0)[0]
             assert np.arctan2(along[1], along[0]) == pytest.approx(x[2])
@@ -158,3 +159,20 @@ def test_the_legend_names_a_file_as_it_is_called(name):
     words = [text.get_text().strip() for text in own.legend.get_texts()]
     assert any(word.startswith(name[:15]) and "estimate, ellipse" in word for word in words)
     made.figure.canvas.draw()
+
+
+def test_the_ellipse_of_each_warns_by_itself():
+    made = picture(RUN)
+    for view in EVERY:
+        made.show(view)
+        for name, other in zip(RUN.beside, view.others, strict=True):
+            within = bool(inside_ellipse(other.pose, other.step.entry.truth, 0.954))
+            for axes in (made.main.axes, made.close.axes):
+                warning = artist(axes, f"ellipse-{name}-outside").get_xydata()
+                own = artist(axes, f"ellipse-{name}").get_xydata()
+                assert np.array_equal(warning, own[:0] if within else own)
+    far = replace(EVERY[-1].step.entry, truth=np.array([9.0, 7.0, 0.0]))
+    other = replace(EVERY[-1].others[1], step=replace(EVERY[-1].others[1].step, entry=far))
+    others = (EVERY[-1].others[0], other, *EVERY[-1].others[2:])
+    made.show(replace(EVERY[-1], others=others))
+    assert len(artist(made.main.axes, f"ellipse-{RUN.beside[1]}-outside").get_xydata())

@@ -10,8 +10,11 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from ekfsim.geometry.ellipse import outline
-from ekfsim.views.picture.artists import NOSE, closed, direction, line, marks, place
+from ekfsim.views.picture.artists import NOSE, NOWHERE, direction, line, marks, place
+from ekfsim.views.picture.belief.warned import ALARM, ALARM_DASHES, Outside
 from ekfsim.views.playback.view import View
+
+BAND = 4.0  # points, of a warning
 
 
 class Style(NamedTuple):
@@ -40,6 +43,10 @@ class OtherArtists:
         z = 3.05 + 0.01 * number
         self.path = line(axes, f"path-{name}", "", z, color, 1.0, dashes)
         self.ellipse = line(axes, f"ellipse-{name}", "", z, color, 1.6, dashes)
+        # beneath it, which stays to tell whose ellipse it is
+        self.warning = line(
+            axes, f"ellipse-{name}-outside", "", z - 0.005, ALARM, BAND, ALARM_DASHES
+        )
         self.heading = line(axes, f"heading-{name}", "", 4.3, color, 1.6)
         self.reference = marks(axes, f"reference-{name}", "", 4.4, color, marker, 6.5)
         self.reference.set(markerfacecolor="white", markeredgewidth=1.4)
@@ -50,7 +57,10 @@ class OtherArtists:
         """
         x, P = view.pose
         place(self.path, view.path())
-        place(self.ellipse, closed(outline(x, P[:2, :2], self._probability)))
+        rim = outline(x, P[:2, :2], self._probability)
+        place(self.ellipse, rim)
+        outside = Outside.of(view, self._probability).ellipse
+        place(self.warning, rim if outside else NOWHERE)
         place(self.heading, np.stack([x[:2], x[:2] + NOSE * unit * direction(x[2])]))
         place(self.reference, x[None, :2])
 
