@@ -1,5 +1,6 @@
 """The options that several commands share, and what they accept."""
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -12,6 +13,7 @@ from ekfsim.twins import taking
 MOST = 2**63 - 1  # of runs' numbers
 MOST_RUNS = 10**9  # of a study
 MOST_PARTICLES = 10**6  # of a run
+LEAST_SIDE, MOST_SIDE = 200, 10_000  # px, of a picture
 # of a document; told here again, so that --help need not load them
 READINGS = ("printed", "coded", "corrected")
 READING = click.option(
@@ -58,6 +60,40 @@ EXPLAIN = click.option(
     "--explain", is_flag=True, help="Narrate in the long form: every matrix, every equation."
 )
 FORCE = click.option("--force", is_flag=True, help="Replace results that exist already.")
+
+
+def _pixels(
+    ctx: click.Context, param: click.Parameter, value: str | None
+) -> tuple[int, int] | None:
+    """Width and height. Fails for what is no such pair, and beyond what a picture can be."""
+    if value is None:
+        return None
+    found = re.fullmatch(r"([0-9]{1,9})[xX×]([0-9]{1,9})", value)
+    if found is None:
+        raise click.BadParameter(f"{value!r} is no size; write pixels like 1280x720.", ctx, param)
+    width, height = map(int, found.groups())
+    if not all(LEAST_SIDE <= side <= MOST_SIDE for side in (width, height)):
+        raise click.BadParameter(
+            f"{value} is no size of a picture; each side has {LEAST_SIDE} to {MOST_SIDE} pixels.",
+            ctx,
+            param,
+        )
+    return width, height
+
+
+SIZE = click.option(
+    "--size",
+    callback=_pixels,
+    metavar="WxH",
+    help="How many pixels a picture has: 1280x720.",
+)
+DPI = click.option(
+    "--dpi",
+    type=Whole(30, 1200),
+    default=100,
+    show_default=True,
+    help="Pixels to an inch: letters and lines grow with it, and the picture too without --size.",
+)
 
 
 PARTICLES = click.option(

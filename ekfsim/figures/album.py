@@ -14,7 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from ekfsim.version import VERSION
+from ekfsim.views.film.still import metadata
 from ekfsim.views.picture.lettering import drawable
 from ekfsim.views.picture.panels import in_metres
 
@@ -100,28 +100,6 @@ class Album:
         """Write the page of captions."""
         text = "\n".join([f"# {self.title}\n", f"{self.source}\n", *self.pages])
         (self.folder / "captions.md").write_text(text, encoding="utf-8")
-
-
-def metadata(ending: str, title: str, source: str) -> dict[str, str | None]:
-    """The notes in a picture's file, under the names that its format has;
-    and no date, which would differ each time.
-    """
-    match ending:
-        case "svg":
-            return {
-                "Title": title,
-                "Description": source,
-                "Creator": f"ekfsim {VERSION}",
-                "Date": None,
-            }
-        case "pdf":
-            return {
-                "Title": title,
-                "Subject": source,
-                "Creator": f"ekfsim {VERSION}",
-                "CreationDate": None,
-            }
-    return {"Title": title, "Description": source, "Software": f"ekfsim {VERSION}"}
 
 
 def filled(text: str) -> str:
