@@ -5,4 +5,5 @@ yaml/       text → data, with its places     scenes/   data → World, Scene, 
 logs/       recorded logs → entries          results/  steps → trace, tables, trajectories
 packaged.py, looking.py   which files there are
 template.py  files to start from      homework.py  what is graded
+scene_text.py  Scene → the text of a commands file
 """

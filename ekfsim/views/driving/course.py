@@ -1,5 +1,6 @@
 """A run that is being driven: one command more, or one less, and what filters make of it."""
 
+import itertools
 from collections.abc import Sequence
 from contextlib import nullcontext, redirect_stderr
 from dataclasses import replace
@@ -39,7 +40,7 @@ class Course:
         Raises UsageError where the robot of the scene obeys no commands.
         """
         refuse_what_is_not_driven(scene)
-        self.scene = replace(scene, commands=(), expect=None)
+        self.scene = replace(scene, commands=(), expect=None, description="")
         self._given = scene.commands
         self._draws = Draws(scene.seed, np.asarray(scene.run, dtype=np.int64))
         self.commands: list[Expanded] = []
@@ -90,12 +91,21 @@ class Course:
     @property
     def driven(self) -> tuple[Command, ...]:
         """All commands so far; of the scene's own, repetitions that are whole as they were."""
-        kept = 0
-        for one, own in zip(self.commands, expand(self._given), strict=False):
-            if one != own:
-                break
-            kept += 1
+        kept = self._kept
         return *first(self._given, kept), *self.commands[kept:]
+
+    @property
+    def _kept(self) -> int:
+        """How many commands from the start on are the scene's own."""
+        pairs = zip(self.commands, expand(self._given), strict=False)
+        return sum(1 for _ in itertools.takewhile(lambda pair: pair[0] == pair[1], pairs))
+
+    @property
+    def scene_so_far(self) -> Scene:
+        """The scene of all commands so far, which a file may hold."""
+        kept = self._kept
+        whence = f" from step {kept} of {self.scene.commands_source} on" if kept else ""
+        return replace(self.scene, commands=self.driven, description=f"Driven by hand{whence}.")
 
     @property
     def summaries(self) -> list[Summary]:

@@ -3,8 +3,8 @@
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
+from courses import played, shown
 from recordings import recording
 from scenes import rich, scene, unbounded
 
@@ -12,39 +12,10 @@ from ekfsim.commands import Move, Repeat, Say, Sense, expand, first
 from ekfsim.errors import StepError, UsageError
 from ekfsim.filters import FILTERS
 from ekfsim.filters.tuning import Tuning
-from ekfsim.localization import play
 from ekfsim.views.driving.course import Course
-from ekfsim.views.playback.playback import together
 
 MANY = (Move(1.0, 0.5), Sense(0.2), Say("word"), Move(-0.5, 0.0), Sense(-2.0), Sense(3.0))
 FEW = Tuning(particles=40)
-
-
-def numbers(view):
-    """All that is calculated of a view, as bytes: alike to the last digit or not at all."""
-    step = view.step
-    parts = [step.entry.truth, *step.prior, *step.posterior, view.path(), view.true.points()]
-    parts += [view.reckoned.points()]
-    if step.correction is not None:
-        c = step.correction
-        parts += [c.predicted, c.innovation, c.S, c.H, c.K, c.nis, c.refused]
-    told = view.number, view.beam, step.entry.index, step.entry.command, view.judged.lost_from
-    return (*told, *(np.asarray(part, float).tobytes() for part in parts))
-
-
-def everything(views):
-    return [[numbers(one) for one in (view, *view.others)] + [view.apart] for view in views]
-
-
-def played(place):
-    """The views of a scene as it is played from its file."""
-    first, *others = place.alone()
-    names = place.filter, *place.beside
-    return everything(together(play(first), map(play, others), names))
-
-
-def shown(course):
-    return everything(course.view(n) for n in range(course.last.number + 1))
 
 
 def driven(place, *commands):
