@@ -1,6 +1,5 @@
 """The two Axes of a picture: the world as a whole, and the surroundings of the estimate."""
 
-import math
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -11,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ekfsim.commands import Command, Repeat, Sense
-from ekfsim.geometry.ellipse import ellipse
+from ekfsim.geometry.ellipse import radius_factor
 from ekfsim.models.protocols import Sensor
 from ekfsim.models.sensors.infrared import InfraredBeam
 from ekfsim.models.sensors.laser import Laser
@@ -25,14 +24,13 @@ from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.picture.sight_artists import BeamArtists, FixArtists, SightArtists
 from ekfsim.views.picture.sights import Sight, kinds, sight
 from ekfsim.views.playback.view import View
+from ekfsim.views.playback.zoom import PROBABILITY, Zoom, one_two_five
 from ekfsim.views.words.beams.beam import Beam, beam, length
 from ekfsim.views.words.captions import away, watching
 
 BODY = 0.022  # of the picture's longer side: the robot's radius
 # of the close-up's width: what the cone and the true heading are measured by there
 CLOSE_BODY = 0.07
-ROOM = 2.6  # major radii across the close-up
-REACH = 3.0  # major radii from the estimate up to which the close-up widens to hold the truth
 CERTAIN = 0.1  # of the picture's longer side: the close-up's width where nothing is uncertain
 NARROWEST = 1e-4  # m
 CORNERS = np.array([[-0.5, -0.5], [0.5, 0.5]])  # of a square about the origin, opposite ones
@@ -190,23 +188,14 @@ def frame(axes: Axes) -> LineCollection:
 
 
 def close_width(view: View, probability: float, certain: float) -> float:
-    """How wide the close-up is, in m: 1, 2 or 5 times a power of ten, so that it seldom changes."""
-    radius, truth = float(ellipse(view.pose.covariance, probability).major), view.step.entry.truth
-    if radius == 0:
-        return one_two_five(max(certain, NARROWEST))
-    error = 0.0 if truth is None else math.hypot(*(truth[:2] - view.pose.mean[:2]))
-    held = error if error <= REACH * radius else 0.0
-    return one_two_five(max(ROOM * max(radius, held), NARROWEST))
-
-
-def one_two_five(least: float) -> float:
-    """The smallest 1, 2 or 5 times a power of ten that is not less.
-
-    >>> one_two_five(0.03), one_two_five(0.5), one_two_five(7)
-    (0.05, 0.5, 10.0)
+    """How wide the close-up is, in m: the same for a step's prediction and its update.
+    certain : m, where nothing is uncertain
     """
-    power = math.floor(math.log10(least))
-    return next(v for digit in (1, 2, 5, 10, 20) if (v := float(f"{digit}e{power}")) >= least)
+    across = Zoom().take(view.step.prior, view.step) if view.across is None else view.across
+    if across == 0:
+        return one_two_five(max(certain, NARROWEST))
+    larger = radius_factor(probability) / radius_factor(PROBABILITY)
+    return one_two_five(max(across * larger, NARROWEST))
 
 
 def sensors(scene: Scene) -> set[type[Sensor]]:

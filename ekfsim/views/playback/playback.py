@@ -15,6 +15,7 @@ from ekfsim.records import Control, Nees, Reading, Step
 from ekfsim.views.playback.parting import Parting
 from ekfsim.views.playback.trail import Trail, Way, Ways
 from ekfsim.views.playback.view import Judged, View
+from ekfsim.views.playback.zoom import Zoom
 
 T = TypeVar("T")
 GATHERED = 200  # motion inputs of a driven or recorded robot in one view, at most
@@ -34,6 +35,7 @@ class Unrolling:
 
     def __init__(self) -> None:
         self._settled, self._ways, self._evidence = Trail(), Ways(), Evidence()
+        self._zoom = Zoom()
         self._numbers = itertools.count()
         self._start: float | None = None
         self._nees: Nees | None = None
@@ -54,6 +56,7 @@ class Unrolling:
             next(self._numbers), step, isinstance(step.entry.given, Reading),
             Way.now(self._settled), Way.now(self._ways.true), Way.now(self._ways.reckoned),
             Judged(self._nees, self._evidence.lost_from), start=self._start,
+            across=self._zoom.take(first.prior, step),
         )  # fmt: skip
         made = [shown] if shown.beam else []
         for each in group:

@@ -45,6 +45,8 @@ class View:
     before: Belief | None = None
     since: float | None = None  # s, the instant of the first of the steps, as stamped
     start: float = 0.0  # s, the stamp of the start
+    # m, that a close-up is wide; 0 where all is certain; None in a view that is of no run
+    across: float | None = None
     others: tuple["View", ...] = ()  # the same view as other filters have it, that watch beside
     apart: tuple[Apart, ...] = ()  # of each of them: whether it believes something else
 
