@@ -42,6 +42,8 @@ class Evidence:
     last_nees: Nees | None = None
     nis_refused: int = 0  # how many readings of the sum were refused
     nis_readings: int = 0  # how many readings it sums
+    # index of the reading since which the sum lies outside its band without a gap
+    nis_outside_from: int | None = None
 
     def add(self, step: Step) -> None:
         """Take one more step into account."""
@@ -51,6 +53,11 @@ class Evidence:
             self.nis_dof += correction.innovation.shape[-1]
             self.nis_readings += 1
             self.nis_refused += int(correction.refused) != Refused.NOT
+            low, high = self.nis_band
+            if low <= self.nis_sum <= high:
+                self.nis_outside_from = None
+            elif self.nis_outside_from is None:
+                self.nis_outside_from = step.entry.index
         if step.nees is not None:
             self.last_nees = step.nees
             if not lost(step.nees):

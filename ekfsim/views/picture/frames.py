@@ -98,7 +98,7 @@ class Picture:
         self.legend = figure.legend(
             handles, words, loc="upper left", bbox_to_anchor=(CLOSE[0] - 0.015, 0.845),
             borderaxespad=0.0,
-            fontsize=6.3 if crowded else 8, labelspacing=0.2 if crowded else 0.45, handlelength=2.4,
+            fontsize=6.3 if crowded else 8, labelspacing=0.1 if crowded else 0.45, handlelength=2.4,
             frameon=False,
             handler_map=HANDLERS,
         )  # fmt: skip
@@ -125,7 +125,7 @@ class Picture:
         read = reading(view, self._scene)
         self.main.show(view, read)
         self.close.show(view, read, self.main.limits)
-        told = notes(view, self._scene, read)
+        told = notes(view, self._scene, read, self._probability)
         x, P = view.pose
         if not self.main.limits.hold(outline(x, P[:2, :2], self._probability)):
             told = [*told, too_large(view, self._probability)]

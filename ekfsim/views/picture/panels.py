@@ -25,8 +25,9 @@ from ekfsim.views.picture.sight_artists import BeamArtists, FixArtists, SightArt
 from ekfsim.views.picture.sights import Sight, kinds, sight
 from ekfsim.views.playback.view import View
 from ekfsim.views.playback.zoom import PROBABILITY, Zoom, one_two_five
-from ekfsim.views.words.beams.beam import Beam, beam, length
+from ekfsim.views.words.beams.beam import Beam, beam
 from ekfsim.views.words.captions import away, watching
+from ekfsim.views.words.numbers import length
 
 BODY = 0.022  # of the picture's longer side: the robot's radius
 # of the close-up's width: what the cone and the true heading are measured by there

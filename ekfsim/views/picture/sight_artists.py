@@ -33,6 +33,7 @@ from ekfsim.views.words.beams.beam import Beam
 
 FIX = "#7A7A7A"
 IN_AIR, IN_WALL = "o", "X"  # markers at the end of a reading
+OTHERWISE = (0, (1.2, 0.6))  # dashes of a wall that a beam may meet instead
 SEVERAL = "reading, as measured"
 LABELS: dict[type, str] = {
     MarkerAngles: "direction, as measured",
@@ -60,6 +61,11 @@ class BeamArtists:
         )
         self.probes.set_label("ambiguous: from within 3 σ")
         axes.add_collection(self.probes, autolim=False)
+        self.walls = LineCollection(
+            [], colors=VERMILLION, linewidths=3.5, linestyles=OTHERWISE, zorder=1.4,
+            gid="other-walls", label="wall that it may meet instead",
+        )  # fmt: skip
+        axes.add_collection(self.walls, autolim=False)
         self.arms = line(axes, "arms", "", 3.2, VERMILLION, 0.9)
         self.arms.set(marker="o", markersize=3, markevery=(1, 2))
         self.measured = line(axes, "beam", "beam, as measured", 3.4, VERMILLION, 2)
@@ -76,6 +82,7 @@ class BeamArtists:
             self.probes.set_segments(
                 [] if beam is None else [ray(*probe, far) for probe in beam.probes]
             )
+            self.walls.set_segments([] if beam is None else list(beam.walls))
         if beam is None:
             return
         arms = [point for probe in beam.probes for point in (beam.pose[:2], probe.pose[:2])]
@@ -101,6 +108,7 @@ class BeamArtists:
         yield Line2D([], [], color=VERMILLION, lw=2, ls="--", label="… is refused")
         yield self.expected
         yield Line2D([], [], color=VERMILLION, lw=1, ls=":", label=str(self.probes.get_label()))
+        yield self.walls
 
 
 class SightArtists:

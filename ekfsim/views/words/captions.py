@@ -12,7 +12,10 @@ from ekfsim.scene import Scene
 from ekfsim.views.picture.lettering import shortened
 from ekfsim.views.picture.sights import Sight, instants, told
 from ekfsim.views.playback.view import View
-from ekfsim.views.words.beams.beam import Beam, called, length
+from ekfsim.views.words.beams.beam import Beam, called
+from ekfsim.views.words.changes import ARROWS, carried, losing, revised
+from ekfsim.views.words.judgement import meaning
+from ekfsim.views.words.numbers import length
 
 REFUSALS = {
     Refused.NO_ECHO: "no echo: nothing to learn",
@@ -21,7 +24,6 @@ REFUSALS = {
     Refused.GATE: "refused by the gate: too far from what was predicted",
 }
 OUT_OF_REACH = "refused: the filter's map has no wall within reach there"
-ARROWS = "→↗↑↖←↙↓↘"
 
 
 def title(view: View, total: int) -> str:
@@ -64,15 +66,18 @@ def _measured(entry: Entry, inputs: int) -> str:
     return "a motion input" if inputs == 1 else f"{inputs} motion inputs"
 
 
-def notes(view: View, scene: Scene, read: Beam | Sight | None) -> list[str]:
+def notes(
+    view: View, scene: Scene, read: Beam | Sight | None, probability: float = 0.954
+) -> list[str]:
     """What is to be seen in this view, a paragraph each."""
     if view.beam:  # there is much to say of it
-        return _notes(view, scene, read)
+        return _notes(view, scene, read, probability)
     parted = (apart.told for apart in view.apart if apart.since is not None)
-    return [*_notes(view, scene, read), *parted]
+    said = [losing(view), meaning(view), *_notes(view, scene, read, probability), *parted]
+    return [paragraph for paragraph in said if paragraph]
 
 
-def _notes(view: View, scene: Scene, read: Beam | Sight | None) -> list[str]:
+def _notes(view: View, scene: Scene, read: Beam | Sight | None, probability: float) -> list[str]:
     step, given = view.step, view.step.entry.given
     match step.entry.command:
         case Say(text):
@@ -94,12 +99,10 @@ def _notes(view: View, scene: Scene, read: Beam | Sight | None) -> list[str]:
     told = []
     if step.entry.bump is not None and (wall := int(step.entry.bump)) >= 0:
         told.append(f"bumped into {called(scene.world.map.walls.name(wall)[0])}")
-    if step.correction is not None:
-        refused = Refused(int(step.correction.refused))
-        told.append(
-            REFUSALS[refused] + "; the estimate stays" if refused else "the estimate is revised"
-        )
-    return told
+    if step.correction is None:
+        return [*told, carried(view, probability)]
+    refused = Refused(int(step.correction.refused))
+    return [REFUSALS[refused] + "; the estimate stays" if refused else revised(view, probability)]
 
 
 def _ranges(beam: Beam) -> list[str]:

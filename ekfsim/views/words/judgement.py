@@ -218,6 +218,8 @@ def _verdict(evidence: Evidence) -> Part:
                 f"Verdict: {told}{hidden}", f"Verdict: {told}{hidden}", f"Verdict: {told}", told
             )
     low, high = map(figure, evidence.nis_band)
+    if evidence.verdict is Verdict.OVER_CONFIDENT:
+        word += f" since step {evidence.nis_outside_from}"
     side = {Verdict.OVER_CONFIDENT: "above", Verdict.OVER_CAUTIOUS: "below"}
     where = side.get(evidence.verdict, "within")
     total, readings = figure(evidence.nis_sum), count(evidence.nis_readings, "reading")
@@ -262,6 +264,47 @@ def fatal(view: View) -> bool:
     """Whether it is this view's own step since which the run is lost."""
     nees, since = view.step.nees, view.judged.lost_from
     return not view.beam and nees is not None and lost(nees) and since == view.step.entry.index
+
+
+def meaning(view: View) -> str:
+    """What the verdict on the run comes to, in its last view: whether to believe the filter, and
+    since when not. Nothing in any other, nor where several filters watch.
+    """
+    evidence = view.judged.closing
+    if evidence is None or view.others:
+        return ""
+    match evidence.verdict:
+        case Verdict.LOST:
+            return f"not to be believed since step {evidence.lost_from}{_shown(evidence)}"
+        case Verdict.OVER_CONFIDENT:
+            return (
+                f"not to be believed since step {evidence.nis_outside_from}: "
+                "it trusts itself more than its readings allow"
+            )
+        case Verdict.OVER_CAUTIOUS:
+            return (
+                "to be believed, and nearer to the truth than it says: "
+                "it trusts itself less than it could"
+            )
+        case Verdict.CONSISTENT:
+            errors = "" if evidence.last_nees is None else " or its last error"
+            return f"to be believed: nothing in its readings{errors} speaks against it"
+    return ""
+
+
+def _shown(evidence: Evidence) -> str:
+    """Whether the readings of a run that is lost show it; nothing where there were none."""
+    if not evidence.nis_dof:
+        return ""
+    total = f"{figure(evidence.nis_sum)} of {count(evidence.nis_readings, 'reading')}"
+    low, high = map(figure, evidence.nis_band)
+    band = f"{_percent(BAND)} band {low} to {high}"
+    if evidence.nis_sum <= evidence.nis_band[1]:
+        return f", and its readings do not show it: ΣNIS {total}, not above its {band}"
+    return (
+        f"; its readings show it since step {evidence.nis_outside_from}: "
+        f"ΣNIS {total}, above its {band}"
+    )
 
 
 def figure(value: float) -> str:

@@ -106,6 +106,22 @@ def _grained(value: float) -> float:
     return 0.0 if abs(value) < GRAIN else value
 
 
+def length(m: float) -> str:
+    """A length with the unit that suits it.
+
+    >>> length(0.0412), length(12.345), length(0), length(0.00071), length(1234.5)
+    ('4.12 cm', '12.3 m', '0 m', '0.71 mm', '1230 m')
+    """
+    for unit, size in (("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)):
+        if abs(m) >= size:
+            return f"{_three_digits(m / size)} {unit}"
+    return f"{_three_digits(m * 1e3)} mm" if m else "0 m"
+
+
+def _three_digits(value: float) -> str:
+    return f"{float(f'{value:.3g}'):g}" if abs(value) < 1e5 else f"{value:.3g}"
+
+
 def instant(t: float) -> str:
     """An instant in s, to a microsecond however long ago the clock began.
 

@@ -104,7 +104,7 @@ def test_the_revised_view_has_no_beam():
     picture, _ = shown(scene(Sense(0.3), sigma=SIGMA), 2)
     assert len(picture.main.beam.measured.get_xydata()) == 0
     assert len(picture.main.beam.end.get_xydata()) == 0
-    assert picture.notes.get_text() == "the estimate is revised"
+    assert "the estimate moved" in picture.notes.get_text()
 
 
 @pytest.mark.parametrize(
@@ -153,6 +153,12 @@ def test_what_is_special_of_a_beam_is_said():
                 )
                 assert ray.doubt in picture.notes.get_text().replace("\n", " ")
                 assert bool(re.match("from .* it would meet .*, not ", ray.doubt)) == ray.ambiguous
+            for axes in (picture.main, picture.close):
+                walls = axes.beam.walls.get_segments()
+                assert len(walls) == (0 if ray is None else len(ray.walls))
+                assert np.array_equal(
+                    np.reshape(walls, (-1, 2, 2)), np.empty((0, 2, 2)) if ray is None else ray.walls
+                )
     assert said == WORDS
 
 

@@ -19,6 +19,7 @@ from ekfsim.scene import Scene
 from ekfsim.views.picture.lettering import shortened
 from ekfsim.views.picture.sights import beam_length
 from ekfsim.views.words.beams.told import elsewhere, others_met
+from ekfsim.views.words.numbers import length
 from ekfsim.world import BOUNDARY, Map
 
 TOUCHING = 1e-9  # of the range: what rounding makes of an end on the wall
@@ -44,8 +45,9 @@ class Beam:
     ambiguous: bool
     grazing: float | None  # rad between beam and wall, where that is little
     probes: tuple[Probe, ...]
-    # where the first of them starts and what it meets: "from 0.3 m to the left it would meet …"
+    # where the first of them starts and what they meet: "from 0.3 m to the left it would meet …"
     doubt: str
+    walls: Array  # (n, 2, 2) m, the other walls that they meet, each from corner to corner
     # whether the measured end lies in, on or behind a wall rather than in the air before it
     solid: bool
     ending: str  # the same in words: "in the air, 4 cm short of desk"
@@ -68,6 +70,7 @@ def beam(step: Step, scene: Scene) -> Beam | None:
         beam_length(sensor, float(given.z[0])),
         beam_length(sensor, float(correction.predicted[0])),
     )
+    others = [wall for wall in other_walls(sensor, sighting) if wall >= 0]
     solid, ending = False, ""
     if not math.isnan(measured):
         end = pose[:2] + measured * np.array([math.cos(pose[2]), math.sin(pose[2])])
@@ -85,6 +88,7 @@ def beam(step: Step, scene: Scene) -> Beam | None:
         doubt(sensor, sighting, posed(step.prior, scene.world.layout).mean)
         if sighting.ambiguous
         else "",
+        sensor.walls.segments[others],
         solid,
         ending,
         reaching=isinstance(sensor, Laser),
@@ -124,16 +128,21 @@ def astray(sensor: BeamSensor, sighting: Sighting) -> Iterator[Probe]:
         )
 
 
+def other_walls(sensor: BeamSensor, sighting: Sighting) -> list[int]:
+    """The walls that the beam would meet instead, −1 for none, in the order of the poses."""
+    met = others_met(sensor.walls, sighting)
+    return [int(sighting.probe_walls[i]) for i in met]
+
+
 def doubt(sensor: BeamSensor, sighting: Sighting, x: Array) -> str:
-    """Why a beam from x (3,) is ambiguous:
-    a pose that disagrees, and what the beam would meet from there.
+    """Why a beam from x (3,) is ambiguous: a pose that disagrees, what the beam would meet from
+    there, and what from the others.
     """
-    i = next(others_met(sensor.walls, sighting))
-    place = elsewhere(x, sighting.probes[i]).replace(" degrees", "°")
-    met, expected = (
-        _edge_of(sensor, int(wall)) for wall in (sighting.probe_walls[i], sighting.wall)
-    )
-    return f"from {place} it would meet {met}, not {expected}"
+    first = next(others_met(sensor.walls, sighting))
+    place = elsewhere(x, sighting.probes[first]).replace(" degrees", "°")
+    met, *more = (_edge_of(sensor, wall) for wall in other_walls(sensor, sighting))
+    others = f" ({' or '.join(more)} from others)" if more else ""
+    return f"from {place} it would meet {met}{others}, not {_edge_of(sensor, int(sighting.wall))}"
 
 
 def _edge_of(sensor: BeamSensor, wall: int) -> str:
@@ -146,19 +155,3 @@ def _edge_of(sensor: BeamSensor, wall: int) -> str:
 def called(name: str) -> str:
     """A wall as it is named in a sentence."""
     return "the room's wall" if name == BOUNDARY else shortened(name, 24)
-
-
-def length(m: float) -> str:
-    """A length with the unit that suits it.
-
-    >>> length(0.0412), length(12.345), length(0), length(0.00071), length(1234.5)
-    ('4.12 cm', '12.3 m', '0 m', '0.71 mm', '1230 m')
-    """
-    for unit, size in (("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)):
-        if abs(m) >= size:
-            return f"{_three_digits(m / size)} {unit}"
-    return f"{_three_digits(m * 1e3)} mm" if m else "0 m"
-
-
-def _three_digits(value: float) -> str:
-    return f"{float(f'{value:.3g}'):g}" if abs(value) < 1e5 else f"{value:.3g}"
