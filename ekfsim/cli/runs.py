@@ -4,7 +4,7 @@ import sys
 from contextlib import ExitStack, redirect_stderr
 from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,6 +13,10 @@ from ekfsim.cli.kinds import Result, Whole
 from ekfsim.cli.options import EXPLAIN, FORCE, scene_options
 from ekfsim.cli.process import heed, say, warn
 from ekfsim.printable import in_a_line
+
+if TYPE_CHECKING:
+    from ekfsim.scene import Scene
+    from ekfsim.views.picture.look import Look
 
 
 @click.command(short_help="Step through COMMANDS with single keys.")
@@ -48,7 +52,8 @@ def play(
     "-o",
     type=Result(),
     required=True,
-    help="A folder for numbered PNG files, or the name of a .gif or an .mp4.",
+    help="A folder for numbered PNG files, or the name of a .gif, of an .mp4, "
+    "or of an .html: one page that plays in a browser.",
 )
 @click.option("--every", type=Whole(min=1), default=1, metavar="N", help="Only every N-th picture.")
 @click.option(
@@ -64,6 +69,8 @@ def render(
     from ekfsim.views.picture.look import Look, get_ready
 
     get_ready()
+    if out.suffix.lower() == ".html":
+        return write_page(scene_of(**chosen), out, Look(confidence, conditional), every, force)
     from ekfsim.files.results.outputs import kept
     from ekfsim.localization import play as steps_of
     from ekfsim.views.film import animation
@@ -93,6 +100,16 @@ def render(
             look=Look(confidence, conditional), every=every, force=force, progress=made_one,
         )  # fmt: skip
     click.echo(f"{in_a_line(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
+
+
+def write_page(scene: "Scene", out: Path, look: "Look", every: int, force: bool) -> None:
+    """Write the page that plays a scene, and tell what it holds."""
+    from ekfsim.views.page.writing import write
+
+    made = write(scene, out, look, every, force, heed)
+    if made.left_out:
+        say(f"{in_a_line(out)}: {made.left_out}")
+    click.echo(f"{in_a_line(out)}: {made.held} views")
 
 
 @click.command()

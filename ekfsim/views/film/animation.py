@@ -54,7 +54,7 @@ def render(
     if suffix not in ("", *ANIMATIONS):
         raise UsageError(
             f"{target}: '{suffix}' is no kind of picture; "
-            "name a .gif, an .mp4, or a folder for PNG files"
+            "name a .gif, an .mp4, an .html, or a folder for PNG files"
         )
     write_video = video.writer() if suffix == ".mp4" else None
     if suffix:

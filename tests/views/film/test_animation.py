@@ -134,7 +134,8 @@ def test_without_a_video_encoder_a_way_out_is_told(tmp_path, monkeypatch):
 
 def test_other_suffixes_are_refused(tmp_path):
     with pytest.raises(
-        UsageError, match=r"'\.avi' is no kind of picture; name a \.gif, an \.mp4, or a folder"
+        UsageError,
+        match=r"'\.avi' is no kind of picture; name a \.gif, an \.mp4, an \.html",
     ):
         rendered(tmp_path / "run.avi")
     with pytest.raises(UsageError, match="choose 1 or more"):

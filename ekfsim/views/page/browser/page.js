@@ -1,0 +1,187 @@
+// The run, stepped through: which view is shown, and what asks for another.
+
+const lesson = JSON.parse(document.getElementById("lesson").textContent);
+const views = lesson.views, at = id => document.getElementById(id);
+const TEMPO = { beam: 1300, other: 900, driven: 120 }; // ms that a view stays while the run plays
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+let current = 0, told = 0, symbol = "P", clock = 0;
+const shown = lesson.filters.map(() => true);
+
+const map = new Picture(at("map"), false), close = new Picture(at("close"), true);
+const strips = [["nis", "NIS, with its 99.9 % bound"], ["nees", "NEES, with its 99.9 % bound"]]
+  .map(([key, name]) => new Strip(at("strips"), key, name, go)).filter(strip => strip.any || !strip.svg.remove());
+const size = Math.max(lesson.limits[2] - lesson.limits[0], lesson.limits[3] - lesson.limits[1]);
+const widths = closeWidths();
+
+function go(i) {
+  current = Math.min(views.length - 1, Math.max(0, i));
+  show();
+  const link = "#" + name(views[current]);
+  if (location.hash !== link) try { history.replaceState(null, "", link); } catch { /* a sandbox has no history */ }
+}
+
+// A step's link: of two views, the revised estimate's ends in b.
+function name(view) {
+  return view.step + (!view.beam && view.by.some(belief => belief.z) ? "b" : "");
+}
+
+// The view that a link names; where it is not held, the last one before it.
+function linked() {
+  const found = /^#(\d+)(b?)$/.exec(location.hash);
+  if (!found) return 0;
+  const exact = views.findIndex(view => name(view) === found[1] + found[2]), step = Number(found[1]);
+  const first = views.findIndex(view => view.step === step);
+  return exact >= 0 ? exact : first >= 0 ? first : Math.max(0, views.findLastIndex(view => view.step <= step));
+}
+
+function show() {
+  const view = views[current], belief = view.by[told], before = ghost();
+  at("title").textContent = view.title;
+  list(at("notes"), view.notes.filter(note => note !== view.say));
+  say();
+  at("judgement").textContent = view.judged;
+  at("judgement").className = view.by.some(one => one.outside || one.lost) ? "warns" : "";
+  at("narrative").textContent = lines(belief.told);
+  at("more").hidden = !belief.long;
+  at("long").textContent = belief.long ? lines(belief.long) : "";
+  at("spread").textContent = belief.spread;
+  const spoken = `step ${view.step} of ${lesson.last}: ${view.title.replace(/^[^:]*: /, "")}`;
+  at("slider").value = current;
+  at("slider").setAttribute("aria-valuetext", spoken);
+  at("count").textContent = `step ${view.step} of ${lesson.last}`;
+  at("map-told").textContent = `${spoken}. ${view.judged}. ${belief.spread}.`;
+  at("close-told").textContent = belief.spread;
+  map.show(view, before, 0.022 * size, told, shown);
+  const [x, y] = belief.pose, w = widths[current] / 2;
+  close.fit([x - w, y - w, x + w, y + w], 300, 300, { left: 0, bottom: 0, top: 0, right: 0 });
+  close.show(view, before, 0.07 * 2 * w, told, shown);
+  bar(2 * w);
+  for (const strip of strips) strip.show(current);
+  for (const [id, off] of [["first", current === 0], ["back", current === 0], ["next", current === views.length - 1], ["last", current === views.length - 1]]) at(id).disabled = off;
+  choose(symbol);
+}
+
+// What was believed before this view's step, where it is held and something else.
+function ghost() {
+  const before = views[current - 1], view = views[current];
+  if (!before || view.beam || view.apart) return null;
+  return view.by.some((one, i) => String([one.pose, one.P]) !== String([before.by[i].pose, before.by[i].P])) ? before : null;
+}
+
+// The lecture's text: that of this step, or else the last one that was said.
+function say() {
+  const last = views.findLastIndex((view, i) => i <= current && view.say);
+  at("say").hidden = last < 0;
+  at("say").textContent = last < 0 ? "" : views[last].say;
+  at("say").className = last === current ? "" : "past";
+}
+
+function choose(asked) {
+  symbol = asked;
+  const belief = views[current].by[told];
+  at("matrix").replaceChildren(...tables(asked, belief));
+  const buttons = symbols(belief).map(one => {
+    const made = [...at("symbols").children].find(each => each.dataset.symbol === one) ?? document.createElement("button");
+    if (!made.type || made.type !== "button") made.type = "button";
+    if (!made.dataset.symbol) { ask(made, one); made.textContent = TOGETHER[one].join(" "); }
+    made.setAttribute("aria-pressed", String(TOGETHER[one].includes(belief[asked] ? asked : "P")));
+    return made;
+  });
+  if (buttons.length !== at("symbols").children.length || buttons.some((each, i) => each !== at("symbols").children[i])) at("symbols").replaceChildren(...buttons);
+}
+
+function lines(places) { return places.map(place => lesson.lines[place]).join("\n"); }
+
+function list(place, texts) {
+  place.replaceChildren(...texts.map(text => Object.assign(document.createElement("li"), { textContent: text })));
+}
+
+// How wide the close-up is in each view: the same for a reading's two, and seldom another.
+function closeWidths() {
+  let width = 0;
+  const least = views.map(view => {
+    const { pose, P } = view.by[0], radius = ellipse(poseBlock(symmetric(P), lesson.places), lesson.k).major;
+    const error = view.truth ? Math.hypot(view.truth[0] - pose[0], view.truth[1] - pose[1]) : 0;
+    return radius ? Math.max(1e-4, 2.6 * Math.max(radius, error <= 3 * radius ? error : 0)) : 0.1 * size;
+  });
+  return views.map((view, i) => {
+    const both = view.beam ? [least[i], least[i + 1]] : views[i - 1]?.beam ? [least[i - 1], least[i]] : [least[i]];
+    const wanted = Math.max(...both);
+    if (wanted > width || wanted < width / 5) width = oneTwoFive(wanted);
+    return width;
+  });
+}
+
+function bar(width) {
+  const length = oneTwoFive(width / 6), pixels = 300 * length / width;
+  close.words.replaceChildren(element("path", { class: "bar", d: `M14 286h${pixels}` }), element("text", { x: 14, y: 279 }, metres(length)), element("rect", { class: "frame", x: .5, y: .5, width: 299, height: 299 }));
+}
+
+// Everything that depends on the width of the page.
+function lay() {
+  const width = Math.max(280, at("pictures").clientWidth), [left, bottom, right, top] = lesson.limits;
+  const wide = width - MARGIN.left - MARGIN.right, most = Math.max(220, 0.47 * innerHeight);
+  const height = Math.min(most, wide * (top - bottom) / (right - left)) + MARGIN.top + MARGIN.bottom;
+  map.fit(lesson.limits, width, height, MARGIN);
+  map.label();
+  for (const strip of strips) strip.draw(shown);
+  show();
+}
+
+function play(on) {
+  clearTimeout(clock);
+  clock = 0;
+  at("play").textContent = on ? "⏸ pause" : "▶ play";
+  if (!on) return;
+  if (current === views.length - 1) go(0);
+  const tick = () => {
+    if (current === views.length - 1) return play(false);
+    go(current + 1);
+    clock = setTimeout(tick, pause());
+  };
+  clock = setTimeout(tick, pause());
+}
+
+// Who wants little motion gets as much time as it takes to read.
+function pause() {
+  const tempo = lesson.driven ? TEMPO.driven : views[current].beam ? TEMPO.beam : TEMPO.other;
+  return still.matches ? Math.max(2500, tempo) : tempo;
+}
+
+const KEYS = {
+  n: () => go(current + 1), ArrowRight: () => go(current + 1), ArrowDown: () => go(current + 1), PageDown: () => go(current + 1),
+  p: () => go(current - 1), ArrowLeft: () => go(current - 1), ArrowUp: () => go(current - 1), PageUp: () => go(current - 1),
+  Home: () => go(0), End: () => go(views.length - 1), " ": () => play(!clock),
+};
+
+addEventListener("keydown", event => {
+  if (event.ctrlKey || event.metaKey || event.altKey || !KEYS[event.key]) return;
+  const on = event.target.closest?.("button, summary, input, [role=button]");
+  if (on && (event.key === " " || on.type === "range" && event.key.length > 1 || ["radio", "checkbox"].includes(on.type) && event.key.startsWith("Arrow"))) return;
+  if (event.key.startsWith("Arrow") && /Up|Down/.test(event.key)) return; // the page scrolls
+  if (event.key !== " ") play(false);
+  event.preventDefault();
+  KEYS[event.key]();
+});
+for (const [id, key] of [["first", "Home"], ["back", "p"], ["next", "n"], ["last", "End"]]) at(id).addEventListener("click", () => { play(false); KEYS[key](); });
+at("play").addEventListener("click", () => play(!clock));
+at("slider").max = views.length - 1;
+at("slider").addEventListener("input", () => { play(false); go(Number(at("slider").value)); });
+addEventListener("hashchange", () => { current = linked(); show(); });
+addEventListener("resize", lay);
+
+// A swipe over a picture is a step.
+let start = null;
+for (const svg of [at("map"), at("close")]) {
+  svg.addEventListener("pointerdown", event => { start = event.pointerType === "mouse" ? null : [event.clientX, event.clientY]; });
+  svg.addEventListener("pointerup", event => {
+    const [x, y] = start ? [event.clientX - start[0], event.clientY - start[1]] : [0, 0];
+    if (Math.abs(x) > 40 && Math.abs(x) > 2 * Math.abs(y)) go(current + (x < 0 ? 1 : -1));
+    start = null;
+  });
+}
+
+legend(at("legend"));
+toggles(at("filters"));
+current = linked();
+lay();

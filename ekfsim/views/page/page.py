@@ -1,0 +1,142 @@
+"""One self-contained page that plays a run: a step is one press of n."""
+
+import base64
+import hashlib
+import json
+import re
+from collections.abc import Iterable, Sequence
+from contextlib import redirect_stderr
+from dataclasses import dataclass
+from html import escape
+from importlib.resources import files
+from io import StringIO
+from typing import Any, Self
+
+from ekfsim.commands import expanded_length
+from ekfsim.files.results.outputs import kept
+from ekfsim.printable import in_a_line, shown
+from ekfsim.provenance import told_in_a_line
+from ekfsim.records import Step
+from ekfsim.scene import Scene
+from ekfsim.views.page.holding import Holding
+from ekfsim.views.page.scenery import inks, origin_of, scenery
+from ekfsim.views.page.told import Teller, ways
+from ekfsim.views.picture import limits as limits_of_run
+from ekfsim.views.picture.look import STANDARD, Look
+from ekfsim.views.playback.playback import Tally, together
+
+BROWSER = files("ekfsim.views.page") / "browser"
+# in this order
+SCRIPTS = (
+    "shapes.js",
+    "picture.js",
+    "matrices.js",
+    "strips.js",
+    "legend.js",
+    "page.js",
+)
+INERT = str.maketrans(  # what could end the script, or a line of it
+    {sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u2029"}
+)
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page, and how much of its run it holds."""
+
+    text: str
+    views: int
+    held: int
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        runs: Sequence[Iterable[Step]],
+        look: Look = STANDARD,
+        every: int = 1,
+    ) -> Self:
+        """Of a run that one filter watches, or several.
+
+        runs : the steps of each filter, the scene's own first; each is read twice
+        every : of how many views one is held, at least; of a long drive it is of more
+        """
+        tally, (first, *others) = Tally(), runs
+        with redirect_stderr(StringIO()):  # what a filter prints it prints again
+            steps = kept(first, [tally.write])
+            limits = limits_of_run.of_all(scene, (steps, *others), look.probability)
+        origin, holding = origin_of(limits), Holding(tally.views, every)
+        teller = Teller(scene, look, origin, 2 * limits.size, expanded_length(scene.commands))
+        views, last = [], None
+        for view in holding.choose(together(first, others, (scene.filter, *scene.beside))):
+            views.append(inert(teller.tell(view)))
+            last = view
+        assert last is not None
+        fixed = scenery(scene, limits, look, origin) | {
+            "ways": ways(last, origin),
+            "last": last.step.entry.index,
+            "lines": teller.lines.texts,
+        }
+        lesson = f'{inert(fixed)[:-1]},"views":[\n' + ",\n".join(views) + "\n]}"
+        thinned = left_out(tally.views, len(views))
+        return cls(_filled(scene, lesson, thinned), tally.views, len(views))
+
+    @property
+    def left_out(self) -> str:
+        """What is left out, in a sentence; empty where nothing is."""
+        return left_out(self.views, self.held)
+
+
+def page(scene: Scene, runs: Sequence[Iterable[Step]], look: Look = STANDARD) -> str:
+    """The page's text. runs : the steps of each filter, as lists say"""
+    return Page.of(scene, runs, look).text
+
+
+def left_out(views: int, held: int) -> str:
+    """That a page does not hold all of the run's views; empty where it does.
+
+    >>> left_out(1424, 900)
+    "it holds 900 of the run's 1424 views, and those where something happens"
+    >>> left_out(46, 46)
+    ''
+    """
+    if held == views:
+        return ""
+    return f"it holds {held} of the run's {views} views, and those where something happens"
+
+
+def inert(value: Any) -> str:
+    r"""JSON that no text in it can end or break.
+
+    >>> print(inert("</script><!-- & \u2028"))
+    "\\u003c/script\\u003e\\u003c!-- \\u0026 \\u2028"
+    """
+    told = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return told.translate(INERT)
+
+
+def _filled(scene: Scene, lesson: str, thinned: str) -> str:
+    """The page's text with everything in its place."""
+    style = inks() + _text("page.css")
+    script = "(() => {\n" + "".join(map(_text, SCRIPTS)) + "})();\n"
+    heading, *rest = shown(scene.description.strip() or scene.world.name).splitlines()
+    facts = {
+        "policy": f"default-src 'none'; img-src data:; style-src '{_hash(style)}'; "
+        f"script-src '{_hash(script)}'; base-uri 'none'; form-action 'none'",
+        "title": in_a_line(heading),
+        "rest": " ".join(line.strip() for line in rest),
+        "thinned": thinned,
+        "source": in_a_line(told_in_a_line(scene)),
+    }
+    filled = {name: escape(told) for name, told in facts.items()}
+    filled |= {"style": style, "script": script, "lesson": lesson}
+    return re.sub(r"{{(\w+)}}", lambda name: filled[name[1]], _text("page.html"))
+
+
+def _text(name: str) -> str:
+    return (BROWSER / name).read_text(encoding="utf-8")
+
+
+def _hash(text: str) -> str:
+    """By which a page's policy knows its own style and script, and allows no other."""
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()

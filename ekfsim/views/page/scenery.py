@@ -1,0 +1,113 @@
+"""What stays the same from view to view of a page: the world, how much of it is shown, who
+watches, and how everything looks.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ekfsim.geometry import Array
+from ekfsim.geometry.ellipse import cone_factor, radius_factor
+from ekfsim.printable import in_a_line
+from ekfsim.scene import Scene
+from ekfsim.views.page.numbers import length, points, short
+from ekfsim.views.picture import artists
+from ekfsim.views.picture.belief import ghost, warned, ways
+from ekfsim.views.picture.belief.belief import COVERED
+from ekfsim.views.picture.belief.others import STYLES
+from ekfsim.views.picture.limits import Limits
+from ekfsim.views.picture.look import Look
+from ekfsim.views.words.captions import cone_label, ellipse_label
+from ekfsim.world import Map
+
+FAR = 1e4  # m from the origin of its grid, from which on a browser's numbers are too coarse
+NAMES = {"theta": "θ", "phi": "φ", "thetadot": "θ̇", "xdot": "ẋ", "ydot": "ẏ", "theta_prev": "θ₋"}
+
+
+def origin_of(limits: Limits) -> Array:
+    """From where a page counts : (2,) m. It is that of the world, unless the world is far away."""
+    middle = [(limits.left + limits.right) / 2, (limits.bottom + limits.top) / 2]
+    return np.round(middle) if max(map(abs, middle)) > FAR else np.zeros(2)
+
+
+def scenery(scene: Scene, limits: Limits, look: Look, origin: Array) -> dict[str, Any]:
+    """All of it, by name."""
+    world, told = scene.world, scene.world.told.map
+    fixed: dict[str, Any] = {
+        "origin": [length(value) for value in origin.tolist()],
+        "limits": [
+            length(value)
+            for value in (
+                limits.left - origin[0], limits.bottom - origin[1],
+                limits.right - origin[0], limits.top - origin[1],
+            )
+        ],
+        "world": _map(world.map, origin),
+        "landmarks": [
+            [*points(np.array([[mark.x, mark.y]]), origin), str(mark.id)]
+            for mark in world.landmarks
+        ],
+        "filters": list(_filters(scene)),
+        "state": [NAMES.get(name, name) for name in world.layout.names],
+        "places": list(world.layout.places),
+        "driven": not scene.commanded,
+        "covered": COVERED,
+        "k": short(radius_factor(look.probability)),
+        "cone": short(cone_factor(look.probability)),
+        "labels": {
+            "ellipse": ellipse_label(look.probability), "cone": cone_label(look.probability)
+        },
+    }  # fmt: skip
+    if told is not world.map:
+        fixed["told"] = _map(told, origin)
+    if world.expected_path is not None:
+        fixed["meant"] = points(world.expected_path, origin)
+    return fixed
+
+
+def inks() -> str:
+    """The colours of the pictures, as a style sheet names them."""
+    named = {
+        "blue": artists.BLUE, "sky": artists.SKY, "green": artists.GREEN,
+        "vermillion": artists.VERMILLION, "purple": artists.PURPLE, "orange": artists.ORANGE,
+        "outside": artists.OUTSIDE, "floor": artists.FLOOR, "obstacle": artists.OBSTACLE,
+        "edge": artists.EDGE, "truth": artists.TRUTH, "meant": artists.MEANT,
+        "crowd": artists.CROWD, "ghost": ghost.GHOST, "alarm-ink": warned.ALARM,
+    }  # fmt: skip
+    dashed = {
+        "alarm-dashes": dashes(warned.ALARM_DASHES, warned.ALARM_WIDTH),
+        "true-dashes": dashes(ways.TRUE_DASHES, 1.1),
+        "reckoned-dashes": dashes(ways.RECKONED_DASHES, 1.1),
+    }
+    told = (f"--{name}: {value};" for name, value in (named | dashed).items())
+    return f":root {{ {' '.join(told)} }}\n"
+
+
+def dashes(style: artists.Dashes, width: float) -> str:
+    """A picture's dashes, which are told in widths of a line in points, in pixels of a page.
+
+    >>> dashes((0, (5, 1.5)), 1.5)
+    '10 3'
+    """
+    assert not isinstance(style, str)
+    return " ".join(f"{each * width * 96 / 72:.3g}" for each in style[1])
+
+
+def _filters(scene: Scene) -> Iterator[dict[str, Any]]:
+    """Those that watch; each but the first in its own colour, its own dashes."""
+    for number, name in enumerate(scene.watching):
+        told: dict[str, Any] = {"name": in_a_line(name)}
+        if number:
+            style = STYLES[(number - 1) % len(STYLES)]
+            told |= {"ink": style.color, "mark": style.marker, "dashes": dashes(style.dashes, 1.6)}
+        yield told
+
+
+def _map(floor: Map, origin: Array) -> dict[str, Any]:
+    room = [] if floor.boundary is None else points(floor.boundary, origin)
+    obstacles = [
+        {"name": in_a_line(each.name), "ring": points(each.points, origin)}
+        for each in floor.obstacles
+    ]
+    return {"boundary": room, "obstacles": obstacles}
