@@ -2,7 +2,7 @@
 
 A notebook needs no more than this module:
 
->>> import dataclasses, ekfsim
+>>> import ekfsim
 >>> scene = ekfsim.load_scene("square")   # a path, or the name of one that comes along
 >>> steps = list(ekfsim.play(scene))       # simulate and localize; a Step for each command
 >>> views = list(ekfsim.Playback(steps))   # one for each press of n; view 0 is the start
@@ -10,9 +10,12 @@ A notebook needs no more than this module:
 ==>The robot moved: distance=3, angle=90
 
 and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes.
-`dataclasses.replace(scene, filter="ukf")` is the same scene for another of FILTERS; seed, gate,
-guard and the rest are fields of Scene, too, and so is `tuning=ekfsim.Tuning(particles=20_000)`, the
-numbers that a filter alone has. One level deeper, the two halves of `play`:
+`scene.with_("noise.rangeSigmaRatio", 0.1)` is the same scene with another number, told to the truth
+and to the filter alike, as `--set` does it; so are `scene.with_(filter="ukf", gate=0.99, seed=3)`
+and `scene.with_("filter.particles", 20_000)`, a number that a filter alone has (see Tuning).
+`ekfsim.scene` and `load_scene` take the text of a file, or a dict, as well, and
+`ekfsim.World.of(boundary=…, start=…, noise=…)` makes a world of lists and arrays, with all the
+checks of a file. One level deeper, the two halves of `play`:
 `ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter,
 belief)` the Steps (what a filter made of them), with `ekfsim.filter_of(scene)` and
 `ekfsim.first_belief(scene)` to begin with. A filter of your own is two functions, or a class, that
@@ -25,7 +28,7 @@ belief)` the Steps (what a filter made of them), with `ekfsim.filter_of(scene)` 
 ...     return x, P  # it learns nothing
 >>> ekfsim.bring(predict, update, name="mine")
 'mine'
->>> mine = list(ekfsim.play(dataclasses.replace(scene, filter="mine")))
+>>> mine = list(ekfsim.play(scene.with_(filter="mine")))
 >>> bool(abs(mine[1].posterior.mean - steps[1].posterior.mean).max() < 1e-9)  # after one move
 True
 
@@ -99,6 +102,8 @@ if TYPE_CHECKING:
     from ekfsim.views.words.narrative import narrate as narrate
     from ekfsim.world import World as World
 
+    scene = load_scene  # the module of that name, as it is called
+
 # Where each name lives. They are imported when first used: `ekfsim --help` must not wait for numpy.
 _HOMES = {
     "diagnostics.nees": ("nees",),
@@ -127,16 +132,20 @@ _HOMES = {
     "world": ("World",),
 }
 _HOME_OF = {name: f"ekfsim.{home}" for home, names in _HOMES.items() for name in names}
+# Modules that can be called, by the same names whatever is imported first.
+_ROOMS = ("scene",)
 # What `help(ekfsim)` tells at length; the classes have pages of their own, or it would run to a
 # thousand lines.
 __all__ = sorted(name for name in _HOME_OF if name[0].islower())
 
 
 def __getattr__(name: str) -> Any:
+    if name in _ROOMS:
+        return import_module(f"ekfsim.{name}")
     if name not in _HOME_OF:
         raise AttributeError(f"module 'ekfsim' has no attribute {name!r}")
     return getattr(import_module(_HOME_OF[name]), name)
 
 
 def __dir__() -> list[str]:
-    return [*globals(), *_HOME_OF]
+    return [*globals(), *_HOME_OF, *_ROOMS]

@@ -12,14 +12,16 @@ MOST_TOLD = 50  # lines of one kind at once: nobody reads more
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where in a file a mistake was made. line and column count from 1."""
+    """Where in a file a mistake was made. line and column count from 1; 0 where there is no text,
+    as in a dict.
+    """
 
     file: str
     line: int = 1
     column: int = 1
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}:{self.column}"
+        return f"{self.file}:{self.line}:{self.column}" if self.line else self.file
 
 
 class EkfsimError(Exception):

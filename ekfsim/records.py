@@ -6,7 +6,7 @@ records are frozen; arrays carry leading axes (…): none for one run, (N,) for 
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from ekfsim.commands import Move, Plain, Sense
@@ -80,6 +80,8 @@ class Log:
 
     entries: tuple[Entry, ...]  # the first is the start
     first: Gaussian  # the belief that the filter begins with
+    # where it was read from; what `replace` makes of it was not, and has none
+    given: object = field(default=None, init=False, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,14 @@
-"""A scene: a world, what is done in it or was recorded of it, and how the filter is set."""
+"""A scene: a world, what is done in it or was recorded of it, and how the filter is set.
 
+`ekfsim.scene` is this module, which can be called: `ekfsim.scene('''world: room …''')` is
+`ekfsim.load_scene` of a text, a dict or a file.
+"""
+
+import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from types import ModuleType
+from typing import Any, Literal
 
 from ekfsim.commands import Command
 from ekfsim.filters.place import label
@@ -33,7 +39,9 @@ class Expect:
 
 @dataclass(frozen=True)
 class Scene:
-    """All that fixes a run but its number. `dataclasses.replace` makes another of it."""
+    """All that fixes a run but its number. `dataclasses.replace` makes another of it, and `with_`
+    one with other numbers.
+    """
 
     world: World
     commands: tuple[Command, ...] = ()
@@ -69,3 +77,39 @@ class Scene:
     def alone(self) -> "tuple[Scene, ...]":
         """The same scene for each of the filters that watch it, by itself."""
         return tuple(replace(self, filter=name, beside=()) for name in (self.filter, *self.beside))
+
+    def with_(self, *pairs: object, **settings: object) -> "Scene":
+        """The same scene with other numbers, as `--set` sets them on the command line: truth and
+        filter are told alike, unless the world's `belief` tells them apart. Keys are those of the
+        files, and seed, run and filter:
+
+            scene.with_("noise.rangeSigmaRatio", 0.1)
+            scene.with_("noise.rangeSigmaRatio", 0.1, "gate", 0.99)
+            scene.with_(gate=0.99, filter="ukf", seed=3, **{"filter.alpha": 0.5})
+
+        Raises UsageError or InputError where a key or a value is wrong.
+        """
+        from ekfsim.files.given.changes import changed_scene  # the door to the files' checks
+
+        return changed_scene(self, pairs, settings)
+
+
+class Loading(ModuleType):
+    """What the module is, so that it can be called: `ekfsim.scene` means one thing, whatever is
+    imported first.
+    """
+
+    def __call__(
+        self,
+        commands: Any,
+        world: Any = None,
+        log: str | Path | None = None,
+        reading: DocumentReading = "corrected",
+    ) -> Scene:
+        """The same as `load_scene`."""
+        from ekfsim.files.scenes.load import load_scene  # the door to files
+
+        return load_scene(commands, world, log, reading)
+
+
+sys.modules[__name__].__class__ = Loading

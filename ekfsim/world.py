@@ -1,7 +1,7 @@
 """What stands where, how noisy the robot is, and what the filter is told of both."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -96,9 +96,10 @@ class Told:
 class World:
     """A world file: the truth, and beside it what the filter is told.
 
-    `dataclasses.replace(world, noise=n)` changes the truth alone, so that the filter is told
-    wrongly of it. What is to hold for both is changed in both: `replace(world, noise=n,
-    told=replace(world.told, noise=n))`; map and start alike.
+    `world.with_("noise.rangeSigmaRatio", 0.1)` is the same with another number, of which the filter
+    is told, as by `--set` on the command line. `dataclasses.replace(world, noise=n)` changes the
+    truth alone, so that the filter is told wrongly of it. `World.of` makes a world of Python's
+    values, as `load_world` does of a file.
     """
 
     name: str
@@ -116,6 +117,59 @@ class World:
     instruments: tuple[Instrument, ...] = ()
     # (n, 2) m, the outline that was meant to be driven; it closes by itself
     expected_path: Array | None = None
+    # what it was read from; what `replace` makes of it was not, and has none
+    given: object = field(default=None, init=False, compare=False, repr=False)
+
+    @classmethod
+    def of(
+        cls,
+        *,
+        start: object,
+        noise: object = None,
+        name: str = "world",
+        boundary: object = None,
+        obstacles: object = None,
+        landmarks: object = None,
+        sigma: object = None,
+        belief: object = None,
+        faults: object = None,
+        system: str | None = None,
+        robot: object = None,
+        sensors: object = None,
+        expected_path: object = None,
+        description: str | None = None,
+    ) -> "World":
+        """The world that a file of these keys would hold, with all its checks. Metres and degrees:
+
+            World.of(
+                boundary=[[0, 0], [10, 0], [10, 8], [0, 8]],
+                obstacles={"desk": [[4, 3], [5, 3], [5, 4], [4, 4]]},
+                start=(1, 1, 90),
+                noise={"executionDstSigmaRatio": 0.05, …},  # all five, or a Noise
+            )
+
+        start : x, y, θ, or a dict; sigma : standard deviations of it, or under "sigma" in the dict.
+        Every value may be a list, a tuple, an array, or what a file has there.
+        Raises InputError with all mistakes, each with the path of its key.
+        """  # fmt: skip
+        from ekfsim.files.given.worlds import world_of  # the door to the files' checks
+
+        told = {
+            "name": name, "description": description, "system": system, "boundary": boundary,
+            "obstacles": obstacles, "landmarks": landmarks, "start": start, "sigma": sigma,
+            "noise": noise, "robot": robot, "sensors": sensors, "expectedPath": expected_path,
+            "belief": belief, "faults": faults,
+        }  # fmt: skip
+        return world_of(told)
+
+    def with_(self, *pairs: object, **settings: object) -> "World":
+        """The same world with other numbers, told to the filter as well: see `Scene.with_`.
+
+        Raises UsageError or InputError where a key or a value is wrong.
+        """
+        from ekfsim.files.given.changes import changed_world  # the door to the files' checks
+
+        return changed_world(self, pairs, settings)
 
     @property
     def layout(self) -> Layout:

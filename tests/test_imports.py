@@ -42,6 +42,11 @@ ROOMS = (  # each imports only from those above it, and from its own
 DOORS = {  # the imports from below, each made when it is called for
     ("ekfsim.twins", "ekfsim.fast.table"),  # `twins` asks the table
     ("ekfsim.filters.choice", "ekfsim.student.own.choice"),  # for filters of one's own
+    # World.of and with_ read what they are given as a file is read
+    ("ekfsim.world", "ekfsim.files.given.worlds"),
+    ("ekfsim.world", "ekfsim.files.given.changes"),
+    ("ekfsim.scene", "ekfsim.files.given.changes"),
+    ("ekfsim.scene", "ekfsim.files.scenes.load"),  # the module itself is `ekfsim.scene(…)`
 }
 CORE = {
     "geometry",

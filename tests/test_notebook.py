@@ -3,9 +3,12 @@
 import inspect
 import pydoc
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import ekfsim
 from ekfsim.files.packaged import resolve
@@ -26,12 +29,31 @@ def test_the_cells_of_the_readme_do_what_they_say(capsys):
     told = read_scene(
         resolve("tour", "commands"), settings=[setting("noise.rangeSigmaRatio=0.1")]
     ).get()
-    assert (names["world"].noise, names["world"].told.noise) == (
-        told.world.noise,
-        told.world.told.noise,
-    )
+    world = names["scene"].world
+    assert (world.noise, world.told.noise) == (told.world.noise, told.world.told.noise)
     for ours, theirs in zip(ekfsim.play(names["scene"]), ekfsim.play(told), strict=True):
         np.testing.assert_array_equal(ours.posterior.mean, theirs.posterior.mean)
+
+
+ROOMS = {"scene": "ekfsim.scene('square').seed"}
+
+
+@pytest.mark.parametrize(
+    "first",
+    [
+        "import ekfsim",
+        "import ekfsim; ekfsim.load_scene('square')",
+        "import ekfsim.{0}",
+        "import ekfsim.{0} as room; import ekfsim; assert room is ekfsim.{0}",
+        "from ekfsim import {0}; import ekfsim; assert {0} is ekfsim.{0}",
+    ],
+)
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_room_that_is_called_means_one_thing_whatever_is_imported_first(room, first):
+    program = f"{first.format(room)}\nprint({ROOMS[room]})"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.stderr == ""
+    assert len(done.stdout.splitlines()) == 1
 
 
 def test_help_is_a_page_and_names_all():

@@ -14,8 +14,8 @@ from ekfsim.files.keys.commands import CommandsKeys
 from ekfsim.files.keys.homework import CENTS, KINDS, HomeworkKeys, HomeworkPartKeys
 from ekfsim.files.looking import exists, read_from
 from ekfsim.files.packaged import resolve, world_beside
-from ekfsim.files.scenes.load import Loaded, read_scene
-from ekfsim.files.scenes.one_file import in_order_of_place, other_kind, read
+from ekfsim.files.scenes.load import read_scene
+from ekfsim.files.scenes.one_file import Loaded, in_order_of_place, other_kind, read
 from ekfsim.files.source import as_written
 from ekfsim.files.yaml.marked import Node
 from ekfsim.files.yaml.marked import Path as Route

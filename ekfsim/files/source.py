@@ -40,6 +40,11 @@ def as_written(path: Path, shown: str) -> str:
         line, column = position(raw[: error.start].decode("utf-8-sig"))
         wrong = f"the byte 0x{raw[error.start]:02x} is not UTF-8"
         raise mistake(shown, line, column, wrong, "save the file as UTF-8 in your editor") from None
+    return readable(text, shown)
+
+
+def readable(text: str, shown: str) -> str:
+    """The same text. Raises InputError where no file may hold it."""
     if found := UNPRINTABLE.search(text):
         line, column = position(text[: found.start()])
         raise mistake(

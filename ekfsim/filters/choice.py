@@ -36,6 +36,13 @@ def registered() -> list[str]:
     return sorted({point.name for point in entry_points(group=GROUP)} - FILTERS.keys())
 
 
+def brought() -> list[str]:
+    """The names of the filters that were made of functions in this process."""
+    from ekfsim.student.own.choice import brought as names
+
+    return names()
+
+
 def code_of(name: str) -> Mapping[str, bytes]:
     """The files that a filter of one's own is made of, by their names from its own folder; none
     of a built-in one. Raises what `verify` does.

@@ -4,7 +4,7 @@ degrees become radians, lists arrays, and belief what the filter is told.
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import fields, replace
-from typing import Any, TypeVar
+from typing import Any, TypeVar, overload
 
 import numpy as np
 
@@ -167,12 +167,22 @@ def told_map(belief: BeliefKeys, floor_plan: Map) -> Map:
 
 def obstacles_of(obstacles: Iterable[ObstacleKeys]) -> tuple[Obstacle, ...]:
     """Obstacles with their corners as arrays."""
-    return tuple(Obstacle(keys.name, np.array(keys.points, dtype=float)) for keys in obstacles)
+    return tuple(Obstacle(keys.name, array(keys.points)) for keys in obstacles)
 
 
+@overload
+def array(points: list[list[float]]) -> Array: ...
+@overload
+def array(points: None) -> None: ...
 def array(points: list[list[float]] | None) -> Array | None:
     """points : (n, 2) m"""
-    return None if points is None else np.array(points, dtype=float)
+    return None if points is None else still(np.array(points, dtype=float))
+
+
+def still(numbers: Array) -> Array:
+    """The same array, which nobody can write into: a world is shared by all that is made of it."""
+    numbers.flags.writeable = False
+    return numbers
 
 
 def ring(points: list[list[float]] | None) -> Array | None:
@@ -184,7 +194,7 @@ def ring(points: list[list[float]] | None) -> Array | None:
 
 def pose(keys: Pose) -> Array:
     """x, y, θ : (3,) m, m, rad in (−π, π]"""
-    return np.array([keys.x, keys.y, float(wrap(np.radians(keys.theta)))])
+    return still(np.array([keys.x, keys.y, float(wrap(np.radians(keys.theta)))]))
 
 
 def sigma(*choices: SigmaKeys | None) -> Array:
@@ -197,7 +207,7 @@ def sigma(*choices: SigmaKeys | None) -> Array:
         )
         for axis in ("x", "y", "theta")
     )
-    return np.array([x, y, np.radians(theta)])
+    return still(np.array([x, y, np.radians(theta)]))
 
 
 def scene_of(keys: CommandsKeys, world: World, world_source: str, commands_source: str) -> Scene:

@@ -5,9 +5,8 @@ from pathlib import Path
 from ekfsim.errors import MOST_TOLD, InputError, Mistake
 from ekfsim.files.homework import Homework, check_homework
 from ekfsim.files.scenes import load
-from ekfsim.files.scenes.load import Loaded
 from ekfsim.files.scenes.load_study import FILTER, SWEEP, read_request
-from ekfsim.files.scenes.one_file import kind_of
+from ekfsim.files.scenes.one_file import Loaded, kind_of
 from ekfsim.scene import Scene
 from ekfsim.world import World
 

@@ -68,7 +68,9 @@ def unread(settings: Iterable[Setting], names: Sequence[str]) -> list[Setting]:
     ]
 
 
-def refuse_unread(settings: Iterable[Setting], names: Sequence[str]) -> None:
+def refuse_unread(
+    settings: Iterable[Setting], names: Sequence[str], option: str = "--filter"
+) -> None:
     """Raises UsageError where a setting would change nothing,
     for no filter that watches reads it.
     """
@@ -76,7 +78,7 @@ def refuse_unread(settings: Iterable[Setting], names: Sequence[str]) -> None:
     for one in unread(settings, names):
         key = str(path_of(one)[1])
         wrong = f"no filter here ({', '.join(map(label, names))}) reads it"
-        lines.append(f"{one.told}: {wrong}; name one that does: --filter {who_reads(key)}")
+        lines.append(f"{one.told}: {wrong}; name one that does: {option} {who_reads(key)}")
     if lines:
         raise UsageError(*lines)
 

@@ -1,21 +1,20 @@
 """World and commands files → World and Scene; all mistakes of a file at once."""
 
 import os
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Generic, TypeVar
 
-from ekfsim.errors import InputError, Mistake, UsageError
+from ekfsim.errors import Mistake, UsageError
+from ekfsim.files.given.given import Given, given_in
 from ekfsim.files.keys.commands import (
     WAYS,
     WITH_LANDMARKS,
     CommandsKeys,
-    LogFormat,
     RecordingKeys,
 )
 from ekfsim.files.keys.world import WorldKeys
-from ekfsim.files.packaged import resolve, source_name, world_beside
+from ekfsim.files.packaged import packaged, resolve, source_name, world_beside
 from ekfsim.files.scenes.building import scene_of, world_of
 from ekfsim.files.scenes.checks import Sound, kidnap_warnings, perfect_beam_warnings
 from ekfsim.files.scenes.drive_checks import check_fit
@@ -25,63 +24,62 @@ from ekfsim.files.scenes.filter_checks import (
     filter_warnings,
     missing,
 )
-from ekfsim.files.scenes.one_file import File, in_order_of_place, read
+from ekfsim.files.scenes.logged import CLASSROOM, brought, with_log, world_of_log
+from ekfsim.files.scenes.one_file import File, Loaded, in_order_of_place, read
 from ekfsim.files.scenes.overruling import idle_on_log, of_log, refusal
-from ekfsim.files.scenes.settings import Setting
+from ekfsim.files.scenes.settings import Setting, kind_of
 from ekfsim.files.scenes.system_checks import system_warnings
 from ekfsim.files.source import bytes_of
+from ekfsim.files.yaml.telling import nearest
+from ekfsim.printable import quoted
 from ekfsim.scene import Scene
 from ekfsim.systems.document import DocumentReading
 from ekfsim.world import World
 
-T = TypeVar("T")
-CLASSROOM: LogFormat = "classroom"  # whose logs bring their world
 
-
-@dataclass
-class Loaded(Generic[T]):
-    """What a file holds, or the mistakes in it; and the warnings."""
-
-    value: T | None = None
-    mistakes: list[Mistake] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
-    refusal: UsageError | None = None  # of the log that was named, which is no file's mistake
-
-    def get(self) -> T:
-        """The value. Raises InputError with all mistakes, or what the log was refused with."""
-        if self.refusal is not None:
-            raise self.refusal
-        if self.value is None or self.mistakes:
-            raise InputError(self.mistakes)
-        return self.value
-
-
-def load_world(path: str | Path) -> World:
-    """The world that a file describes, or one that comes along by its bare name.
+def load_world(world: str | Path | Mapping[str, object]) -> World:
+    """The world that a file describes, or one that comes along by its bare name; or what a file
+    would hold, as text of YAML or as a dict.
 
     Raises UsageError where there is no such file, InputError with all its mistakes.
     """
-    return read_world(resolve(path, "worlds")).get()
+    return read_world(given_in(world) or resolve(path_in(world), "worlds")).get()
 
 
 def load_scene(
-    path: str | Path,
-    world: str | Path | None = None,
+    commands: str | Path | Mapping[str, object],
+    world: str | Path | Mapping[str, object] | World | None = None,
     log: str | Path | None = None,
     reading: DocumentReading = "corrected",
 ) -> Scene:
     """The scene that a commands file describes, in its own world or the one given.
 
-    A packaged file is found by its bare name. `log` stands in place of the one that the file's
-    recording names; `reading` is that of the system's document.
+    A packaged file is found by its bare name. In place of a file stands what it would hold, as text
+    of YAML or as a dict, whose `world` may be a World; what it names lies in the current folder.
+    `log` stands in place of the one that the recording names; `reading` is that of the system's
+    document.
     Raises UsageError where a file is missing, InputError with all mistakes of both files.
     """
-    world = None if world is None else resolve(world, "worlds")
-    return read_scene(resolve(path, "commands"), world, log, reading).get()
+    if isinstance(commands, Mapping) and isinstance(own := commands.get("world"), World):
+        commands = {key: value for key, value in commands.items() if key != "world"}
+        world = own if world is None else world
+    given = given_in(commands) or resolve(path_in(commands), "commands")
+    if world is not None and not isinstance(world, World):
+        is_file = given_in(world) is None
+        world = resolve(path_in(world), "worlds") if is_file else load_world(world)
+    return read_scene(given, world, log, reading).get()
+
+
+def path_in(what: object) -> str | Path:
+    """The name of a file. Raises UsageError where it is no such thing."""
+    if isinstance(what, str | Path):
+        return what
+    wrong = f"{quoted(type(what).__name__)} is neither a file nor what one holds"
+    raise UsageError(f"{wrong}; give a path, a name of `ekfsim list`, text of YAML or a dict")
 
 
 def read_world(
-    path: str | Path,
+    path: str | Path | Given,
     shown: str | None = None,
     logged: bool = False,
     settings: Sequence[Setting] = (),
@@ -91,7 +89,8 @@ def read_world(
 
     Raises UsageError where there is no such file.
     """
-    return world_in(read(Path(path), shown or str(path), "world", settings), logged)
+    given = path if isinstance(path, Given) else Path(path)
+    return world_in(read(given, shown or str(path), "world", settings), logged)
 
 
 def world_in(file: File, logged: bool = False) -> Loaded[World]:
@@ -99,6 +98,7 @@ def world_in(file: File, logged: bool = False) -> Loaded[World]:
     if not isinstance(file.keys, WorldKeys) or file.sound is None or file.mistakes:
         return Loaded(None, file.mistakes, file.warnings)
     world = world_of(file.keys)
+    object.__setattr__(world, "given", file.given)
     doubts = (
         *system_warnings(file.sound, world, logged),
         *perfect_beam_warnings(file.sound, world),
@@ -107,8 +107,8 @@ def world_in(file: File, logged: bool = False) -> Loaded[World]:
 
 
 def read_scene(
-    path: str | Path,
-    world: str | Path | None = None,
+    path: str | Path | Given,
+    world: str | Path | World | None = None,
     log: str | Path | None = None,
     reading: DocumentReading = "corrected",
     settings: Sequence[Setting] = (),
@@ -134,25 +134,26 @@ def read_scene(
 
 
 def _read_scene(
-    path: str | Path,
-    world: str | Path | None,
+    given: str | Path | Given,
+    world: str | Path | World | None,
     log: str | Path | None,
     reading: DocumentReading,
     settings: Sequence[Setting] = (),
 ) -> Loaded[Scene]:
     """The same, whatever mistakes the settings make."""
-    file = read(Path(path), str(path), "commands", settings)
+    path = Path(given.shown if isinstance(given, Given) else given)
+    file = read(given if isinstance(given, Given) else path, str(path), "commands", settings)
     keys = file.keys if isinstance(file.keys, CommandsKeys) else None
     handed_out = log is not None and keys is not None and keys.commands is not None
     if handed_out and log is not None and world is None:
-        world = _brought(Path(log))
-    loaded = scene_in(file, Path(path), world, settings, log)
+        world = brought(Path(log))
+    loaded = scene_in(file, path, world, settings, log)
     if loaded.value is not None:
         loaded = replace(loaded, value=replace(loaded.value, reading=reading))
     if handed_out:
-        return with_log(loaded, file, RecordingKeys(format=CLASSROOM), Path(path), log)
+        return with_log(loaded, file, RecordingKeys(format=CLASSROOM), path, log)
     if keys is not None and keys.recording is not None:
-        return with_log(loaded, file, keys.recording, Path(path), log)
+        return with_log(loaded, file, keys.recording, path, log)
     if keys is not None and log is not None and file.sound is not None:
         way = next(way for way in WAYS if way in file.sound.root.keys)
         wrong = f"the file has '{way}', not a recording"
@@ -161,48 +162,10 @@ def _read_scene(
     return loaded
 
 
-def with_log(
-    loaded: Loaded[Scene],
-    file: File,
-    recording: RecordingKeys,
-    path: Path,
-    log: str | Path | None,
-) -> Loaded[Scene]:
-    """A scene with its log: entries, landmarks where it tells any, mistakes and warnings."""
-    sound, scene = file.sound, loaded.value
-    assert sound is not None
-    if log is None and recording.path is None:
-        wrong = "the recording names no path"
-        mistake = sound.mistake(("recording",), wrong, "give one with --log")
-        return replace(loaded, mistakes=[*loaded.mistakes, mistake])
-    if scene is None or loaded.mistakes:
-        return loaded
-    from ekfsim.files.logs import read_log
-
-    source = os.path.normpath(log if log is not None else path.parent / (recording.path or ""))
-    warnings = list(loaded.warnings)
-    try:
-        found = read_log(recording.format, Path(source), scene.world, scene.reading, warnings)
-    except InputError as error:
-        return replace(loaded, mistakes=list(error.mistakes), warnings=warnings)
-    except UsageError as error:
-        if log is not None:
-            return replace(loaded, warnings=warnings, refusal=error)
-        wrong, _, right = str(error).partition("; ")
-        right = right or "write its path relative to this file, or give one with --log"
-        mistake = sound.mistake(("recording", "path"), wrong, right)
-        return replace(loaded, mistakes=[mistake], warnings=warnings)
-    world = scene.world
-    if found.landmarks is not None:
-        world = replace(world, landmarks=found.landmarks)
-    scene = replace(scene, commands=(), world=world, log=found.log, log_source=source_name(source))
-    return replace(loaded, value=scene, warnings=warnings)
-
-
 def scene_in(
     file: File,
     path: Path,
-    world: str | Path | None = None,
+    world: str | Path | World | None = None,
     settings: Sequence[Setting] = (),
     log: str | Path | None = None,
 ) -> Loaded[Scene]:
@@ -211,16 +174,18 @@ def scene_in(
     if sound is None:  # nothing can be read in it, not even its world
         return Loaded(mistakes=file.mistakes)
     if world is None and sound.root.at(("world",)) is None:
-        world = _world_of_log(sound, path, log)
-    if world is not None:
-        source, shown, missing = Path(world), str(world), list[Mistake]()
+        world = world_of_log(sound, path, log)
+    logged = sound.value("recording", "format") in WITH_LANDMARKS
+    missing, found = list[Mistake](), Loaded[World]()
+    if isinstance(world, World):
+        source, found = called(world), overruled(world, settings, logged)
+    elif world is not None:
+        source, found = source_name(world), read_world(world, None, logged, settings)
     else:
-        source = world_beside(path, sound.value("world") or "")
-        shown, missing = os.path.normpath(source), list(missing_world(sound, source))
-    found = Loaded[World]()
-    if not missing and (world is not None or sound.value("world") is not None):
-        logged = sound.value("recording", "format") in WITH_LANDMARKS
-        found = read_world(source, shown, logged, settings)
+        beside = world_beside(path, sound.value("world") or "")
+        source, missing = source_name(beside), list(missing_world(sound, beside))
+        if not missing and sound.value("world") is not None:
+            found = read_world(beside, os.path.normpath(beside), logged, settings)
     misfits, kidnaps = list[Mistake](), list[str]()
     if found.value is not None:
         kidnaps += kidnap_warnings(sound, found.value.map)
@@ -231,25 +196,38 @@ def scene_in(
     mistakes, warnings = [*own, *found.mistakes], [*file.warnings, *kidnaps, *found.warnings]
     if mistakes or found.value is None or not isinstance(keys, CommandsKeys):
         return Loaded(None, mistakes, warnings)
-    scene = scene_of(keys, found.value, source_name(source), source_name(path))
-    scene = replace(scene, filter=filter_beside(path, scene.filter), world_file=source.absolute())
+    scene = scene_of(keys, found.value, source, source_name(path))
+    own_filter, file_of_world = filter_beside(path, scene.filter), world_file(found.value)
+    scene = replace(scene, filter=own_filter, world_file=file_of_world)
     return Loaded(scene, mistakes, warnings)
 
 
-def _world_of_log(sound: Sound, path: Path, log: str | Path | None) -> Path | None:
-    """The world that a log brings, None where it brings none, or no log is named."""
-    named = sound.value("recording", "path")
-    if sound.value("recording", "format") != CLASSROOM or (log is None and named is None):
-        return None
-    return _brought(Path(os.path.normpath(log if log is not None else path.parent / named)))
+def called(world: World) -> str:
+    """How outputs name a world that was handed over: by its file, else by its own name."""
+    given = world.given
+    return source_name(given.shown if isinstance(given, Given) and given.is_file else world.name)
 
 
-def _brought(log: Path) -> Path:
-    """The world in a classroom's log. Raises UsageError where there is no such folder."""
-    from ekfsim.files.logs.folder import find, folder_of
-    from ekfsim.files.logs.formats.classroom import HOLDS, WORLD
+def world_file(world: World) -> Path | None:
+    """The file that a world was read from; None where it was none."""
+    given = world.given
+    return Path(given.shown).absolute() if isinstance(given, Given) and given.is_file else None
 
-    return find(folder_of(log, HOLDS), "the map and the ratios", WORLD)
+
+def overruled(world: World, settings: Sequence[Setting], logged: bool = False) -> Loaded[World]:
+    """A world that was read, with what the settings say of worlds; as it is, where they say
+    nothing.
+
+    Raises UsageError where it was not read, but made by `replace`.
+    """
+    own = [one for one in settings if kind_of(one) == "world"]
+    if not own:
+        return Loaded(world)
+    if not isinstance(world.given, Given):
+        wrong = f"the world {world.name!r} was not read, but put together by `replace`"
+        right = "use with_ before `replace`, or make the world by World.of"
+        raise UsageError(f"{own[0].told}: {wrong}; {right}")
+    return read_world(world.given, None, logged, own)
 
 
 def missing_world(sound: Sound, source: Path) -> Iterator[Mistake]:
@@ -260,7 +238,10 @@ def missing_world(sound: Sound, source: Path) -> Iterator[Mistake]:
             bytes_of(source, named)
         except UsageError as error:
             wrong, _, right = str(error).partition("; ")
-            right = right or "write its path relative to this file"
+            near = nearest(named, list(packaged("worlds"))) if Path(named).name == named else ""
+            right = right or (
+                f"did you mean '{near}'?" if near else "write its path relative to this file"
+            )
             yield sound.mistake(("world",), wrong, right)
     elif sound.root.at(("world",)) is None:
         right = "write e.g. world: ../worlds/classroom.yaml, or name one with --world"

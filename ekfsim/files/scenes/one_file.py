@@ -3,10 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Generic, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from ekfsim.errors import InputError, Mistake
+from ekfsim.errors import InputError, Mistake, UsageError
+from ekfsim.files.given.given import Given
 from ekfsim.files.keys.commands import WAYS
 from ekfsim.files.keys.fields import aliases
 from ekfsim.files.keys.world import WorldKeys
@@ -22,6 +24,7 @@ from ekfsim.files.yaml.parsing import parse, without_collection
 from ekfsim.files.yaml.schema import MODELS, Kind
 from ekfsim.files.yaml.telling import at, details_of, tell
 
+T = TypeVar("T")
 ONLY_IN_WORLDS = {*aliases(WorldKeys).values()} - {"description"}
 
 
@@ -34,15 +37,42 @@ class File:
     sound: Sound | None = None  # None where nothing in the file can be told apart
     keys: BaseModel | None = None  # None where a key is wrong
     warnings: list[str] = field(default_factory=list)
+    given: Given | None = None  # what it was read from, and by which settings it is overruled
+
+
+@dataclass
+class Loaded(Generic[T]):
+    """What a file holds, or the mistakes in it; and the warnings."""
+
+    value: T | None = None
+    mistakes: list[Mistake] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    refusal: UsageError | None = None  # of the log that was named, which is no file's mistake
+
+    def get(self) -> T:
+        """The value. Raises InputError with all mistakes, or what the log was refused with."""
+        if self.refusal is not None:
+            raise self.refusal
+        if self.value is None or self.mistakes:
+            raise InputError(self.mistakes)
+        return self.value
 
 
 @without_collection()
-def read(path: Path, shown: str, kind: Kind | None, settings: Sequence[Setting] = ()) -> File:
-    """Read a file as one of a kind, or as what it is. Raises UsageError where there is none."""
+def read(
+    path: Path | Given, shown: str, kind: Kind | None, settings: Sequence[Setting] = ()
+) -> File:
+    """Read a file, or what stands in place of one, as one of a kind, or as what it is.
+
+    Raises UsageError where there is none.
+    """
     try:
-        root, mistakes = parse(as_written(path, shown), shown)
+        given = path if isinstance(path, Given) else Given.file(path, shown)
+        root, mistakes = given.tree()
     except InputError as error:
         return File(kind or "world", error.mistakes)
+    given = given.overruled(tuple(settings))
+    shown, settings = given.shown, given.settings
     kind = kind or kind_of_tree(root)
     if other := other_kind(root, kind):
         return File(kind, [*mistakes, at(shown, *other)])
@@ -61,7 +91,7 @@ def read(path: Path, shown: str, kind: Kind | None, settings: Sequence[Setting] 
         else (*check_commands(sound), *check_ways(sound))
     )
     warnings += [remark(warning, settings) for warning in angle_warnings(sound)]
-    return File(kind, sorted(mistakes, key=in_order_of_place), sound, keys, warnings)
+    return File(kind, sorted(mistakes, key=in_order_of_place), sound, keys, warnings, given)
 
 
 def kind_of(path: str | Path) -> Kind:

@@ -106,11 +106,11 @@ def filters_in(text: str, option: str = "--filter") -> tuple[str, ...]:
 def filter_in(name: str, option: str) -> str:
     """The filter that a name or a place means. Raises UsageError where it means none."""
     from ekfsim.filters import FILTERS
-    from ekfsim.filters.choice import registered, verify
+    from ekfsim.filters.choice import brought, registered, verify
 
     if name in FILTERS:
         return name
-    known = [*FILTERS, *registered()]
+    known = [*FILTERS, *registered(), *brought()]
     if is_place(name) or name in known:
         name = absolute(name)
         verify(name)

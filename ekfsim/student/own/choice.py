@@ -13,7 +13,7 @@ from ekfsim.student.own.calls import InProcess
 from ekfsim.student.own.filter import OwnFilter
 from ekfsim.student.own.forms import Whole
 from ekfsim.student.own.home import NOWHERE
-from ekfsim.student.own.loading import Code, load
+from ekfsim.student.own.loading import BROUGHT, Code, load
 from ekfsim.student.own.whole import WholeFilter
 
 
@@ -56,6 +56,11 @@ def quietly(name: str) -> Code:
     except BaseException:
         sys.stderr.write(printed.getvalue())
         raise
+
+
+def brought() -> list[str]:
+    """The names of the filters that `bring` made in this process."""
+    return list(BROUGHT)
 
 
 def contents(name: str) -> dict[str, bytes]:

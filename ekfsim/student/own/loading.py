@@ -12,6 +12,8 @@ from types import ModuleType
 from typing import Any
 
 from ekfsim.errors import UsageError
+from ekfsim.files.yaml.telling import nearest
+from ekfsim.filters import FILTERS
 from ekfsim.filters.choice import GROUP
 from ekfsim.filters.place import is_file, is_place, label, parts
 from ekfsim.student.own.forms import Form, form_of, where
@@ -60,6 +62,8 @@ def registered(name: str) -> str:
     if len(places) > 1:
         right = f"name one of them: {' or '.join(places)}"
         raise UsageError(f"{name}: {len(places)} packages register it; {right}")
+    if not places and (near := nearest(name, [*FILTERS, *BROUGHT])):
+        raise UsageError(f"{name}: there is no such filter; did you mean {near!r}?")
     if not places:
         raise UsageError(
             f"{name}: there is no such filter here; one that was brought is known to its own "

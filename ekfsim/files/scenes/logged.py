@@ -1,0 +1,85 @@
+"""A scene whose run was recorded: its log, and the world that a log may bring."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from ekfsim.errors import InputError, UsageError
+from ekfsim.files.keys.commands import LogFormat, RecordingKeys
+from ekfsim.files.packaged import source_name
+from ekfsim.files.scenes.checks import Sound
+from ekfsim.files.scenes.one_file import File, Loaded
+from ekfsim.scene import Scene
+
+CLASSROOM: LogFormat = "classroom"  # whose logs bring their world
+
+
+class LogGiven(NamedTuple):
+    """Where a log was read from."""
+
+    format: LogFormat
+    source: str
+
+
+def with_log(
+    loaded: Loaded[Scene],
+    file: File,
+    recording: RecordingKeys,
+    path: Path,
+    log: str | Path | None,
+) -> Loaded[Scene]:
+    """A scene with its log: entries, landmarks where it tells any, mistakes and warnings."""
+    sound, scene = file.sound, loaded.value
+    assert sound is not None
+    if log is None and recording.path is None:
+        wrong = "the recording names no path"
+        mistake = sound.mistake(("recording",), wrong, "give one with --log")
+        return replace(loaded, mistakes=[*loaded.mistakes, mistake])
+    if scene is None or loaded.mistakes:
+        return loaded
+    source = os.path.normpath(log if log is not None else path.parent / (recording.path or ""))
+    warnings = list(loaded.warnings)
+    try:
+        scene = read_into(scene, recording.format, source, warnings)
+    except InputError as error:
+        return replace(loaded, mistakes=list(error.mistakes), warnings=warnings)
+    except UsageError as error:
+        if log is not None:
+            return replace(loaded, warnings=warnings, refusal=error)
+        wrong, _, right = str(error).partition("; ")
+        right = right or "write its path relative to this file, or give one with --log"
+        mistake = sound.mistake(("recording", "path"), wrong, right)
+        return replace(loaded, mistakes=[mistake], warnings=warnings)
+    return replace(loaded, value=scene, warnings=warnings)
+
+
+def read_into(scene: Scene, format: LogFormat, source: str, warnings: list[str]) -> Scene:
+    """A scene with the log that lies there, and with the landmarks that it tells.
+
+    Raises UsageError where there is no such log, InputError with what is wrong in it.
+    """
+    from ekfsim.files.logs import read_log
+
+    found, world = read_log(format, Path(source), scene.world, scene.reading, warnings), scene.world
+    object.__setattr__(found.log, "given", LogGiven(format, source))
+    if found.landmarks is not None:
+        world = replace(world, landmarks=found.landmarks)
+        object.__setattr__(world, "given", scene.world.given)
+    return replace(scene, commands=(), world=world, log=found.log, log_source=source_name(source))
+
+
+def world_of_log(sound: Sound, path: Path, log: str | Path | None) -> Path | None:
+    """The world that a log brings, None where it brings none, or no log is named."""
+    named = sound.value("recording", "path")
+    if sound.value("recording", "format") != CLASSROOM or (log is None and named is None):
+        return None
+    return brought(Path(os.path.normpath(log if log is not None else path.parent / named)))
+
+
+def brought(log: Path) -> Path:
+    """The world in a classroom's log. Raises UsageError where there is no such folder."""
+    from ekfsim.files.logs.folder import find, folder_of
+    from ekfsim.files.logs.formats.classroom import HOLDS, WORLD
+
+    return find(folder_of(log, HOLDS), "the map and the ratios", WORLD)
