@@ -71,6 +71,13 @@ class _Number(click.FloatRange):
         return number
 
 
+class Pace(_Number):
+    """How many seconds something takes."""
+
+    def __init__(self) -> None:
+        super().__init__(0, 3600, min_open=True)
+
+
 class Probability(_Number):
     """A number between 0 and 1, and neither of them."""
 

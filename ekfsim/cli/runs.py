@@ -9,17 +9,21 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ekfsim.cli.asked import scene_of
-from ekfsim.cli.kinds import Result, Whole
+from ekfsim.cli.kinds import Pace, Result, Whole
 from ekfsim.cli.options import EXPLAIN, FORCE, scene_options
 from ekfsim.cli.process import heed, say, warn
 from ekfsim.printable import in_a_line
+from ekfsim.views.terminal.keys.help import HELP
 
 if TYPE_CHECKING:
     from ekfsim.scene import Scene
     from ekfsim.views.picture.look import Look
 
 
-@click.command(short_help="Step through COMMANDS with single keys.")
+@click.command(
+    help=f"Step through COMMANDS with single keys.\n\n\b\n{HELP}",
+    short_help="Step through COMMANDS with single keys.",
+)
 @scene_options
 @click.option("--show", type=click.Choice(["auto", "window", "text", "files"]), default="auto",
     show_default=True,
@@ -32,17 +36,20 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Draw the ellipse for the heading at either edge of its cone, too.",
 )
+@click.option("--auto", type=Pace(), metavar="SECONDS",
+              help="Go on by itself, a view every so many seconds.")  # fmt: skip
 @EXPLAIN
 @FORCE
 def play(
-    show: str, out: Path, conditional: bool, explain: bool, force: bool, confidence: float,
-    **chosen: Any
+    show: str, out: Path, conditional: bool, auto: float | None, explain: bool, force: bool,
+    confidence: float, **chosen: Any
 ) -> None:  # fmt: skip
-    """Step through COMMANDS with single keys: n next, p back, q quit, ? for all of them."""
+    """Begin at the first view; the keys do the rest."""
     from ekfsim.views.picture.look import Look
     from ekfsim.views.terminal.interactive import play_interactively
 
-    play_interactively(scene_of(**chosen), show, out, Look(confidence, conditional), force, explain)
+    look = Look(confidence, conditional)
+    play_interactively(scene_of(**chosen), show, out, look, force, explain, auto)
 
 
 @click.command()

@@ -80,38 +80,39 @@ def test_beyond_the_end_it_says_so_and_before_the_start_it_stays():
     assert told(b"9nnnnn").count(OVER) == 1
     assert told(b"9nnnpnnn").count(OVER) == 2
     assert told(b"p99pn3p99pp").count(START) == 2
-    assert told(b"p99pn3p99pp").count("<==Back at view 0\n") == 1
+    assert told(b"p99pn3p99pp").count("<==Back at step 0 of 3, view 0 of 4\n") == 1
 
 
 def test_back_and_forth_and_from_the_start():
     said = told(b"nnpnr")
-    assert "<==Back at view 1\n" in said
-    assert "<==Back at view 0\n" in said
+    assert "<==Back at step 1 of 3, view 1 of 4\n" in said
+    assert "<==Back at step 0 of 3, view 0 of 4\n" in said
     assert said.count("==>Commanding") == 2
+    assert said.count("==>The robot moved") == 2  # told again as it comes back to it
 
 
 def test_help_and_unknown_keys():
-    assert "12n  12p" in told(b"?")
+    assert "12n: twelve" in told(b"?")
     assert "That key does nothing here; ? shows those that do\n" in told(b"x")
     assert told(b"\xff\xfe\x00\x1b[99~z").count("That key does nothing here") >= 3
 
 
 def test_s_saves_a_picture_and_never_over_another(place):
     said = told(b"nsss", "--out", "a/b")
-    saved = ["view-0001.png", "view-0001-2.png", "view-0001-3.png"]
+    saved = ["step-0001.png", "step-0001-2.png", "step-0001-3.png"]
     assert [line for line in said.splitlines() if line.startswith("Saved")] == [
         f"Saved a/b/{name}" for name in saved
     ]
     assert sorted(left_in(place / "a/b")) == sorted(saved)
-    picture = (place / "a/b/view-0001.png").read_bytes()
+    picture = (place / "a/b/step-0001.png").read_bytes()
     assert picture.startswith(SIGNATURE)
-    assert told(b"nss", "--out", "a/b", "--force").count("Saved a/b/view-0001.png\n") == 2
-    assert (place / "a/b/view-0001.png").read_bytes() == picture
+    assert told(b"nss", "--out", "a/b", "--force").count("Saved a/b/step-0001.png\n") == 2
+    assert (place / "a/b/step-0001.png").read_bytes() == picture
 
 
 def test_a_picture_that_cannot_be_saved_ends_nothing(place):
     said = told(b"snn", "--out", "world.yaml")
-    assert "world.yaml/view-0000.png: 'world.yaml' is no folder\n" in said
+    assert "world.yaml/step-0000.png: 'world.yaml' is no folder\n" in said
     assert said.count("\n==>") == 2
     assert left_in(place) == PUT_IN
 
@@ -253,9 +254,10 @@ def test_keys_typed_ahead_in_a_terminal_wait_their_turn():
     terminal = Terminal("play", "short.yaml", "--show", "auto")
     terminal.press(b"nn?q")
     assert terminal.status() == 0
-    assert terminal.shown.count("\n==>") == 2
-    assert "12n  12p" in terminal.shown
-    assert "\x1b[" in terminal.shown
+    assert "12n: twelve" in terminal.shown
+    left = terminal.shown.split("\x1b[?1049l")[-1]  # what stays on the terminal
+    assert left.count("\n==>") == 2
+    assert "\x1b" not in left
 
 
 def test_a_small_terminal_without_colours():
@@ -272,11 +274,12 @@ def test_a_small_terminal_without_colours():
 def test_a_terminal_is_put_back_however_it_ends(ending, status):
     terminal = Terminal("play", "short.yaml", "--show", "text")
     terminal.press(b"n")
-    terminal.wait_for("\n==>")
-    terminal.wait_for("cone")
+    terminal.wait_for("view 1 of 4")
     if ending == "key":
         terminal.press(b"\x03")
     else:
         terminal.running.send_signal(getattr(signal, ending))
     assert terminal.status() == status
     assert "Traceback" not in terminal.shown
+    assert terminal.shown.count("\x1b[?1049h") == terminal.shown.count("\x1b[?1049l") == 1
+    assert terminal.shown.rindex("\x1b[?25h") > terminal.shown.rindex("\x1b[?25l")

@@ -11,7 +11,7 @@ from ekfsim.errors import StepError
 from ekfsim.files.results.outputs import kept
 from ekfsim.filters.belief import Belief
 from ekfsim.models.layout import Layout
-from ekfsim.records import Control, Nees, Reading, Step
+from ekfsim.records import Control, Entry, Nees, Reading, Step
 from ekfsim.views.playback.parting import Parting
 from ekfsim.views.playback.trail import Trail, Way, Ways
 from ekfsim.views.playback.view import Judged, View
@@ -49,7 +49,7 @@ class Unrolling:
         for each in group:
             self._ways.take(each)
         self._ways.mark(step)
-        before = first.prior if _gathered(first) else None
+        before = first.prior if _gathered(first.entry) else None
         if before is not None or isinstance(step.entry.command, Move | Untold):
             self._settled.append(*_position(first.prior, first.layout))
         shown = View(
@@ -111,10 +111,10 @@ def _groups(steps: Iterable[Step]) -> Iterator[tuple[list[Step], bool]]:
 def _gathering(steps: Iterable[Step]) -> Iterator[list[Step]]:
     gathered: list[Step] = []
     for step in steps:
-        if gathered and not _gathered(step):
+        if gathered and not _gathered(step.entry):
             yield gathered
             gathered = []
-        if not _gathered(step):
+        if not _gathered(step.entry):
             yield [step]
             continue
         gathered.append(step)
@@ -125,11 +125,11 @@ def _gathering(steps: Iterable[Step]) -> Iterator[list[Step]]:
         yield gathered
 
 
-def _gathered(step: Step) -> bool:
-    """Whether a step shares its view with its neighbours:
+def _gathered(entry: Entry) -> bool:
+    """Whether the step of an entry shares its view with its neighbours:
     a motion input that no command asked for.
     """
-    return step.entry.command is None and isinstance(step.entry.given, Control)
+    return entry.command is None and isinstance(entry.given, Control)
 
 
 def _position(belief: Belief, layout: Layout) -> tuple[float, float]:
@@ -162,9 +162,13 @@ class Tally:
 
     def write(self, step: Step) -> None:
         """Count the views that this step begins."""
-        self._inputs = self._inputs % GATHERED + 1 if _gathered(step) else 0
+        self.count(step.entry)
+
+    def count(self, entry: Entry) -> None:
+        """Count the views that the step of this entry begins."""
+        self._inputs = self._inputs % GATHERED + 1 if _gathered(entry) else 0
         if self._inputs <= 1:
-            self.views += 2 if isinstance(step.entry.given, Reading) else 1
+            self.views += 2 if isinstance(entry.given, Reading) else 1
 
 
 class Playback:
@@ -181,6 +185,11 @@ class Playback:
     ) -> None:
         self._coming = UntilFailure(together(steps, others, names))
         self._seen: list[View] = []
+        self.over = False  # whether the last view has been come to
+
+    def __len__(self) -> int:
+        """How many views have been computed so far."""
+        return len(self._seen)
 
     @property
     def failure(self) -> StepError | None:
@@ -200,6 +209,7 @@ class Playback:
         while len(self._seen) <= number:
             following = next(self._coming, None)
             if following is None:
+                self.over = True
                 return None
             self._seen.append(following)
         return self._seen[number]

@@ -13,6 +13,7 @@ from ekfsim.geometry.ellipse import cone_halfwidth, outline
 from ekfsim.records import Control, Reading
 from ekfsim.scene import Scene
 from ekfsim.views.picture.sights import instants
+from ekfsim.views.playback.length import steps_of
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.braille import (
     Bounds,
@@ -23,7 +24,6 @@ from ekfsim.views.terminal.braille import (
     inside,
     paint,
     printable,
-    shorten,
 )
 from ekfsim.views.terminal.readings import (
     Item,
@@ -33,6 +33,7 @@ from ekfsim.views.terminal.readings import (
     draw_reading,
     outcome,
 )
+from ekfsim.views.terminal.wrapping import within
 from ekfsim.world import Landmark, World
 
 WALL = Pen()
@@ -64,13 +65,26 @@ def draw(
     colour: bool,
     ascii: bool = False,
 ) -> str:
-    """A view as text of at most `size` columns and rows: a title, the picture, a legend.
+    """A view as text of `size` columns and rows: a title, the picture, a legend.
 
     limits : xmin, xmax, ymin, ymax in m, the same for the whole run, so that the picture does not
     jump ascii : for an output that cannot print braille
     """
     columns, rows = max(size[0], 1), max(size[1], 1)
-    canvas = Canvas(columns, max(rows - 2, 1), limits, ascii)
+    heads = within(title(view, scene, ascii), columns, max(rows // 6, 1), ascii)
+    canvas = Canvas(columns, max(rows - len(heads) - 1, 1), limits, ascii)
+    legend = depict(canvas, view, scene, probability)
+    bar = scale_bar(canvas)
+    if len(heads) == 1 and cells(heads[0]) + cells(bar) + 2 <= columns:
+        heads = [heads[0] + " " * (columns - cells(heads[0]) - cells(bar)) + bar]
+    lines = [
+        *heads, *canvas.render(colour).split("\n"), legend_line(legend, columns, colour, ascii)
+    ]  # fmt: skip
+    return "\n".join(lines[:rows])
+
+
+def depict(canvas: Canvas, view: View, scene: Scene, probability: float) -> list[Item]:
+    """Draw a view on a canvas; gives its legend, the most important first."""
     step, (mean, P) = view.step, view.pose
     legend = _draw_world(canvas, scene.world)
     canvas.polyline(view.path(), PATH)
@@ -83,13 +97,7 @@ def draw(
     legend = _draw_others(canvas, view, scene, probability) + legend
     if view.beam:
         legend = draw_reading(canvas, view) + legend
-    legend = _draw_robots(canvas, mean, step.entry.truth) + legend
-    lines = [
-        _title_line(_title(view, scene.world), _scale(limits), columns, ascii),
-        *canvas.render(colour).split("\n"),
-        _legend_line(legend, columns, colour, ascii),
-    ]
-    return "\n".join(lines[:rows])
+    return _draw_robots(canvas, mean, step.entry.truth) + legend
 
 
 def _draw_others(canvas: Canvas, view: View, scene: Scene, probability: float) -> list[Item]:
@@ -213,8 +221,16 @@ def _draw_robots(canvas: Canvas, mean: Array, truth: Array | None) -> list[Item]
     return [*legend, Item("o~" if canvas.ascii else "o⠒", "truth" + lost, TRUTH.colour)]
 
 
-def _title(view: View, world: World) -> str:
+def title(view: View, scene: Scene, ascii: bool = False) -> str:
     """What the picture shows: the number of the command, and what came of it."""
+    what, entry = _what(view, scene.world), view.step.entry
+    total = steps_of(scene)
+    step = f"{entry.index} of {total}" if total else str(entry.index)
+    told = f"{step if view.span is None else f't = {instants(*view.span)} s'}: {what}"
+    return printable(told.translate(PLAIN) if ascii else told, ascii)
+
+
+def _what(view: View, world: World) -> str:
     entry, step = view.step.entry, view.step
     bumped = entry.bump is not None and int(entry.bump) >= 0
     match entry.command, entry.given:
@@ -238,25 +254,19 @@ def _title(view: View, world: World) -> str:
             what = f"{name}, {outcome(step, view.beam)}"
         case _:
             what = f"the start in {world.name}"
-    return f"{entry.index if view.span is None else f't = {instants(*view.span)} s'}: {what}"
+    return what
 
 
-def _scale(limits: Bounds) -> str:
-    """What the picture covers."""
-    xmin, xmax, ymin, ymax = limits
-    return f"x {xmin:.4g}…{xmax:.4g} m  y {ymin:.4g}…{ymax:.4g} m"
+def scale_bar(canvas: Canvas) -> str:
+    """How long a length is in the picture: "├───┤ 2 m", at most a quarter of its width."""
+    longest = max(canvas.columns // 4, 1) * canvas.cell  # m
+    power = 10.0 ** math.floor(math.log10(longest))
+    length = power * max(n for n in (1, 2, 5) if n * power <= longest)
+    left, middle, right = "|-|" if canvas.ascii else "├─┤"
+    return f"{left}{middle * (round(length / canvas.cell) - 2)}{right} {length:g} m"
 
 
-def _title_line(title: str, scale: str, columns: int, ascii: bool) -> str:
-    """The title, and the scale at the right where there is room for both."""
-    if ascii:
-        title, scale = title.translate(PLAIN), scale.replace("…", "..")
-    title = printable(title, ascii)
-    gap = columns - cells(title) - cells(scale)
-    return title + " " * gap + scale if gap >= 2 else shorten(title, columns, ascii)
-
-
-def _legend_line(items: list[Item], columns: int, colour: bool, ascii: bool) -> str:
+def legend_line(items: list[Item], columns: int, colour: bool, ascii: bool) -> str:
     """As many items, from the first on, as there is room for."""
     line, left = "", columns
     for sample, word, paint_with in items:

@@ -3,20 +3,21 @@ keys from the terminal and the window, pictures on the screen that there is.
 """
 
 import itertools
+import math
 import os
 import shutil
 import sys
-from collections.abc import Callable
-from contextlib import redirect_stderr
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr
+from functools import partial
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from ekfsim.errors import EkfsimError, UsageError
-from ekfsim.files.results.writing import whole_file
+from ekfsim.errors import UsageError
 from ekfsim.files.yaml.telling import quoted
 from ekfsim.localization import play
-from ekfsim.provenance import metadata
 from ekfsim.scene import Scene
 from ekfsim.views.picture import limits
 from ekfsim.views.picture.limits import Limits
@@ -24,25 +25,35 @@ from ekfsim.views.picture.look import Look, get_ready
 from ekfsim.views.playback.playback import UntilFailure
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal import drawing as terminal
-from ekfsim.views.terminal.keyboard import Key, Keyboard, keys
-from ekfsim.views.terminal.player import Player, Screen
+from ekfsim.views.terminal.keys.interrupts import noticed, unnoticed
+from ekfsim.views.terminal.keys.keyboard import Keyboard, keys
+from ekfsim.views.terminal.pace import Pace
+from ekfsim.views.terminal.player import Player
+from ekfsim.views.terminal.screens import layout
+from ekfsim.views.terminal.screens.console import Console
+from ekfsim.views.terminal.screens.files import Pictures
+from ekfsim.views.terminal.screens.layout import Panes
+from ekfsim.views.terminal.screens.moment import Screen, Together
+from ekfsim.views.terminal.screens.stream import Stream
 
 if TYPE_CHECKING:
-    from ekfsim.views.picture.frames import Frame
-    from ekfsim.views.terminal.window import Window
+    from ekfsim.views.terminal.screens.window import Window
 
 # steps whose limits are known before the first picture; where a later one leaves them it grows
 LOOK_AHEAD = 3000
 POLL = 0.05  # s between two looks at the window while no key is pressed
+RESIZED = 0.2  # s between two looks at the size of the terminal
 MARGIN = 2  # rows of the terminal left free of the picture
 WIDEST, HIGHEST = 1000, 300  # columns and rows of a picture, whatever COLUMNS and LINES say
 
 
 def play_interactively(
-    scene: Scene, show: str, out: Path, look: Look, force: bool, explain: bool
-) -> None:
+    scene: Scene, show: str, out: Path, look: Look, force: bool, explain: bool,
+    auto: float | None = None,
+) -> None:  # fmt: skip
     """Step through a scene until a key quits. show : auto, window, text or files;
-    out : folder of saved pictures; explain : the narrative in its long form
+    out : folder of saved pictures; explain : the narrative in its long form;
+    auto : s after which it goes on by itself
 
     Raises UsageError where a window is asked for and there is none.
     """
@@ -53,21 +64,99 @@ def play_interactively(
     with redirect_stderr(StringIO()):  # what a filter prints it prints again as it is watched
         extent = limits.of_all(scene, ahead, look.probability)
     pictures = Pictures(scene, extent, look, out, force)
+    console = _console(scene, extent, look) if _in_place() else None
     window: Window | None = None
-    screen: Screen
+    screens: list[Screen] = []
     if window_wanted:
-        from ekfsim.views.terminal import window as windows
+        from ekfsim.views.terminal.screens import window as windows
 
-        screen = window = windows.Window(scene, extent, look)
+        window = windows.Window(scene, extent, look)
+        screens = [window]
     elif show == "files":
-        screen = pictures
+        screens = [pictures]
+    if console is not None:
+        told: Screen = console
+        console.panes = Panes.NUMBERS if screens else None
     else:
-        screen = Text(scene, extent, look.probability, sys.stdout)
-    with keys() as keyboard:
+        drawn = None if screens else partial(_drawn, scene, extent, look.probability)
+        told = Stream(sys.stdout, drawn, hinting=_somebody())
+    with _typed(console) as keyboard:
         player = Player(
-            scene, play(scene), screen, pictures.save, sys.stdout, look.probability, explain
-        )
-        player.play(keyboard if window is None else _either(keyboard, window))
+            scene, play(scene), Together([told, *screens]), pictures.save, look.probability,
+            explain, Pace(auto), noticed if console is not None else unnoticed,
+        )  # fmt: skip
+        player.play(partial(_next_key, keyboard, window, console))
+
+
+@contextmanager
+def _typed(console: Console | None) -> Iterator[Keyboard]:
+    """The keyboard; what was read of the run stays on the terminal when it is left."""
+    if console is None:
+        with keys() as keyboard:
+            yield keyboard
+        return
+    printed = StringIO()  # by a filter: nothing comes between the lines of the screen
+    try:
+        with redirect_stderr(printed), keys(drawn=console) as keyboard:
+            yield keyboard
+    finally:
+        sys.stderr.write(printed.getvalue())
+    sys.stdout.write(console.farewell())
+
+
+def _next_key(
+    keyboard: Keyboard, window: "Window | None", console: Console | None, timeout: float | None
+) -> str | None:
+    """The next key, pressed in the terminal or in the window; None where none is in that time."""
+    deadline = math.inf if timeout is None else time.monotonic() + timeout
+    while True:
+        left = max(0.0, deadline - time.monotonic())
+        if window is not None:
+            name = window.poll(min(POLL, left))
+            name = keyboard(0.0) if name is None else name
+        elif console is not None:
+            name = keyboard(min(RESIZED, left))
+            console.refresh()
+        else:
+            name = keyboard(None if left == math.inf else left)
+        if name is not None or left <= 0:
+            return name
+
+
+def _console(scene: Scene, extent: Limits, look: Look) -> Console:
+    out = sys.stdout
+    encoding = out.encoding or "utf-8"
+
+    def write(text: str) -> None:
+        """Past all buffers: a signal may come while one is written."""
+        left = text.encode(encoding, "replace")
+        while left:
+            left = left[os.write(out.fileno(), left) :]
+
+    out.flush()
+    means = layout.Look("NO_COLOR" not in os.environ, not _can_print("⠿", out))
+    return Console(scene, extent, look.probability, means, write)
+
+
+def _drawn(scene: Scene, extent: Limits, probability: float, view: View) -> str:
+    """The picture of a view in characters, as large as the terminal allows."""
+    columns, rows = shutil.get_terminal_size()
+    e, size = extent, (min(columns - 1, WIDEST), min(rows - MARGIN, HIGHEST))
+    coloured = sys.stdout.isatty() and not {"NO_COLOR"} & set(os.environ)
+    coloured = coloured and os.environ.get("TERM") != "dumb"
+    bounds = e.left, e.right, e.bottom, e.top
+    ascii = not _can_print("⠿", sys.stdout)
+    return terminal.draw(view, scene, probability, size, bounds, coloured, ascii)
+
+
+def _somebody() -> bool:
+    """Whether somebody sits before it."""
+    return sys.stdin.isatty() and sys.stdout.isatty()
+
+
+def _in_place() -> bool:
+    """Whether somebody sits before a terminal that can be drawn on in place."""
+    return _somebody() and os.environ.get("TERM", "dumb") != "dumb"
 
 
 def _display() -> bool:
@@ -79,7 +168,7 @@ def _window_available() -> bool:
     if not _display():
         return False  # without the second that it takes to import matplotlib
     get_ready()
-    from ekfsim.views.terminal.window import available
+    from ekfsim.views.terminal.screens.window import available
 
     return available()
 
@@ -91,85 +180,6 @@ def _why_no_window() -> str:
         told = f"MPLBACKEND names {quoted(wanted)}, which opens no window here"
         return f"{told}; unset it, or --show text draws in the terminal"
     return "there is no display to open a window on; --show text draws in the terminal"
-
-
-def _either(keyboard: Keyboard, window: "Window") -> Callable[[], Key]:
-    """The next key, pressed in the terminal or in the window."""
-
-    def next_key() -> Key:
-        while True:
-            key = window.poll(POLL)
-            if key is None:
-                key = keyboard(0.0)
-            if key is not None:
-                return key
-
-    return next_key
-
-
-class Text:
-    """Draws each view below the narrative, in characters."""
-
-    def __init__(self, scene: Scene, extent: Limits, probability: float, out: TextIO) -> None:
-        self._scene, self._extent, self._probability, self._out = scene, extent, probability, out
-        coloured = (
-            out.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
-        )
-        self._colour, self._ascii = coloured, not _can_print("⠿", out)
-
-    def show(self, view: View) -> None:
-        """Print the picture of a view, as large as the terminal allows."""
-        columns, rows = shutil.get_terminal_size()
-        e = self._extent
-        picture = terminal.draw(
-            view, self._scene, self._probability, (min(columns - 1, WIDEST), min(rows - MARGIN,
-            HIGHEST)),
-            (e.left, e.right, e.bottom, e.top), self._colour, self._ascii,
-        )  # fmt: skip
-        self._out.write(f"{picture}\n\n")
-        self._out.flush()
-
-
-class Pictures:
-    """Writes pictures to files: one that is rewritten for every view, and those that are saved."""
-
-    def __init__(self, scene: Scene, extent: Limits, look: Look, out: Path, force: bool) -> None:
-        self._scene, self._extent, self._look, self._out, self._force = (
-            scene,
-            extent,
-            look,
-            out,
-            force,
-        )
-        self._frame: Frame | None = None
-
-    def show(self, view: View) -> None:
-        """Rewrite the current picture in place."""
-        self._write(view, self._out / "current.png", force=True)
-
-    def save(self, view: View) -> str:
-        """Save the picture of a view under its number, beside those saved of it before;
-        says where, or why not.
-        """
-        path = self._out / f"view-{view.number:04}.png"
-        for again in itertools.count(2):
-            if self._force or not os.path.lexists(path):
-                break
-            path = self._out / f"view-{view.number:04}-{again}.png"
-        try:
-            self._write(view, path, self._force)
-        except EkfsimError as refusal:
-            return str(refusal)
-        return f"Saved {path}"
-
-    def _write(self, view: View, path: Path, force: bool) -> None:
-        if self._frame is None:
-            get_ready()
-            from ekfsim.views.picture.frames import Frame
-
-            self._frame = Frame(self._scene, self._extent, self._look)
-        with whole_file(path, force) as beside:
-            beside.write_bytes(self._frame.png(view, metadata(self._scene)))
 
 
 def _can_print(text: str, out: TextIO) -> bool:

@@ -127,8 +127,8 @@ def test_no_covariance_breaks_the_picture(scale: float, ascii: bool) -> None:
 def test_the_beam_is_drawn_until_the_estimate_is_revised() -> None:
     aimed = scene(Sense(math.pi / 2))
     beam, revised = picture(aimed, 1), picture(aimed, 2)
-    assert beam[0].startswith("1: sense at 90 deg, measured 4.000 m, predicted 4.000 m")
-    assert revised[0].startswith("1: sense at 90 deg, the estimate is revised")
+    assert beam[0].startswith("1 of 1: sense at 90 deg, measured 4.000 m, predicted 4.000 m")
+    assert revised[0].startswith("1 of 1: sense at 90 deg, the estimate is revised")
     assert [at(beam, 2.0, y) for y in (5.0, 6.0, 7.0)] == ["-"] * 3
     assert [at(revised, 2.0, y) for y in (5.0, 6.0, 7.0)] == [" "] * 3
     assert "beam" in beam[-1]
@@ -155,20 +155,20 @@ def test_a_beam_without_echo_is_told_and_not_drawn() -> None:
     lines = picture(nowhere, 1)
     assert "measured nothing, predicted 8.000 m" in lines[0]
     assert at(lines, 8.0, 4.0) == " "
-    assert picture(nowhere, 2)[0].startswith("1: sense at 0 deg, not used (no echo)")
+    assert picture(nowhere, 2)[0].startswith("1 of 1: sense at 0 deg, not used (no echo)")
 
 
 def test_titles() -> None:
     tour = scene(Move(1.0, 0.5, 0.25), Say("Look here."), Kidnap(3.0, 3.0, 0.0), Move(9.0, 0.0))
     titles = [picture(tour, n, ascii=False)[0] for n in range(5)]
     assert [re.split(" {2,}", title)[0] for title in titles] == [
-        "0: the start in room",
-        "1: move 1 m, turn 28.65°, slip 0.25",
-        "2: Look here.",
-        "3: the robot is carried away, and the filter is not told",
-        "4: move 9 m, turn 0°: bumped into a wall",
+        "0 of 4: the start in room",
+        "1 of 4: move 1 m, turn 28.65°, slip 0.25",
+        "2 of 4: Look here.",
+        "3 of 4: the robot is carried away, and the filter is not told",
+        "4 of 4: move 9 m, turn 0°: bumped into a wall",
     ]
-    assert all(title.endswith("  x 0…10 m  y 0…8 m") for title in titles)
+    assert all(title.endswith("  ├─────────┤ 2 m") for title in titles)  # 87 dots for 8 m
     assert all(cells(title) == 80 for title in titles)
 
 
@@ -257,7 +257,7 @@ def test_names_stand_inside_their_obstacles_or_nowhere() -> None:
 def test_drawing_loads_no_plotting_library() -> None:
     script = """
 import sys
-import ekfsim.views.terminal.drawing, ekfsim.views.terminal.keyboard
+import ekfsim.views.terminal.screens.console, ekfsim.views.terminal.keys.keyboard
 print([m for m in ("matplotlib", "shapely", "pydantic", "scipy") if m in sys.modules])
 """
     assert (

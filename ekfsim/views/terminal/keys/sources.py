@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from types import FrameType
-from typing import NoReturn, TextIO
+from typing import NoReturn, Protocol, TextIO
 
 SIGNAL_DELAY = 0.2  # s; a signal that comes just before a wait is noticed when that wait ends
 
@@ -17,6 +17,17 @@ SIGNAL_DELAY = 0.2  # s; a signal that comes just before a wait is noticed when 
 # nothing came.
 Source = Callable[[float | None], bytes | None]
 Handler = Callable[[int, FrameType | None], object]
+
+
+class Drawn(Protocol):
+    """What is drawn on a terminal while its keys are read."""
+
+    def enter(self) -> None:
+        """Take the terminal, at the start or again: what stood there is no longer known."""
+
+    def leave(self) -> None:
+        """Give it back as it was."""
+
 
 if sys.platform == "win32":
     import msvcrt
@@ -29,7 +40,7 @@ if sys.platform == "win32":
         return lambda timeout: stream.read(1).encode()
 
     @contextmanager
-    def terminal(stream: TextIO) -> Iterator[Source]:
+    def terminal(stream: TextIO, drawn: Drawn | None = None) -> Iterator[Source]:
         """The console hands over single keys anyhow."""
 
         def source(timeout: float | None) -> bytes | None:
@@ -45,7 +56,13 @@ if sys.platform == "win32":
                 raise KeyboardInterrupt
             return b"\x04" if character == "\x1a" else character.encode(errors="replace")
 
-        yield source
+        if drawn is not None:
+            drawn.enter()
+        try:
+            yield source
+        finally:
+            if drawn is not None:
+                drawn.leave()
 
 else:
     import select
@@ -80,9 +97,9 @@ else:
         return source
 
     @contextmanager
-    def terminal(stream: TextIO) -> Iterator[Source]:
+    def terminal(stream: TextIO, drawn: Drawn | None = None) -> Iterator[Source]:
         """Single keys without echo until the block ends."""
-        held = Held(stream.fileno())
+        held = Held(stream.fileno(), drawn)
         with _handling(held.handlers):
             try:
                 held.enter()
@@ -93,8 +110,8 @@ else:
     class Held:
         """A terminal that hands over single keys (cbreak: Ctrl-C and Ctrl-Z still signal)."""
 
-        def __init__(self, fd: int) -> None:
-            self._fd, self._source = fd, _descriptor(fd)
+        def __init__(self, fd: int, drawn: Drawn | None = None) -> None:
+            self._fd, self._source, self._drawn = fd, _descriptor(fd), drawn
             # the terminal's own settings, once they were changed
             self._original: list[int | list[bytes | int]] | None = None
             # a drawing library's compiled code may swallow what `end` raises: told at the next key
@@ -114,11 +131,15 @@ else:
                         self._original = termios.tcgetattr(self._fd)
                     # DRAIN, not FLUSH: keeps what was typed ahead
                     tty.setcbreak(self._fd, termios.TCSADRAIN)
+                    if self._drawn is not None:
+                        self._drawn.enter()
 
         def leave(self) -> None:
             """Put the terminal back as it was."""
             if self._original is not None and _in_foreground(self._fd):
                 with suppress(termios.error):
+                    if self._drawn is not None:
+                        self._drawn.leave()
                     termios.tcsetattr(self._fd, termios.TCSADRAIN, self._original)
 
         def wait(self, timeout: float | None) -> bytes | None:

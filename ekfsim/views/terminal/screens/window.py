@@ -14,8 +14,9 @@ from ekfsim.scene import Scene
 from ekfsim.views.picture.frames import DPI, INCHES, Picture
 from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import STANDARD, Look
-from ekfsim.views.playback.view import View
-from ekfsim.views.terminal.keyboard import CHARACTERS, Action, Key
+from ekfsim.views.terminal.keys.bindings import Action
+from ekfsim.views.terminal.keys.keyboard import NO_MORE
+from ekfsim.views.terminal.screens.moment import Moment
 
 BACKENDS = {  # matplotlib's, each with the modules of which it needs one
     "macosx": ("matplotlib.backends._macosx",),
@@ -31,13 +32,9 @@ TRIAL = (
     "import sys; from matplotlib import pyplot as p; "
     "p.switch_backend(sys.argv[1]); p.figure().canvas.draw()"
 )
-NAMES: dict[str, Key] = {  # keys that write no character, as matplotlib calls them
-    **dict.fromkeys(("right", "down", "pagedown", "enter", "space"), Action.NEXT),
-    **dict.fromkeys(("left", "up", "pageup", "backspace", "delete"), Action.BACK),
-    **dict.fromkeys(
-        ("escape", "ctrl+d", "ctrl+c", "ctrl+w", "cmd+w", "ctrl+q", "cmd+q"), Action.QUIT
-    ),
-    "f1": Action.HELP,
+NAMES = {  # keys that matplotlib calls by another name than the terminal's keyboard
+    **dict.fromkeys(("space",), " "),
+    **dict.fromkeys(("escape", "ctrl+c", "ctrl+w", "cmd+w", "ctrl+q", "cmd+q"), "q"),
 }
 MODIFIERS = ("shift", "control", "ctrl", "alt", "super", "cmd", "meta", "caps_lock", "num_lock")
 
@@ -79,6 +76,8 @@ class Window:
     keys pressed in it are handed on as those of the terminal are.
     """
 
+    keeps = False
+
     def __init__(self, scene: Scene, limits: Limits, look: Look = STANDARD) -> None:
         from matplotlib import pyplot, rcParams
 
@@ -86,9 +85,10 @@ class Window:
         for name in list(rcParams):
             if name.startswith("keymap."):  # n, p, q, s, r and the arrows are ours
                 rcParams[name] = []
-        self._pressed: deque[Key] = deque()
+        self._pressed: deque[str] = deque()
         self.closed = False
-        self._figure = pyplot.figure(num=f"ekfsim: {scene.world.name}", figsize=INCHES, dpi=DPI)
+        self._name = f"ekfsim: {scene.world.name}"
+        self._figure = pyplot.figure(num=self._name, figsize=INCHES, dpi=DPI)
         self._canvas: Any = self._figure.canvas  # matplotlib leaves most of its methods untyped
         self._picture = Picture(self._figure, scene, limits, look)
         self._canvas.mpl_connect("key_press_event", self._press)
@@ -96,16 +96,30 @@ class Window:
         self._picture.label()
         pyplot.show(block=False)
 
-    def show(self, view: View) -> None:
+    def show(self, moment: Moment) -> None:
         """Show a view, and do not wait."""
         if self.closed:
             return
-        if self._picture.show(view):
+        if self._picture.show(moment.view):
             self._picture.label()
+        self._say(moment.note or moment.place)
         self._canvas.draw_idle()
         self._canvas.flush_events()
 
-    def poll(self, timeout: float | None = None) -> Key | None:
+    def arrange(self, action: Action, count: int) -> str:
+        """There is nothing to arrange."""
+        return "The picture is in the window, the numbers are in the terminal"
+
+    def wait(self, note: str) -> None:
+        """Say it in the window's frame."""
+        self._say(note)
+        self._canvas.flush_events()
+
+    def _say(self, what: str) -> None:
+        """Say it in the window's frame, beside the name of the world."""
+        self._canvas.manager.set_window_title(f"{self._name}: {what}")
+
+    def poll(self, timeout: float | None = None) -> str | None:
         """The next key, or None where none is pressed for `timeout` s.
         Closing the window asks to quit.
         """
@@ -116,7 +130,7 @@ class Window:
             waited += wait
         if self._pressed:
             return self._pressed.popleft()
-        return Action.QUIT if self.closed else None
+        return NO_MORE if self.closed else None
 
     def _press(self, event: Event) -> None:
         assert isinstance(event, KeyEvent)
@@ -130,12 +144,10 @@ class Window:
         self._canvas.stop_event_loop()
 
 
-def key_of(name: str | None) -> Key | None:
-    """The key that matplotlib gives this name; None for a modifier alone.
+def key_of(name: str | None) -> str | None:
+    """What the terminal's keyboard calls the key of this name; None for a modifier alone.
 
-    >>> key_of("n"), key_of("right"), key_of("7"), key_of("shift"), key_of("x")
-    (<Action.NEXT: 'next'>, <Action.NEXT: 'next'>, 7, None, <Action.UNKNOWN: 'unknown'>)
+    >>> key_of("n"), key_of("right"), key_of("7"), key_of("shift"), key_of("escape")
+    ('n', 'right', '7', None, 'q')
     """
-    if not name or name in MODIFIERS:
-        return None
-    return NAMES.get(name) or CHARACTERS.get(name.lower(), Action.UNKNOWN)
+    return None if not name or name in MODIFIERS else NAMES.get(name, name)

@@ -1,7 +1,7 @@
 """One key at a time, from a terminal, a console window or a pipe.
 
     with keys() as next_key:
-        while (key := next_key()) is not Action.QUIT:
+        while (key := next_key()) != "q":
             ...
 
 The terminal hands over single keys without echo for the whole block, so that keys held down or
@@ -14,79 +14,42 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from enum import Enum
 from typing import TextIO, overload
 
-from ekfsim.views.terminal.sources import Source, piped, terminal
+from ekfsim.views.terminal.keys.sources import Drawn, Source, piped, terminal
 
+NO_MORE = ""  # the key that comes when the input is over
+UNNAMED = "unnamed"  # a key that has no name here
 
-class Action(Enum):
-    """What a key asks for."""
-
-    NEXT = "next"
-    BACK = "back"
-    QUIT = "quit"
-    RESTART = "restart"
-    SAVE = "save"
-    EXPLAIN = "explain"
-    HELP = "help"
-    UNKNOWN = "unknown"
-
-
-Key = Action | int  # a digit is its number
-
-HELP = """\
-n  space  Enter  right  down  PageDown    next view
-p  Backspace  left  up  PageUp            previous view
-12n  12p                                  twelve of them
-r  restart      s  save the picture       ?  h  this help
-e  the narrative in its long form: every equation; e again for the short one
-q  Ctrl-D  quit"""
-
-CHARACTERS: dict[str, Key] = {
-    **{str(digit): digit for digit in range(10)},
-    **dict.fromkeys("n \r\n", Action.NEXT),
-    **dict.fromkeys("p\b\x7f", Action.BACK),
-    **dict.fromkeys("q\x04", Action.QUIT),
-    **dict.fromkeys("?h", Action.HELP),
-    "r": Action.RESTART,
-    "s": Action.SAVE,
-    "e": Action.EXPLAIN,
+CHARACTERS = {  # keys that send a control character
+    **dict.fromkeys("\r\n", "enter"),
+    **dict.fromkeys("\b\x7f", "backspace"),
+    "\t": "tab",
+    "\x04": "ctrl+d",
+    "\x1a": "ctrl+z",
 }
-SEQUENCES: dict[str, Action] = {  # what follows "Esc [" or "Esc O", modifiers left out
-    **dict.fromkeys(["C", "B", "6~"], Action.NEXT),  # → ↓ PageDown
-    **dict.fromkeys(["D", "A", "5~"], Action.BACK),  # ← ↑ PageUp
-    **dict.fromkeys(["P", "[A", "11~"], Action.HELP),  # F1 of xterm, of the Linux console, of rxvt
+SEQUENCES = {  # what follows "Esc [" or "Esc O", modifiers left out
+    "A": "up",
+    "B": "down",
+    "C": "right",
+    "D": "left",
+    "5~": "pageup",
+    "6~": "pagedown",
+    "3~": "delete",
+    **dict.fromkeys(["H", "1~", "7~"], "home"),  # of xterm, of the Linux console, of rxvt
+    **dict.fromkeys(["F", "4~", "8~"], "end"),
+    **dict.fromkeys(["P", "[A", "11~"], "f1"),
 }
 ALONE = 0.8  # s after which an Esc begins no other key: over a slow line bytes come one by one
 PATIENCE = 1.0  # s for the rest of a key whose beginning has come
 ANSWER_DELAY = 0.05  # s for the next byte of what a terminal answers: it comes together
 CONTINUATIONS = {0b1100: 1, 0b1101: 1, 0b1110: 2, 0b1111: 3}  # by UTF-8's first four bits
-MOST = 9999  # repetitions: more digits than that are a hand resting on the keyboard
-
-
-class Counted:
-    """Digits before a key repeat it: 1, 2, n is twelve times `next`.
-
-    >>> counted = Counted()
-    >>> [counted.press(key) for key in (1, 2, Action.NEXT, Action.NEXT)]
-    [None, None, (<Action.NEXT: 'next'>, 12), (<Action.NEXT: 'next'>, 1)]
-    """
-
-    def __init__(self) -> None:
-        self.typed = 0  # the number so far, 0 where none was typed
-
-    def press(self, key: Key) -> tuple[Action, int] | None:
-        """The action and how often, None while a number is typed. Only next and back repeat."""
-        if not isinstance(key, Action):
-            self.typed = min(10 * self.typed + key, MOST)
-            return None
-        count, self.typed = max(self.typed, 1), 0
-        return key, count if key in (Action.NEXT, Action.BACK) else 1
 
 
 class Keyboard:
-    """Puts bytes together to keys. Holds back no more than the bytes of the key it is reading."""
+    """Puts bytes together to names of keys.
+    Holds back no more than the bytes of the key it is reading.
+    """
 
     def __init__(self, source: Source, skipped: str = "") -> None:
         self._source = source
@@ -98,11 +61,14 @@ class Keyboard:
         self._alone_at = math.inf  # when that Esc is said to be a key of its own
 
     @overload
-    def __call__(self) -> Key: ...
+    def __call__(self) -> str: ...
     @overload
-    def __call__(self, timeout: float | None) -> Key | None: ...
-    def __call__(self, timeout: float | None = None) -> Key | None:
-        """The next key, QUIT at the end of the input, None where none came for `timeout` s."""
+    def __call__(self, timeout: float | None) -> str | None: ...
+    def __call__(self, timeout: float | None = None) -> str | None:
+        """The name of the next key: its character, or what it is called ("left", "enter").
+
+        NO_MORE at the end of the input, None where none came for `timeout` s.
+        """
         deadline = math.inf if timeout is None else time.monotonic() + timeout
         while True:
             until = min(deadline, self._alone_at)
@@ -111,20 +77,20 @@ class Keyboard:
             )
             if character is None and self._alone_at <= deadline:
                 self._alone_at = math.inf
-                return Action.UNKNOWN
+                return "escape"
             if character is None:
                 return None
             if character == "":
-                return Action.QUIT
+                return NO_MORE
             escaped, soon = self._escaped, self._alone_at < math.inf
             self._escaped = character == "\x1b"
             self._alone_at = time.monotonic() + ALONE if self._escaped else math.inf
             if escaped and character in "[O":
-                return SEQUENCES.get(self._parameters(), Action.UNKNOWN)
+                return SEQUENCES.get(self._parameters(), UNNAMED)
             if escaped and soon and character in "]P_^X":
                 return self._answer()
             if not self._escaped and character not in self._skipped:  # Alt and a key is that key
-                return CHARACTERS.get(character.lower(), Action.UNKNOWN)
+                return CHARACTERS.get(character, character)
 
     def _byte(self, timeout: float | None) -> bytes | None:
         """The next byte, b"" at the end, None where it does not come in time."""
@@ -149,11 +115,11 @@ class Keyboard:
             read += following
         return read.decode(errors="replace")
 
-    def _answer(self) -> Action:
+    def _answer(self) -> str:
         """Pass over what a terminal answers late to a question of some other program."""
         while (byte := self._byte(ANSWER_DELAY)) and byte not in b"\a\\":
             pass
-        return Action.UNKNOWN
+        return UNNAMED
 
     def _parameters(self) -> str:
         """The rest of a sequence, without modifiers: "C" for "1;5C", "5~" for "5;2~"."""
@@ -172,13 +138,16 @@ class Keyboard:
 
 
 @contextmanager
-def keys(stream: TextIO | None = None) -> Iterator[Keyboard]:
-    """Single keys of a stream, standard input unless told; of a pipe all but line ends."""
+def keys(stream: TextIO | None = None, drawn: Drawn | None = None) -> Iterator[Keyboard]:
+    """Single keys of a stream, standard input unless told; of a pipe all but line ends.
+
+    drawn : what takes the terminal that the keys come from as its screen, and gives it back
+    """
     stream = stream or sys.stdin
     if stream is None or stream.closed:  # some start a program without standard input
         yield Keyboard(lambda timeout: b"")
     elif not stream.isatty():
         yield Keyboard(piped(stream), skipped="\r\n")
     else:
-        with terminal(stream) as source:
+        with terminal(stream, drawn) as source:
             yield Keyboard(source)

@@ -1,0 +1,120 @@
+"""A terminal with the run on one screen, redrawn in place."""
+
+import shutil
+from collections.abc import Callable
+
+from ekfsim.scene import Scene
+from ekfsim.views.picture.limits import Limits
+from ekfsim.views.terminal.braille import shorten
+from ekfsim.views.terminal.keys.bindings import Action
+from ekfsim.views.terminal.screens.layout import Layout, Look, Panes, ample
+from ekfsim.views.terminal.screens.moment import Moment
+
+WIDEST, HIGHEST = 1000, 300  # columns and rows of a screen, whatever COLUMNS and LINES say
+OTHER_SCREEN, OWN_SCREEN = "\x1b[?1049h\x1b[?25l", "\x1b[?25h\x1b[?1049l"
+LEFT = 20  # views whose narrative stays on the terminal when the run is left
+
+
+class Console:
+    """Shows a moment on the terminal's second screen; what stood on the first comes back at the
+    end, and below it what has been read.
+    """
+
+    keeps = False
+
+    def __init__(
+        self,
+        scene: Scene,
+        extent: Limits,
+        probability: float,
+        look: Look,
+        write: Callable[[str], object],
+        panes: Panes | None = None,
+        size: Callable[[], tuple[int, int]] = shutil.get_terminal_size,
+    ) -> None:
+        self._scene, self._extent, self._probability = scene, extent, probability
+        self._look, self._write, self._size = look, write, size
+        self.panes = panes  # what was asked for; None: as much as there is room for
+        self._scroll: int | None = None  # None: to where the numbers of this view begin
+        self._scrolled = 0  # where that was
+        self._moment: Moment | None = None
+        self._read: dict[int, str] = {}  # narrative of what has been on the screen, by view
+        self._drawn: list[str] = []  # the lines that stand there
+        self._drawn_for = (0, 0)
+        self._inside = False
+
+    def enter(self) -> None:
+        """Take the terminal, at the start or again after Ctrl-Z."""
+        self._inside, self._drawn_for = True, (0, 0)
+        self._write(OTHER_SCREEN)
+
+    def leave(self) -> None:
+        """Give the terminal back."""
+        if self._inside:
+            self._inside = False
+            self._write(OWN_SCREEN)
+
+    def farewell(self) -> str:
+        """What is to stay on the terminal: what was read of the run, as it was told."""
+        numbers = sorted(self._read)[-LEFT:]
+        return "".join(self._read[number] for number in numbers)
+
+    def show(self, moment: Moment) -> None:
+        """Draw this in place of the last one."""
+        last, self._moment = self._moment, moment
+        if last is None or (last.view.number, last.page) != (moment.view.number, moment.page):
+            self._scroll = None
+        self._read[moment.view.number] = moment.narrative
+        self._draw()
+
+    def refresh(self) -> None:
+        """Draw again where the terminal has another size, or was somebody else's."""
+        if self._moment is not None and self._inside and self._drawn_for != self._now():
+            self._drawn = []
+            self._draw()
+
+    def arrange(self, action: Action, count: int) -> str:
+        """Turn to other panes, or scroll the numbers by half a screen."""
+        if action is not Action.PANES:
+            by = max(self._now()[1] // 4, 1) * count
+            self._scroll = max(self._scrolled + (by if action is Action.DOWN else -by), 0)
+            return ""
+        turn = {Panes.BOTH: Panes.PICTURE, Panes.PICTURE: Panes.NUMBERS, Panes.NUMBERS: Panes.BOTH}
+        self.panes, self._scroll = turn[self._what(self._now())], None
+        return ""
+
+    def wait(self, note: str) -> None:
+        """Say in the status line how far a long way has come."""
+        columns, rows = self._now()
+        if self._inside:
+            self._write(f"\x1b[{rows};1H{shorten(note, columns, self._look.ascii)}\x1b[K")
+            self._drawn = self._drawn[: rows - 1]
+
+    def _draw(self) -> None:
+        assert self._moment is not None
+        size = columns, rows = self._now()
+        if not self._inside:
+            return
+        e = self._extent
+        layout = Layout(self._scene, self._probability, (e.left, e.right, e.bottom, e.top),
+                        columns, rows, self._look)  # fmt: skip
+        lines, scroll = layout.lines(self._moment, self._what(size), self._scroll)
+        self._scrolled = scroll
+        fresh = self._drawn_for != size
+        changed = [
+            f"\x1b[{row};1H{line}\x1b[K"
+            for row, line in enumerate(lines, start=1)
+            if fresh or row > len(self._drawn) or line != self._drawn[row - 1]
+        ]
+        self._write(("\x1b[2J" if fresh else "") + "".join(changed))
+        self._drawn, self._drawn_for = lines, size
+
+    def _what(self, size: tuple[int, int]) -> Panes:
+        if self.panes is not None:
+            return self.panes
+        return Panes.BOTH if ample(*size) else Panes.PICTURE
+
+    def _now(self) -> tuple[int, int]:
+        """Columns and rows that may be written on; the last column is left free."""
+        columns, rows = self._size()
+        return max(min(columns - 1, WIDEST), 1), max(min(rows, HIGHEST), 1)

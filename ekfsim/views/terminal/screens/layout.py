@@ -1,0 +1,215 @@
+"""How a terminal is divided: the lines of the screen for a moment, and nothing that writes them.
+
+title, over the whole width
+picture │ numbers          side by side, or one above the other, or one of the two
+status line
+"""
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from ekfsim.printable import shown
+from ekfsim.scene import Scene
+from ekfsim.views.terminal.braille import (
+    CONTROL_SEQUENCE,
+    Bounds,
+    Canvas,
+    cells,
+    paint,
+    printable,
+    shorten,
+)
+from ekfsim.views.terminal.drawing import PLAIN, depict, legend_line, scale_bar, title
+from ekfsim.views.terminal.screens.moment import Moment
+from ekfsim.views.terminal.wrapping import within, wrapped
+
+# from so many columns side by side, from so many rows one above the other; the last column of a
+# terminal is left free
+WIDE, HIGH = 110 - 1, 36
+NUMBERS = (48, 78)  # columns of the numbers beside a picture, from and to
+SHARE = 0.42  # of the width for them
+FLAT = 1.3  # how much larger a picture must become for the numbers to stand below it instead
+TITLE_LINES = 3
+BOLD, REVERSE, STRONG = "1", "7", "1;7"
+
+
+class Panes(Enum):
+    """What stands on the screen."""
+
+    BOTH = "picture and numbers"
+    PICTURE = "the picture"
+    NUMBERS = "the numbers"
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What a screen may use."""
+
+    colour: bool
+    ascii: bool
+
+    def strong(self, text: str, how: str = BOLD) -> str:
+        """A text that stands out, where the terminal may."""
+        return paint(text, how if self.colour else "")
+
+
+def ample(columns: int, rows: int) -> bool:
+    """Whether there is room for picture and numbers in one screen."""
+    return columns >= WIDE or rows >= HIGH
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Divides a terminal of some size."""
+
+    scene: Scene
+    probability: float
+    limits: Bounds  # what the picture shows, m
+    columns: int
+    rows: int
+    look: Look
+
+    def lines(self, moment: Moment, panes: Panes, scroll: int | None) -> tuple[list[str], int]:
+        """The lines of the screen, one for each row, and how far the numbers are scrolled.
+
+        scroll : lines of the numbers above the pane; None: as far as this view's own begin, where
+        they would not be seen
+        """
+        foot = self._foot(moment, panes)
+        if moment.page:
+            body = [w for line in moment.page.split("\n") for w in wrapped(line, self.columns)]
+            lines, scroll = self._scrolled(body, self.rows - len(foot), scroll or 0)
+            return [*_filled(lines, self.rows - len(foot)), *foot][-self.rows :], scroll
+        told = title(moment.view, self.scene, self.look.ascii)
+        heads = within(told, self.columns, min(TITLE_LINES, max(self.rows // 6, 1)),
+                       self.look.ascii)  # fmt: skip
+        room = self.rows - len(heads) - len(foot)
+        heads = [self.look.strong(line) for line in heads]
+        if room < 2:
+            return [*heads, *foot][: self.rows - 1] + foot[-1:], 0
+        body, scroll = self._body(moment, panes, room, scroll)
+        return [*heads, *_filled(body, room), *foot], scroll
+
+    def _body(
+        self, moment: Moment, panes: Panes, room: int, scroll: int | None
+    ) -> tuple[list[str], int]:
+        if panes is Panes.PICTURE:
+            return self._picture(moment, self.columns, room), 0
+        if panes is Panes.NUMBERS:
+            return self._numbers(moment, self.columns, room, scroll)
+        beside = min(max(round(SHARE * self.columns), NUMBERS[0]), NUMBERS[1])
+        left = self.columns - beside - 3
+        if self.columns < WIDE or (self.rows >= HIGH and self._flat(left, room)):
+            told = self._wrapped(moment, self.columns)
+            high = max(min(room - len(told[0]) - 1, self._needed(self.columns)), (room + 1) // 2)
+            picture = self._picture(moment, self.columns, min(high, self._needed(self.columns)))
+            numbers, scroll = self._numbers(moment, self.columns, room - len(picture) - 1, scroll)
+            rule = ("-" if self.look.ascii else "─") * self.columns
+            return [*picture, rule, *numbers], scroll
+        picture = self._picture(moment, left, room)
+        numbers, scroll = self._numbers(moment, beside, room, scroll)
+        bar = " | " if self.look.ascii else " │ "
+        return [
+            _padded(one, left) + bar + other
+            for one, other in zip(picture, _filled(numbers, room), strict=True)
+        ], scroll
+
+    def _picture(self, moment: Moment, columns: int, rows: int) -> list[str]:
+        """The picture with its legend, in exactly so many rows."""
+        canvas = Canvas(columns, max(rows - 1, 1), self.limits, self.look.ascii)
+        items = depict(canvas, moment.view, self.scene, self.probability)
+        bar = scale_bar(canvas)
+        legend = legend_line(items, columns - cells(bar) - 2, self.look.colour, self.look.ascii)
+        drawn = canvas.render(self.look.colour).split("\n")
+        return [*drawn, _padded(legend, columns - cells(bar)) + bar][:rows]
+
+    def _numbers(
+        self, moment: Moment, columns: int, rows: int, scroll: int | None
+    ) -> tuple[list[str], int]:
+        """The narrative of the step, as far as there is room; and how far it is scrolled."""
+        lines, own = self._wrapped(moment, columns)
+        if scroll is None:  # the newest is seen whole, or at least from its beginning
+            scroll = min(own, max(len(lines) - rows, 0)) if own else 0
+        lines, scroll = self._scrolled(lines, rows, scroll)
+        return [
+            self.look.strong(line) if line.startswith("==>") else line for line in lines
+        ], scroll
+
+    def _wrapped(self, moment: Moment, columns: int) -> tuple[list[str], int]:
+        """The narrative of the step in lines, and at which of them that of this view begins."""
+        before = self._broken(moment.before, columns)
+        return [*before, *self._broken(moment.narrative, columns)], len(before)
+
+    def _broken(self, text: str, columns: int) -> list[str]:
+        if self.look.ascii:
+            text = text.translate(PLAIN).encode("ascii", "replace").decode()
+        lines = shown(text).rstrip("\n").split("\n") if text else []
+        return [part for line in lines for part in wrapped(line, columns)]
+
+    def _scrolled(self, lines: list[str], rows: int, scroll: int) -> tuple[list[str], int]:
+        """So many of the lines as fit, with signs where there are more."""
+        if len(lines) <= rows or rows < 3:
+            return lines[:rows], 0
+        up, down = ("^", "v") if self.look.ascii else ("▲", "▼")
+        scroll = min(scroll, len(lines) - rows + 1)  # the sign above takes a row
+        above = [self.look.strong(f"{up} {scroll + 1} more: k", REVERSE)] if scroll > 0 else []
+        first = scroll + 1 if scroll > 0 else 0
+        left = len(lines) - first - (rows - len(above))
+        if left <= 0:
+            return [*above, *lines[first:]], scroll
+        below = [self.look.strong(f"{down} {left + 1} more: j", REVERSE)]
+        return [*above, *lines[first : first + rows - len(above) - 1], *below], scroll
+
+    def _foot(self, moment: Moment, panes: Panes) -> list[str]:
+        """The status line; more than one where what there is to say is longer."""
+        place = moment.place + (f" · {moment.typed}" if moment.typed else "")
+        note = " ".join(shown(moment.note).split())
+        hints = ["n next", "? keys", self._other(panes), "p back", "q quit"]
+        if moment.page:
+            hints = ["any key goes back to the run"]
+        if note:
+            told = f"{place} · {note}"
+            lines = [told] if cells(told) <= self.columns else within(note, self.columns, 3, False)
+        else:
+            lines = [_joined([place, *hints], self.columns)]
+        lines = lines[: max(self.rows // 3, 1)]
+        if self.look.ascii:
+            lines = [printable(line.translate(PLAIN).replace("·", "-"), True) for line in lines]
+        lines = [shorten(line, self.columns, self.look.ascii) for line in lines]
+        return [self.look.strong(_padded(line, self.columns), REVERSE) for line in lines]
+
+    def _other(self, panes: Panes) -> str:
+        return f"v {(Panes.NUMBERS if panes is Panes.PICTURE else Panes.PICTURE).value}"
+
+    def _flat(self, left: int, room: int) -> bool:
+        """Whether a picture over the whole width, with numbers below, is much the larger."""
+        left_x, right, bottom, top = self.limits
+        width, height = max(right - left_x, 1e-9), max(top - bottom, 1e-9)
+        beside = min(left / width, 2 * room / height)
+        above = min(self.columns / width, room / height)  # half of the rows
+        return above > FLAT * beside
+
+    def _needed(self, columns: int) -> int:
+        """The rows that a picture of so many columns fills, with its legend."""
+        left, right, bottom, top = self.limits
+        shape = max(top - bottom, 1e-9) / max(right - left, 1e-9)
+        return min(math.ceil(columns * shape / 2) + 1, self.rows)
+
+
+def _joined(parts: list[str], columns: int) -> str:
+    """As many parts, from the first on, as there is room for."""
+    line = parts[0]
+    for part in parts[1:]:
+        if cells(line) + 3 + cells(part) <= columns:
+            line = f"{line} · {part}"
+    return line
+
+
+def _filled(lines: list[str], rows: int) -> list[str]:
+    return [*lines[:rows], *[""] * (rows - len(lines))]
+
+
+def _padded(line: str, columns: int) -> str:
+    """A line, coloured or not, with blanks up to so many cells."""
+    return line + " " * (columns - cells(CONTROL_SEQUENCE.sub("", line)))
