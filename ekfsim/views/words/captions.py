@@ -73,7 +73,7 @@ def notes(
     if view.beam:  # there is much to say of it
         return _notes(view, scene, read, probability)
     parted = (apart.told for apart in view.apart if apart.since is not None)
-    said = [losing(view), meaning(view), *_notes(view, scene, read, probability), *parted]
+    said = [losing(view), meaning(view), *parted, *_notes(view, scene, read, probability)]
     return [paragraph for paragraph in said if paragraph]
 
 

@@ -296,15 +296,13 @@ def _shown(evidence: Evidence) -> str:
     """Whether the readings of a run that is lost show it; nothing where there were none."""
     if not evidence.nis_dof:
         return ""
-    total = f"{figure(evidence.nis_sum)} of {count(evidence.nis_readings, 'reading')}"
-    low, high = map(figure, evidence.nis_band)
-    band = f"{_percent(BAND)} band {low} to {high}"
-    if evidence.nis_sum <= evidence.nis_band[1]:
-        return f", and its readings do not show it: ΣNIS {total}, not above its {band}"
-    return (
-        f"; its readings show it since step {evidence.nis_outside_from}: "
-        f"ΣNIS {total}, above its {band}"
-    )
+    low, high = evidence.nis_band
+    total = f"ΣNIS {figure(evidence.nis_sum)} of {evidence.nis_readings}"
+    band = f"{figure(low)} to {figure(high)} ({_percent(BAND)})"
+    if evidence.nis_sum <= high:
+        side = "within" if evidence.nis_sum >= low else "below"
+        return f"; its readings do not show it: {total} {side} {band}"
+    return f"; its readings show it since step {evidence.nis_outside_from}: {total} above {band}"
 
 
 def figure(value: float) -> str:

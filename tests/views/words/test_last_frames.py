@@ -1,0 +1,73 @@
+"""Of each packaged lesson the last picture alone answers: is the filter to be believed, and since
+when not?
+"""
+
+import re
+
+import pytest
+from scipy.stats import chi2
+
+from ekfsim.files.packaged import packaged
+from ekfsim.files.scenes.load import load_scene
+from ekfsim.localization import play
+from ekfsim.views.picture.frames import COLUMNS, LINES
+from ekfsim.views.picture.lettering import wrapped
+from ekfsim.views.playback.playback import views
+from ekfsim.views.words.captions import notes
+from ekfsim.views.words.judgement import judgement
+
+LESSONS = sorted(name for name in packaged("commands") if name.startswith("diverge-"))
+
+
+def since(indices, condemned):
+    """From which index on all are condemned, up to the last; None where the last is not."""
+    first = None
+    for index, one in zip(indices, condemned, strict=True):
+        first = None if not one else index if first is None else first
+    return first
+
+
+def answer(steps):
+    """Whether to believe a filter at the end, as a word, and the step since when not."""
+    judged = [s for s in steps if s.nees is not None]
+    beyond = [
+        bool(s.nees.impossible or s.nees.value > chi2.ppf(0.999, int(s.nees.dof))) for s in judged
+    ]
+    lost = since([s.entry.index for s in judged], beyond)
+    read = [s for s in steps if s.correction is not None and s.correction.nis == s.correction.nis]
+    sums, total = [], 0.0
+    for n, s in enumerate(read, 1):
+        total += float(s.correction.nis)
+        sums.append((total, *chi2.interval(0.99, n)))
+    above = since([s.entry.index for s in read], [total > high for total, _, high in sums])
+    if lost is not None:
+        return "lost", lost, above
+    if above is not None:
+        return "over-confident", above, above
+    total, low, _ = sums[-1]
+    return ("over-cautious" if total < low else "consistent"), None, None
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_the_last_picture_says_whether_to_believe_the_filter_and_since_when_not(name):
+    scene = load_scene(name)
+    steps = list(play(scene))
+    last = list(views(steps))[-1]
+    word, not_since, shown_since = answer(steps)
+    line = judgement(last, scene, 0.954)
+    said = wrapped(notes(last, scene, None), COLUMNS, LINES)
+    verdict = f"Verdict: {word}" + ("" if not_since is None else f" since step {not_since}")
+    assert re.match(rf"{verdict}\b(?! since)", line)
+    assert len(line) <= COLUMNS
+    if not_since is None:
+        assert said[0].startswith("to be believed")
+    else:
+        assert said[0].startswith(f"not to be believed since step {not_since}")
+    if word == "lost":
+        shows = "do not show it" if shown_since is None else f"show it since step {shown_since}"
+        assert f"its readings {shows}: ΣNIS" in said[0]
+    assert not said[-1].endswith("…")
+
+
+def test_every_mechanism_is_among_them():
+    assert {name[8:10] for name in LESSONS} == {f"{n:02}" for n in range(13)}
