@@ -9,7 +9,8 @@ A notebook needs no more than this module:
 >>> print(ekfsim.narrate(views[1], scene).splitlines()[0])
 ==>The robot moved: distance=3, angle=90
 
-and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes.
+and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes;
+`ekfsim.table(steps)` has the columns of `run --csv`, a DataFrame where pandas is installed.
 `scene.with_("noise.rangeSigmaRatio", 0.1)` is the same scene with another number, told to the truth
 and to the filter alike, as `--set` does it; so are `scene.with_(filter="ukf", gate=0.99, seed=3)`
 and `scene.with_("filter.particles", 20_000)`, a number that a filter alone has (see Tuning).
@@ -95,6 +96,7 @@ if TYPE_CHECKING:
     from ekfsim.scene import Scene as Scene
     from ekfsim.simulation import simulate as simulate
     from ekfsim.student.own.bring import bring as bring
+    from ekfsim.views.notebook.table import table as table
     from ekfsim.views.picture.frames import draw as draw
     from ekfsim.views.picture.look import Look as Look
     from ekfsim.views.playback.playback import Playback as Playback
@@ -125,6 +127,7 @@ _HOMES = {
     "simulation": ("simulate",),
     "student.own.bring": ("bring",),
     "views.words.closing": ("conclude",),
+    "views.notebook.table": ("table",),
     "views.picture.frames": ("draw",),
     "views.picture.look": ("Look",),
     "views.words.narrative": ("narrate",),

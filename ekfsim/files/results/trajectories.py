@@ -14,7 +14,7 @@ from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import ellipse
 from ekfsim.printable import cell
 from ekfsim.provenance import provenance, told_in_a_line
-from ekfsim.records import Control, Reading, Step
+from ekfsim.records import Control, Nees, Reading, Step
 from ekfsim.scene import Scene
 
 
@@ -92,40 +92,41 @@ class Table:
 
     def __init__(self, file: TextIO, scene: Scene, confidence: float) -> None:
         self._origin = [cell(_cell(value)) for value in provenance(scene).values()]
-        self._confidence, self._layout, self._commanded = (
-            confidence,
-            scene.world.layout,
-            scene.commanded,
-        )
+        self._confidence, self._commanded = confidence, scene.commanded
         self._csv = csv.writer(file, lineterminator="\n")
-        columns = COLUMNS if self._commanded else DRIVEN_COLUMNS
-        self._csv.writerow([*columns, *provenance(scene), "confidence", "format"])
+        self._csv.writerow(
+            [*columns_of(self._commanded), *provenance(scene), "confidence", "format"]
+        )
 
     def write(self, step: Step) -> None:
         """Append the row of this step."""
-        x, P = posed(step.posterior, self._layout)
-        drawn, measured = ellipse(P, self._confidence), step.nees
-        self._csv.writerow(
-            [
-                step.entry.index,
-                *([_kind(step)] if self._commanded else _instrument(step)),
-                *x.tolist(),
-                *(float(P[i, j]) for i in range(3) for j in range(i, 3)),
-                *([""] * 3 if step.entry.truth is None else step.entry.truth.tolist()),
-                *(_reading(step) if self._commanded else _numbers(step)),
-                *map(float, (drawn.major, drawn.minor, drawn.orientation)),
-                *(
-                    [""] * 3
-                    if measured is None
-                    else map(
-                        _cell, (float(measured.value), int(measured.dof), bool(measured.impossible))
-                    )
-                ),
-                *self._origin,
-                self._confidence,
-                FORMAT,
-            ]
-        )
+        row = row_of(step, self._commanded, self._confidence)
+        self._csv.writerow([*row, *self._origin, self._confidence, FORMAT])
+
+
+def columns_of(commanded: bool) -> tuple[str, ...]:
+    """The columns that say what became of a step: of a robot that obeys commands, or of another."""
+    return COLUMNS if commanded else DRIVEN_COLUMNS
+
+
+def row_of(step: Step, commanded: bool, confidence: float) -> list[object]:
+    """What stands in them; "" where a number is undefined."""
+    x, P = posed(step.posterior, step.layout)
+    drawn, measured = ellipse(P, confidence), step.nees
+    return [
+        step.entry.index,
+        *([_kind(step)] if commanded else _instrument(step)),
+        *x.tolist(),
+        *(float(P[i, j]) for i in range(3) for j in range(i, 3)),
+        *([""] * 3 if step.entry.truth is None else step.entry.truth.tolist()),
+        *(_reading(step) if commanded else _numbers(step)),
+        *map(float, (drawn.major, drawn.minor, drawn.orientation)),
+        *([""] * 3 if measured is None else map(_cell, _judged(measured))),
+    ]
+
+
+def _judged(measured: Nees) -> tuple[float, int, bool]:
+    return float(measured.value), int(measured.dof), bool(measured.impossible)
 
 
 def _kind(step: Step) -> str:
