@@ -20,7 +20,7 @@ def short(value: float) -> Number:
     >>> short(1 / 3), short(2.0), short(math.nan), short(6.1e-17)
     (0.333333, 2, None, 0)
     """
-    return _plain(float(f"{value:.{DIGITS}g}") if abs(value) > NOISE else 0.0)
+    return _plain(0.0 if abs(value) < NOISE else float(f"{value:.{DIGITS}g}"))
 
 
 def length(value: float) -> Number:

@@ -66,7 +66,7 @@ class Page:
             steps = kept(first, [tally.write])
             limits = limits_of_run.of_all(scene, (steps, *others), look.probability)
         origin, holding = origin_of(limits), Holding(tally.views, every)
-        teller = Teller(scene, look, origin, 2 * limits.size, expanded_length(scene.commands))
+        teller = Teller(scene, look, origin, limits.size, expanded_length(scene.commands))
         views, last = [], None
         for view in holding.choose(together(first, others, (scene.filter, *scene.beside))):
             views.append(inert(teller.tell(view)))
@@ -96,20 +96,21 @@ def left_out(views: int, held: int) -> str:
     """That a page does not hold all of the run's views; empty where it does.
 
     >>> left_out(1424, 900)
-    "it holds 900 of the run's 1424 views, and those where something happens"
+    "900 of the run's 1424 views are held: at even distances, and wherever something happens"
     >>> left_out(46, 46)
     ''
     """
     if held == views:
         return ""
-    return f"it holds {held} of the run's {views} views, and those where something happens"
+    where = "at even distances, and wherever something happens"
+    return f"{held} of the run's {views} views are held: {where}"
 
 
 def inert(value: Any) -> str:
     r"""JSON that no text in it can end or break.
 
     >>> print(inert("</script><!-- & \u2028"))
-    "\\u003c/script\\u003e\\u003c!-- \\u0026 \\u2028"
+    "\u003c/script\u003e\u003c!-- \u0026 \u2028"
     """
     told = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return told.translate(INERT)

@@ -3,7 +3,7 @@ watches, and how everything looks.
 """
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,12 +16,18 @@ from ekfsim.views.picture import artists
 from ekfsim.views.picture.belief import ghost, warned, ways
 from ekfsim.views.picture.belief.belief import COVERED
 from ekfsim.views.picture.belief.others import STYLES
+from ekfsim.views.picture.lettering import shortened
 from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import Look
-from ekfsim.views.words.captions import cone_label, ellipse_label
+from ekfsim.views.picture.sight_artists import FIX, OTHERWISE, recorded_fixes
+from ekfsim.views.words.captions import conditioned_label, cone_label, ellipse_label
 from ekfsim.world import Map
 
+if TYPE_CHECKING:
+    from shapely import Polygon
+
 FAR = 1e4  # m from the origin of its grid, from which on a browser's numbers are too coarse
+FIXES = 1000  # that were recorded and not used; of many more, about as many are drawn
 NAMES = {"theta": "θ", "phi": "φ", "thetadot": "θ̇", "xdot": "ẋ", "ydot": "ẏ", "theta_prev": "θ₋"}
 
 
@@ -63,6 +69,12 @@ def scenery(scene: Scene, limits: Limits, look: Look, origin: Array) -> dict[str
         fixed["told"] = _map(told, origin)
     if world.expected_path is not None:
         fixed["meant"] = points(world.expected_path, origin)
+    if look.conditional:
+        fixed["conditional"] = [conditioned_label(look.probability, sign) for sign in (1, -1)]
+    if scene.log is not None:
+        index, fixes = recorded_fixes(scene.log.entries)
+        every = max(1, len(fixes) // FIXES)
+        fixed["fixes"] = [index[::every].tolist(), points(fixes[::every], origin)]
     return fixed
 
 
@@ -73,12 +85,13 @@ def inks() -> str:
         "vermillion": artists.VERMILLION, "purple": artists.PURPLE, "orange": artists.ORANGE,
         "outside": artists.OUTSIDE, "floor": artists.FLOOR, "obstacle": artists.OBSTACLE,
         "edge": artists.EDGE, "truth": artists.TRUTH, "meant": artists.MEANT,
-        "crowd": artists.CROWD, "ghost": ghost.GHOST, "alarm-ink": warned.ALARM,
+        "crowd": artists.CROWD, "ghost": ghost.GHOST, "alarm-ink": warned.ALARM, "fix": FIX,
     }  # fmt: skip
     dashed = {
         "alarm-dashes": dashes(warned.ALARM_DASHES, warned.ALARM_WIDTH),
         "true-dashes": dashes(ways.TRUE_DASHES, 1.1),
         "reckoned-dashes": dashes(ways.RECKONED_DASHES, 1.1),
+        "otherwise-dashes": dashes(OTHERWISE, 3.5),
     }
     told = (f"--{name}: {value};" for name, value in (named | dashed).items())
     return f":root {{ {' '.join(told)} }}\n"
@@ -106,8 +119,19 @@ def _filters(scene: Scene) -> Iterator[dict[str, Any]]:
 
 def _map(floor: Map, origin: Array) -> dict[str, Any]:
     room = [] if floor.boundary is None else points(floor.boundary, origin)
+    _, areas = floor.areas
     obstacles = [
-        {"name": in_a_line(each.name), "ring": points(each.points, origin)}
-        for each in floor.obstacles
+        {
+            "name": in_a_line(shortened(each.name, 20)),
+            "ring": points(each.points, origin),
+            "at": points(_middle(area), origin),
+        }
+        for each, area in zip(floor.obstacles, areas, strict=True)
     ]
     return {"boundary": room, "obstacles": obstacles}
+
+
+def _middle(area: "Polygon") -> Array:
+    """Where an obstacle's name stands in it : (1, 2) m"""
+    middle = area.centroid if area.contains(area.centroid) else area.representative_point()
+    return np.array([[middle.x, middle.y]])

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from ekfsim.diagnostics.ambiguity import sighting_of
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
 from ekfsim.records import Step
@@ -23,7 +22,7 @@ def seen(step: Step, scene: Scene, origin: Array, far: float) -> dict[str, Any] 
     read = beam(step, scene) or sight(step)
     match read:
         case Beam():
-            drawn = _of_beam(read, step, origin, far)
+            drawn = _of_beam(read, origin, far)
         case Sight():
             drawn = _of_sight(read, origin)
         case _:
@@ -31,7 +30,7 @@ def seen(step: Step, scene: Scene, origin: Array, far: float) -> dict[str, Any] 
     return {key: value for key, value in drawn.items() if value not in (None, [], False)}
 
 
-def _of_beam(read: Beam, step: Step, origin: Array, far: float) -> dict[str, Any]:
+def _of_beam(read: Beam, origin: Array, far: float) -> dict[str, Any]:
     echo = not np.isnan(read.measured)
     end = _ahead(read.pose, read.measured)[1:] if echo else np.empty((0, 2))
     expected = not np.isnan(read.predicted)
@@ -45,7 +44,7 @@ def _of_beam(read: Beam, step: Step, origin: Array, far: float) -> dict[str, Any
         "way": points(way, origin),
         "expected": points(way[1:], origin),
         "probes": [_probe(probe, origin, far) for probe in read.probes],
-        "walls": [points(wall, origin) for wall in _other_walls(step)],
+        "walls": [points(wall, origin) for wall in read.walls],
         "word": "beam",
     }
 
@@ -68,16 +67,6 @@ def _probe(probe: Probe, origin: Array, far: float) -> list[Any]:
     """A beam from another pose that the filter holds possible."""
     length = far if np.isnan(probe.range) else probe.range
     return points(_ahead(probe.pose, length), origin)
-
-
-def _other_walls(step: Step) -> list[Array]:
-    """The walls that an ambiguous beam might meet instead : (2, 2) m each"""
-    sighting, given = sighting_of(step), step.entry.given
-    walls = getattr(getattr(given, "sensor", None), "walls", None)
-    if sighting is None or walls is None:
-        return []
-    met = np.unique(sighting.probe_walls[sighting.astray])
-    return [walls.segments[wall] for wall in met[met >= 0]]
 
 
 def _ahead(pose: Array, length: float) -> Array:

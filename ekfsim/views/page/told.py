@@ -17,6 +17,7 @@ from ekfsim.scene import Scene
 from ekfsim.views.page.numbers import length, points, row, rows, short, triangle
 from ekfsim.views.page.seen import seen
 from ekfsim.views.picture.look import Look
+from ekfsim.views.picture.panels import CERTAIN, close_width
 from ekfsim.views.picture.sights import sight
 from ekfsim.views.playback.trail import Way
 from ekfsim.views.playback.view import View
@@ -26,6 +27,7 @@ from ekfsim.views.words.closing import sentence
 from ekfsim.views.words.judgement import judgement, standing
 from ekfsim.views.words.narrative import narrate
 
+FAR = 2  # of what is shown of the plane: how long a beam is drawn that meets nothing
 CROWD = 150  # particles that are drawn of a belief, at most
 
 
@@ -54,7 +56,7 @@ class Teller:
     scene: Scene
     look: Look
     origin: Array  # (2,) m
-    far: float  # m, how long a beam is drawn that meets nothing
+    size: float  # m, the longer side of what is shown of the plane
     total: int  # commands, 0 where that is not known
     lines: Lines = field(default_factory=Lines)
     following: int = 0  # the number of the view that comes next where none is left out
@@ -67,11 +69,12 @@ class Teller:
             "step": entry.index,
             "title": shown(title(view, self.total)),
             "judged": judgement(view, self.scene, self.look.probability),
-            "notes": [shown(note) for note in notes(view, self.scene, read)],
+            "notes": [shown(note) for note in notes(view, self.scene, read, self.look.probability)],
             "by": [
                 self._believed(each, one)
                 for each, one in zip((view, *view.others), alone, strict=True)
             ],
+            "wide": short(close_width(view, self.look.probability, CERTAIN * self.size)),
             "true": view.true.n,
             "reckoned": view.reckoned.n,
         }
@@ -84,6 +87,8 @@ class Teller:
             told["say"] = shown(entry.command.text.strip())
         if entry.truth is not None:
             told["truth"] = self._pose(entry.truth)
+        if entry.fix is not None and not self.scene.log:
+            told["fix"] = points(entry.fix[None], self.origin)
         if view.inputs > 1:
             told["inputs"] = view.inputs
         return told
@@ -141,8 +146,8 @@ class Teller:
         }
         if int(c.refused):
             told["refused"] = 1
-        if view.beam and (drawn := seen(step, self.scene, self.origin, self.far)) is not None:
-            told["seen"] = drawn
+        if view.beam:
+            told["seen"] = seen(step, self.scene, self.origin, FAR * self.size)
         return told
 
     def _pose(self, pose: Array) -> list[Any]:

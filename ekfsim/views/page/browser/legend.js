@@ -26,6 +26,8 @@ function legend(place) {
     [seen(one => one.walls), "… the other wall", ["other-wall", "line"]],
     [seen(one => one.place), "landmark that it is of", ["place", "ring"]],
     [landmarks.length, "landmark", ["landmark", "triangle"]],
+    ...(lesson.conditional ?? []).map((words, i) => [true, words, ["conditional " + ["plus", "minus"][i], "line"]]),
+    [lesson.fixes?.[0].length || views.some(view => view.fix), "fix, recorded and not used", ["fix", "plus"]],
     [told, "filter's map", ["told", "area"]],
     [meant, "way that was meant", ["meant", "line"]],
   ];

@@ -11,7 +11,6 @@ const map = new Picture(at("map"), false), close = new Picture(at("close"), true
 const strips = [["nis", "NIS, with its 99.9 % bound"], ["nees", "NEES, with its 99.9 % bound"]]
   .map(([key, name]) => new Strip(at("strips"), key, name, go)).filter(strip => strip.any || !strip.svg.remove());
 const size = Math.max(lesson.limits[2] - lesson.limits[0], lesson.limits[3] - lesson.limits[1]);
-const widths = closeWidths();
 
 function go(i) {
   current = Math.min(views.length - 1, Math.max(0, i));
@@ -52,10 +51,10 @@ function show() {
   at("map-told").textContent = `${spoken}. ${view.judged}. ${belief.spread}.`;
   at("close-told").textContent = belief.spread;
   map.show(view, before, 0.022 * size, told, shown);
-  const [x, y] = belief.pose, w = widths[current] / 2;
+  const [x, y] = belief.pose, w = view.wide / 2;
   close.fit([x - w, y - w, x + w, y + w], 300, 300, { left: 0, bottom: 0, top: 0, right: 0 });
-  close.show(view, before, 0.07 * 2 * w, told, shown);
-  bar(2 * w);
+  close.show(view, before, 0.07 * view.wide, told, shown);
+  bar(view.wide);
   for (const strip of strips) strip.show(current);
   for (const [id, off] of [["first", current === 0], ["back", current === 0], ["next", current === views.length - 1], ["last", current === views.length - 1]]) at(id).disabled = off;
   choose(symbol);
@@ -94,22 +93,6 @@ function lines(places) { return places.map(place => lesson.lines[place]).join("\
 
 function list(place, texts) {
   place.replaceChildren(...texts.map(text => Object.assign(document.createElement("li"), { textContent: text })));
-}
-
-// How wide the close-up is in each view: the same for a reading's two, and seldom another.
-function closeWidths() {
-  let width = 0;
-  const least = views.map(view => {
-    const { pose, P } = view.by[0], radius = ellipse(poseBlock(symmetric(P), lesson.places), lesson.k).major;
-    const error = view.truth ? Math.hypot(view.truth[0] - pose[0], view.truth[1] - pose[1]) : 0;
-    return radius ? Math.max(1e-4, 2.6 * Math.max(radius, error <= 3 * radius ? error : 0)) : 0.1 * size;
-  });
-  return views.map((view, i) => {
-    const both = view.beam ? [least[i], least[i + 1]] : views[i - 1]?.beam ? [least[i - 1], least[i]] : [least[i]];
-    const wanted = Math.max(...both);
-    if (wanted > width || wanted < width / 5) width = oneTwoFive(wanted);
-    return width;
-  });
 }
 
 function bar(width) {

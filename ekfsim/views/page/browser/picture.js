@@ -20,6 +20,12 @@ function trace(points, close = false) {
   return close && d ? d + "z" : d;
 }
 
+// The recorded positions up to a step that the filter is not given.
+function fixesUntil(step) {
+  const [steps, points] = lesson.fixes ?? [[], []], n = steps.findIndex(each => each > step);
+  return points.slice(0, 2 * (n < 0 ? steps.length : n));
+}
+
 class Picture {
   // close : whether it is the close-up, which has no robot that could cover its ellipse
   constructor(svg, close) {
@@ -106,6 +112,7 @@ class Picture {
     this.mark("landmarks", "landmark", "triangle", this.landmarks);
     lesson.filters.forEach((filter, i) =>
       this.mark("reference" + i, i ? "second reference" : "reference", filter.mark ?? "o", shown[i] ? view.by[i].pose.slice(0, 2) : []).style.setProperty("--own", filter.ink ?? ""));
+    this.mark("fixes", "fix", "plus", view.fix ?? fixesUntil(view.step));
     this.mark("truth", "truth", "dot", truth ? truth.slice(0, 2) : []);
     this.arrange();
   }
@@ -128,13 +135,15 @@ class Picture {
     this.line("cone", turned ? "cone wrong" : "cone", shown ? sector(pose, half, CONE * unit) : [], true, "P");
     const was = old ? poseBlock(symmetric(before.P), lesson.places) : null;
     this.line("ghost-cone", "ghost", old ? sector(old, lesson.cone * Math.sqrt(Math.max(was[2][2], 0)), CONE * unit) : [], true);
+    if (lesson.conditional) for (const [sign, name] of [[1, "plus"], [-1, "minus"]])
+      this.line("conditional" + name, "conditional " + name, shown ? outline(...conditioned(pose, P, sign * half), k) : [], true);
     this.line("path", "path", path);
     const covers = ellipse(P, k).major < lesson.covered * unit; // then it is hollow
     if (!this.close) this.line("body", covers ? "body hollow" : "body", shown ? robot(pose, unit) : [], true);
+    this.line("shift", "shift", old && belief.K ? [old[0], old[1], pose[0], pose[1]] : [], false, "K");
     this.line("ellipse", off ? "ellipse wrong" : "ellipse", oval, true, "P");
     this.line("ghost", "ghost", old ? outline(old, was, k) : [], true);
     this.mark("crowd", "particle", "dot", shown && belief.crowd || []);
-    this.line("shift", "shift", old && belief.K ? [old[0], old[1], pose[0], pose[1]] : [], false, "K");
   }
 
   reading(seen) {
@@ -166,11 +175,14 @@ class Picture {
     const each = (from, to, put) => { for (let i = Math.ceil(from / step); i * step <= to; i++) put(i * step); };
     each((x - east) / scale + ox, (x + width - east) / scale + ox, m => write([scale * (m - ox) + east, y + height + 14], m.toFixed(digits) + " m", { class: "tick", "text-anchor": "middle" }));
     each((south - y - height) / scale + oy, (south - y) / scale + oy, m => write([x - 4, south - scale * (m - oy) + 4], m.toFixed(digits), { class: "tick", "text-anchor": "end" }));
-    for (const { name, ring } of lesson.world.obstacles) {
-      const xs = ring.filter((_, i) => i % 2 === 0), ys = ring.filter((_, i) => i % 2);
-      const wide = scale * (Math.max(...xs) - Math.min(...xs)), high = scale * (Math.max(...ys) - Math.min(...ys));
-      const place = this.pixel([(Math.max(...xs) + Math.min(...xs)) / 2, (Math.max(...ys) + Math.min(...ys)) / 2]);
-      if (wide > 6.2 * name.length && high > 13) write([place[0], place[1] + 4], name, { class: "name" });
+    if (lesson.landmarks.length <= 60) for (const [east, north, number] of lesson.landmarks) {
+      const [a, b] = this.pixel([east, north]);
+      write([a + 6, b + 9], number, { class: "tick" });
+    }
+    for (const { name, ring, at } of lesson.world.obstacles) {
+      const half = 3.3 * name.length / scale, room = [-half, half].every(by => inside(ring, [at[0] + by, at[1]]));
+      const place = this.pixel(at);
+      if (room) write([place[0], place[1] + 4], name, { class: "name" });
     }
     this.words.appendChild(element("rect", { class: "frame", ...this.box }));
   }

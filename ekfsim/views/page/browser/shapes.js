@@ -33,6 +33,13 @@ function outline(pose, P, k, n = 72) {
   });
 }
 
+// The position, were the heading known to lie `offset` rad from its mean: p + P_pθ/σ_θ² · offset.
+function conditioned(pose, P, offset) {
+  const by = P[2][2] > 0 ? [P[0][2] / P[2][2], P[1][2] / P[2][2]] : [0, 0];
+  const less = [0, 1].map(i => [0, 1].map(j => P[i][j] - by[i] * P[2][j]));
+  return [[pose[0] + by[0] * offset, pose[1] + by[1] * offset], less];
+}
+
 function around(n, place) {
   return Array.from({ length: n }, (_, i) => place(2 * Math.PI * i / n)).flat();
 }
@@ -46,6 +53,16 @@ function sector(pose, half, radius) {
 
 function ahead(pose, length, turn = 0) {
   return [pose[0] + length * Math.cos(pose[2] + turn), pose[1] + length * Math.sin(pose[2] + turn)];
+}
+
+// Whether a point lies in a ring.
+function inside(ring, [x, y]) {
+  let odd = false;
+  for (let i = 0, j = ring.length - 2; i < ring.length; j = i, i += 2) {
+    const [ax, ay, bx, by] = [ring[i], ring[i + 1], ring[j], ring[j + 1]];
+    if (ay > y !== by > y && x < ax + (bx - ax) * (y - ay) / (by - ay)) odd = !odd;
+  }
+  return odd;
 }
 
 // A round body with a pointed nose.
@@ -74,3 +91,4 @@ const MARKS = {
   s: "M-4-4H4V4H-4z", v: "M-5-4H5L0 5z", P: "M-2-5H2V-2H5V2H2V5H-2V2H-5V-2H-2z", h: "M0-5L4.3-2.5V2.5L0 5L-4.3 2.5V-2.5z",
 };
 MARKS.fix = MARKS.wall;
+MARKS.plus = "M-4 0H4M0-4V4";

@@ -34,7 +34,7 @@ class Strip {
       lesson.views.forEach((view, i) => { const told = view.by[f][key]; if (told) points.push([this.x(i), y(told[0]), told[0] === null || told[0] > told[1]]); });
       const line = svg.appendChild(element("path", { class: f ? "second" : "value", d: trace(points.flatMap(([a, b]) => [a, b])) }));
       if (f) { line.style.setProperty("--own", filter.ink); line.style.strokeDasharray = filter.dashes; }
-      if (points.length < 400 && !f) for (const [a, b, over] of points)
+      if (!f) for (const [a, b, over] of points) if (over || points.length < 150)
         svg.appendChild(element("path", { class: over ? "dot over" : "dot", d: over ? MARKS.diamond : MARKS.dot, transform: `translate(${a} ${b}) scale(.8)` }));
     });
     this.cursor = svg.appendChild(element("path", { class: "cursor" }));
