@@ -66,10 +66,10 @@ def render(
         return
     with whole_file(target, force) as path:
         if write_video is not None:
-            write_video(path, _timed(frame, shown), told_in_a_line(scene))
+            write_video(path, _timed(frame.rgb, shown), told_in_a_line(scene))
         else:
             with path.open("wb") as file:
-                gif.write(file, _timed(frame, shown), told_in_a_line(scene))
+                gif.write(file, _timed(frame.rgba, shown), told_in_a_line(scene))
 
 
 def number_of_pictures(views: int, every: int) -> int:
@@ -99,10 +99,12 @@ def _number(folder: Path, frame: Frame, views: Iterable[View], scene: Scene) -> 
         (folder / f"frame-{view.number:0{digits}d}.png").write_bytes(picture)
 
 
-def _timed(frame: Frame, views: Iterable[View]) -> Iterator[tuple[Pixels, float]]:
+def _timed(
+    drawn: Callable[[View], Pixels], views: Iterable[View]
+) -> Iterator[tuple[Pixels, float]]:
     """The pixels of each view and how many s it stays."""
     for view, is_last in _lasting(views):
-        yield frame.rgb(view), LAST if is_last else _tempo(view)
+        yield drawn(view), LAST if is_last else _tempo(view)
 
 
 def _tempo(view: View) -> float:

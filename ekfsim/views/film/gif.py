@@ -9,10 +9,11 @@ from typing import BinaryIO
 
 import numpy as np
 from matplotlib.colors import to_rgb
-from PIL import Image, ImageChops
+from numpy.typing import NDArray
+from PIL import Image
 from PIL.GifImagePlugin import getdata, getheader
 
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, Booleans
 from ekfsim.views.film.png import Pixels
 from ekfsim.views.picture.artists import (
     BLUE,
@@ -26,42 +27,69 @@ from ekfsim.views.picture.artists import (
     TRUTH,
     VERMILLION,
 )
+from ekfsim.views.picture.belief.warned import ALARM, ALARM_FILL
 
 KEEP = 1  # disposal: the next picture is painted over this one
+UNCHANGED = 255  # the index of no colour: what was there before is seen
 END = b";"
 
 
 def write(file: BinaryIO, pictures: Iterable[tuple[Pixels, float]], comment: str) -> None:
     """Write pictures, each with the seconds that it stays, as a GIF that runs for ever.
-    Each is (h, w, 3).
+    Each is (h, w, 4), without any transparency, and looked at until the next is asked for.
 
-    Only the rectangle that changed is written, and all pictures share one palette, so that no
-    colour flickers.
+    Only the rectangle that changed is written, what did not change in it as nothing, and all
+    pictures share one palette, so that no colour flickers.
     """
-    before: Image.Image | None = None
+    shown: NDArray[np.uint32] | None = None
     for pixels, seconds in pictures:
-        picture = Image.fromarray(pixels).quantize(palette=palette(), dither=Image.Dither.NONE)
-        if before is None:
-            header, _ = getheader(picture, info={"loop": 0, "comment": comment.encode()})
+        now = pixels.view(np.uint32)[..., 0]
+        if shown is None:
+            shown = np.zeros_like(now)  # transparent
+            info = {"loop": 0, "comment": comment.encode()}
+            header, _ = getheader(palette().resize(now.shape[::-1]), info=info)
             file.writelines(header)
-            changed: tuple[int, int, int, int] | None = (0, 0, *picture.size)
-        else:
-            changed = ImageChops.difference(before, picture).getbbox()
-        box = changed or (0, 0, 1, 1)  # an equal picture is still one
+        changed = now != shown
+        rows, columns = _span(changed.any(axis=1)), _span(changed.any(axis=0))
+        box = changed[rows, columns]
+        indices = np.full(box.shape, UNCHANGED, np.uint8)
+        indices[box] = _nearest(now[rows, columns][box])
+        picture, corner = Image.fromarray(indices), (columns.start, rows.start)
+        duration = round(1000 * seconds)
         file.writelines(
-            getdata(picture.crop(box), box[:2], duration=round(1000 * seconds), disposal=KEEP)
+            getdata(picture, corner, duration=duration, disposal=KEEP, transparency=UNCHANGED)
         )
-        before = picture
+        shown[rows, columns] = now[rows, columns]
     file.write(END)
+
+
+def _span(some: Booleans) -> slice:
+    """From the first to the last that is true; one where none is, as an equal picture is still one.
+
+    >>> _span(np.array([False, True, False, True, False])), _span(np.array([False, False]))
+    (slice(1, 4, None), slice(0, 1, None))
+    """
+    (places,) = some.nonzero()
+    return slice(int(places[0]), int(places[-1]) + 1) if len(places) else slice(0, 1)
+
+
+def _nearest(colors: NDArray[np.uint32]) -> NDArray[np.uint8]:
+    """The palette's colour for each. colors : (n,), of red, green, blue and what does not count"""
+    if not len(colors):
+        return np.empty(0, np.uint8)
+    rgb = np.ascontiguousarray(colors.view(np.uint8).reshape(1, -1, 4)[..., :3])
+    matched = Image.fromarray(rgb).quantize(palette=palette(), dither=Image.Dither.NONE)
+    indices: NDArray[np.uint8] = np.asarray(matched)[0]
+    return indices
 
 
 @cache
 def palette() -> Image.Image:
-    """The 256 colours of all pictures:
+    """The colours of all pictures:
     greys, and every ink on every ground at all strengths that soft edges need.
     """
     colors = list(dict.fromkeys(_colors()))
-    assert len(colors) <= 256
+    assert len(colors) <= UNCHANGED
     picture = Image.new("P", (1, 1))
     picture.putpalette([level for color in colors for level in color])
     return picture
@@ -70,7 +98,7 @@ def palette() -> Image.Image:
 def _colors() -> Iterator[tuple[int, ...]]:
     grounds = [np.array(to_rgb(ground)) for ground in (FLOOR, OUTSIDE, OBSTACLE)]
     inks = [np.array(to_rgb(ink)) for ink in (BLUE, GREEN, VERMILLION, SKY, PURPLE, ORANGE)]
-    fills = [(SKY, 0.35), (GREEN, 0.18), (BLUE, 0.55)]
+    fills = [(SKY, 0.35), (GREEN, 0.18), (BLUE, 0.55), (ALARM, ALARM_FILL)]
     for ground in grounds:
         yield _bytes(ground)
         for (below, some), (above, more) in product(fills, fills):

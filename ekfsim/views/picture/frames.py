@@ -171,7 +171,7 @@ class Frame:
 
     def rgb(self, view: View) -> Pixels:
         """The pixels of a view : (h, w, 3)"""
-        rgba = self._rgba(view)
+        rgba = self.rgba(view)
         pixels = np.empty((*rgba.shape[:2], 3), np.uint8)
         for channel in range(3):  # three times as fast as all at once
             pixels[..., channel] = rgba[..., channel]
@@ -179,9 +179,9 @@ class Frame:
 
     def png(self, view: View, metadata: Mapping[str, str] | None = None) -> bytes:
         """The picture of a view as a PNG file; equal views give equal bytes."""
-        return self._encoder.encode(self._rgba(view), metadata or {})
+        return self._encoder.encode(self.rgba(view), metadata or {})
 
-    def _rgba(self, view: View) -> Pixels:
+    def rgba(self, view: View) -> Pixels:
         """The canvas with a view on it, until the next : (h, w, 4)"""
         if self.picture.show(view):
             self._draw_still()

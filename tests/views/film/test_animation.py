@@ -77,11 +77,25 @@ def test_a_gif_looks_like_its_pictures(tmp_path):
 
 
 def test_equal_pictures_are_still_frames(tmp_path):
-    pixels = np.full((6, 8, 3), 255, np.uint8)
+    pixels = np.full((6, 8, 4), 255, np.uint8)
     with (tmp_path / "still.gif").open("wb") as file:
         gif.write(file, [(pixels, 1.0)] * 3, "still")
     with Image.open(tmp_path / "still.gif") as picture:
         assert picture.n_frames == 3
+
+
+def test_a_gif_holds_only_what_changed(tmp_path):
+    pixels = np.full((60, 80, 4), 255, np.uint8)
+    after = pixels.copy()
+    after[20:30, 40:45] = (0, 0x72, 0xB2, 255)
+    after[25, 42] = 255
+    with (tmp_path / "moved.gif").open("wb") as file:
+        gif.write(file, [(pixels, 1.0), (after, 1.0), (pixels, 1.0)], "moved")
+    with Image.open(tmp_path / "moved.gif") as picture:
+        for number, expected in enumerate((pixels, after, pixels)):
+            picture.seek(number)
+            assert picture.tile[0][1] == ((40, 20, 45, 30) if number else (0, 0, 80, 60))
+            assert np.array_equal(np.asarray(picture.convert("RGB")), expected[..., :3])
 
 
 def decoded(path):
