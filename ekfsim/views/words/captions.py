@@ -14,7 +14,7 @@ from ekfsim.views.picture.sights import Sight, instants, told
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.beams.beam import Beam, called
 from ekfsim.views.words.changes import ARROWS, carried, losing, revised
-from ekfsim.views.words.judgement import meaning
+from ekfsim.views.words.closing import meaning
 from ekfsim.views.words.numbers import length
 
 REFUSALS = {

@@ -18,8 +18,8 @@ from ekfsim.geometry.ellipse import cone_halfwidth, ellipse
 from ekfsim.records import Control, Reading
 from ekfsim.views.picture.sights import bare
 from ekfsim.views.playback.view import View
-from ekfsim.views.words.judgement import fatal, figure
-from ekfsim.views.words.numbers import length
+from ekfsim.views.words.judgement import fatal
+from ekfsim.views.words.numbers import figure, length
 
 ARROWS = "→↗↑↖←↙↓↘"
 STILL = 5e-5  # m; an estimate that moved by less stays where it is
@@ -89,7 +89,7 @@ def moved(before: Gaussian, after: Gaussian) -> str:
     told = [f"moved {length(distance)} {arrow}"] if distance >= STILL else []
     if abs(turned) >= UNTURNED:
         side = "left" if turned > 0 else "right"
-        told.append(f"turned {math.degrees(abs(turned)):.3g}° to the {side}")
+        told.append(f"turned {math.degrees(abs(turned)):.3g}° {side}")
     return f"the estimate {' and '.join(told) or 'stays where it is'}"
 
 
@@ -105,14 +105,8 @@ def worth(correction: Correction) -> Iterator[str]:
         if nis <= quantile(LOST, numbers)
         else "very surprising"
     )
-    off = (
-        f"{math.sqrt(nis):.2g}σ off" if numbers == 1 else f"NIS {figure(nis)} of {numbers} numbers"
-    )
-    yield f"the reading was {word}, {off}"
-
-
-def _many(nis: float, numbers: int) -> str:
-    return f"NIS {figure(nis)} of {numbers} numbers"
+    off = f"{math.sqrt(nis):.2g}σ off" if numbers == 1 else f"NIS {figure(nis)} of {numbers}"
+    yield f"the reading was {word} ({off})"
 
 
 def losing(view: View) -> str:

@@ -12,7 +12,8 @@ from ekfsim.filters.belief import Refused
 from ekfsim.records import Nees
 from ekfsim.scene import Scene
 from ekfsim.views.playback.parting import Apart
-from ekfsim.views.words.numbers import number, turn
+from ekfsim.views.playback.view import View
+from ekfsim.views.words.numbers import figure, number, turn
 from ekfsim.views.words.text_table import aligned
 
 REASONS = {
@@ -148,6 +149,47 @@ def sentence(evidence: Evidence) -> str:
                 f"{verdict.value}: {_nis(evidence, 'below')}: "
                 "the filter trusts itself less than it could"
             )
+
+
+def meaning(view: View) -> str:
+    """What the verdict on the run comes to, in its last view: whether to believe the filter, and
+    since when not. Nothing in any other, nor where several filters watch.
+    """
+    evidence = view.judged.closing
+    if evidence is None or view.others:
+        return ""
+    match evidence.verdict:
+        case Verdict.LOST:
+            return f"not to be believed: lost since step {evidence.lost_from}{_shown(evidence)}"
+        case Verdict.OVER_CONFIDENT:
+            return (
+                f"not to be believed since step {evidence.nis_outside_from}: "
+                "it trusts itself more than its readings allow"
+            )
+        case Verdict.OVER_CAUTIOUS:
+            return (
+                "to be believed, and nearer to the truth than it says: "
+                "it trusts itself less than it could"
+            )
+        case Verdict.CONSISTENT:
+            errors = "" if evidence.last_nees is None else " or its last error"
+            return f"to be believed: nothing in its readings{errors} speaks against it"
+    return ""
+
+
+def _shown(evidence: Evidence) -> str:
+    """Whether the readings of a run that is lost show it; nothing where there were none."""
+    if not evidence.nis_dof:
+        return ""
+    low, high = evidence.nis_band
+    side = "above" if evidence.nis_sum > high else "below" if evidence.nis_sum < low else "within"
+    told = (
+        f"(ΣNIS {figure(evidence.nis_sum)} of {evidence.nis_readings}, "
+        f"{side} {figure(low)} to {figure(high)})"
+    )
+    if side == "above":
+        return f"; its readings say so since step {evidence.nis_outside_from} {told}"
+    return f", though its readings do not say so {told}"
 
 
 def _nis(evidence: Evidence, side: str) -> str:

@@ -5,7 +5,7 @@ NIS 82.1 (99.9 %: 10.8) · NEES 20341 (3 dof, 99.9 %: 16.3) · truth outside ell
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from ekfsim.diagnostics.coverage import inside_cone, inside_ellipse
@@ -16,11 +16,10 @@ from ekfsim.printable import in_a_line, short
 from ekfsim.records import Nees
 from ekfsim.scene import Scene
 from ekfsim.views.playback.view import View
+from ekfsim.views.words.numbers import figure
 
 COLUMNS = 118  # signs in the line of a picture
 NAME = 24  # signs of a filter's name
-WHOLE = 1e6  # a larger number is told with a power of ten
-SLIGHT = 0.01  # a smaller one is told as no more than that
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +30,7 @@ class Standing:
     outside_ellipse: bool = False  # the true position, of the ellipse that is drawn
     outside_cone: bool = False  # the true heading, of the cone that is drawn
     lost_from: int | None = None  # the step since which the run is lost without a gap
+    verdict: Verdict | None = None  # on the whole run, in its last view alone
 
     @property
     def impossible(self) -> bool:
@@ -50,19 +50,20 @@ class Standing:
     @property
     def warns(self) -> bool:
         """Whether there is anything to warn of."""
-        return self.outside or self.lost or self.impossible
+        condemned = self.verdict is Verdict.OVER_CONFIDENT
+        return self.outside or self.lost or self.impossible or condemned
 
 
 def standing(view: View, probability: float) -> Standing:
     """Of the belief that the view shows. probability : of the ellipse and the cone"""
     truth, judged = view.step.entry.truth, view.judged
-    if truth is None:
-        return Standing(judged.nees, lost_from=judged.lost_from)
+    verdict = None if judged.closing is None else judged.closing.verdict
     return Standing(
         judged.nees,
-        not inside_ellipse(view.pose, truth, probability),
-        not inside_cone(view.pose, truth, probability),
+        truth is not None and not inside_ellipse(view.pose, truth, probability),
+        truth is not None and not inside_cone(view.pose, truth, probability),
         judged.lost_from,
+        verdict,
     )
 
 
@@ -255,65 +256,13 @@ def _forms(view: View, name: str, probability: float) -> list[str]:
 
 def _last(stands: Standing, evidence: Evidence) -> Standing:
     """The same with the last NEES that was known: a recorded truth may end before the run does."""
-    return Standing(
-        evidence.last_nees, stands.outside_ellipse, stands.outside_cone, evidence.lost_from
-    )
+    return replace(stands, nees=evidence.last_nees)
 
 
 def fatal(view: View) -> bool:
     """Whether it is this view's own step since which the run is lost."""
     nees, since = view.step.nees, view.judged.lost_from
     return not view.beam and nees is not None and lost(nees) and since == view.step.entry.index
-
-
-def meaning(view: View) -> str:
-    """What the verdict on the run comes to, in its last view: whether to believe the filter, and
-    since when not. Nothing in any other, nor where several filters watch.
-    """
-    evidence = view.judged.closing
-    if evidence is None or view.others:
-        return ""
-    match evidence.verdict:
-        case Verdict.LOST:
-            return f"not to be believed since step {evidence.lost_from}{_shown(evidence)}"
-        case Verdict.OVER_CONFIDENT:
-            return (
-                f"not to be believed since step {evidence.nis_outside_from}: "
-                "it trusts itself more than its readings allow"
-            )
-        case Verdict.OVER_CAUTIOUS:
-            return (
-                "to be believed, and nearer to the truth than it says: "
-                "it trusts itself less than it could"
-            )
-        case Verdict.CONSISTENT:
-            errors = "" if evidence.last_nees is None else " or its last error"
-            return f"to be believed: nothing in its readings{errors} speaks against it"
-    return ""
-
-
-def _shown(evidence: Evidence) -> str:
-    """Whether the readings of a run that is lost show it; nothing where there were none."""
-    if not evidence.nis_dof:
-        return ""
-    low, high = evidence.nis_band
-    total = f"ΣNIS {figure(evidence.nis_sum)} of {evidence.nis_readings}"
-    band = f"{figure(low)} to {figure(high)} ({_percent(BAND)})"
-    if evidence.nis_sum <= high:
-        side = "within" if evidence.nis_sum >= low else "below"
-        return f"; its readings do not show it: {total} {side} {band}"
-    return f"; its readings show it since step {evidence.nis_outside_from}: {total} above {band}"
-
-
-def figure(value: float) -> str:
-    """A number as a glance takes it: three digits, but whole where it is large.
-
-    >>> figure(82.1314), figure(20341.2), figure(3.2e7), figure(1.5e-5), figure(0)
-    ('82.1', '20341', '3.2e+07', '< 0.01', '0')
-    """
-    if 0 < value < SLIGHT:
-        return f"< {SLIGHT:g}"
-    return f"{value:.0f}" if 1000 <= value < WHOLE else f"{value:.3g}"
 
 
 def count(n: int, thing: str) -> str:

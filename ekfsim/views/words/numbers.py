@@ -19,6 +19,8 @@ GRAIN = 1e-11  # m, degrees: of a pose, what is smaller is what sums of many ste
 ROUNDING = 1e-10
 LARGE = 100.0  # m, degrees: of less, six digits are fine enough
 HUGE = 1e12  # m, degrees: beyond, a float itself is coarser
+WHOLE = 1e6  # of a glance: a larger number is told with a power of ten
+TINY = 0.01  # of a glance: a smaller one is told as no more than that
 MANY = 8  # numbers of a reading, rows and columns of a matrix; of more only so many are told
 UNITS = {"rad": "degrees", "rad/s": "degrees/s"}  # what a person reads in place of it
 
@@ -120,6 +122,17 @@ def length(m: float) -> str:
 
 def _three_digits(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}" if abs(value) < 1e5 else f"{value:.3g}"
+
+
+def figure(value: float) -> str:
+    """A number as a glance takes it: three digits, but whole where it is large.
+
+    >>> figure(82.1314), figure(20341.2), figure(3.2e7), figure(1.5e-5), figure(0)
+    ('82.1', '20341', '3.2e+07', '< 0.01', '0')
+    """
+    if 0 < value < TINY:
+        return f"< {TINY:g}"
+    return f"{value:.0f}" if 1000 <= value < WHOLE else f"{value:.3g}"
 
 
 def instant(t: float) -> str:

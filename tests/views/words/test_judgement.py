@@ -14,7 +14,8 @@ from ekfsim.filters.belief import Gaussian
 from ekfsim.localization import play
 from ekfsim.views.playback.playback import together, views
 from ekfsim.views.playback.view import Judged
-from ekfsim.views.words.judgement import fatal, figure, judgement, standing, warns
+from ekfsim.views.words.judgement import fatal, judgement, standing, warns
+from ekfsim.views.words.numbers import figure
 
 SIGMA = (0.1, 0.1, 0.05)
 WRONG_WALL = load_scene("diverge-01-wrong-wall")

@@ -14,7 +14,7 @@ from ekfsim.views.picture.frames import COLUMNS, LINES
 from ekfsim.views.picture.lettering import wrapped
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.captions import notes
-from ekfsim.views.words.judgement import judgement
+from ekfsim.views.words.judgement import judgement, warns
 
 LESSONS = sorted(name for name in packaged("commands") if name.startswith("diverge-"))
 
@@ -61,11 +61,14 @@ def test_the_last_picture_says_whether_to_believe_the_filter_and_since_when_not(
     assert len(line) <= COLUMNS
     if not_since is None:
         assert said[0].startswith("to be believed")
+    elif word == "over-confident":
+        assert said[0].startswith(f"not to be believed since step {not_since}: ")
     else:
-        assert said[0].startswith(f"not to be believed since step {not_since}")
-    if word == "lost":
-        shows = "do not show it" if shown_since is None else f"show it since step {shown_since}"
-        assert f"its readings {shows}: ΣNIS" in said[0]
+        against = f"say so since step {shown_since}"
+        shows = "do not say so" if shown_since is None else against
+        assert said[0].startswith(f"not to be believed: lost since step {not_since}")
+        assert f" its readings {shows} (ΣNIS" in said[0]
+    assert warns(last, 0.954) == (not_since is not None)
     assert not said[-1].endswith("…")
 
 
