@@ -10,6 +10,7 @@ A notebook needs no more than this module:
 ==>The robot moved: distance=3, angle=90
 
 and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes;
+`ekfsim.plot_errors(steps)` plots errors with their ±2σ, NIS and NEES over the steps;
 `ekfsim.table(steps)` has the columns of `run --csv`, a DataFrame where pandas is installed.
 `scene.with_("noise.rangeSigmaRatio", 0.1)` is the same scene with another number, told to the truth
 and to the filter alike, as `--set` does it; so are `scene.with_(filter="ukf", gate=0.99, seed=3)`
@@ -96,6 +97,7 @@ if TYPE_CHECKING:
     from ekfsim.scene import Scene as Scene
     from ekfsim.simulation import simulate as simulate
     from ekfsim.student.own.bring import bring as bring
+    from ekfsim.views.curves.errors import plot_errors as plot_errors
     from ekfsim.views.notebook.table import table as table
     from ekfsim.views.picture.frames import draw as draw
     from ekfsim.views.picture.look import Look as Look
@@ -127,6 +129,7 @@ _HOMES = {
     "simulation": ("simulate",),
     "student.own.bring": ("bring",),
     "views.words.closing": ("conclude",),
+    "views.curves.errors": ("plot_errors",),
     "views.notebook.table": ("table",),
     "views.picture.frames": ("draw",),
     "views.picture.look": ("Look",),

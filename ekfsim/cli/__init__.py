@@ -31,7 +31,7 @@ def ekfsim() -> None:
 
 
 for command in (
-    *(runs.play, runs.render, runs.run, runs.record),
+    *(runs.play, runs.render, runs.plot, runs.run, runs.record),
     *(files.check, files.schema, files.list_packaged, files.show, files.new, files.figures),
     *(studies.study, studies.compare),
     *(comparing.diff, students.mutants, students.worksheet),

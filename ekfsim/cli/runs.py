@@ -1,4 +1,4 @@
-"""The commands that play one run: play, render, run, record."""
+"""The commands that play one run: play, render, plot, run, record."""
 
 import sys
 from contextlib import ExitStack, redirect_stderr
@@ -10,7 +10,7 @@ import click
 
 from ekfsim.cli.asked import scene_of
 from ekfsim.cli.kinds import Pace, Result, Whole
-from ekfsim.cli.options import EXPLAIN, FORCE, scene_options
+from ekfsim.cli.options import DPI, EXPLAIN, FORCE, SIZE, scene_options
 from ekfsim.cli.process import heed, say, warn
 from ekfsim.printable import in_a_line
 from ekfsim.views.terminal.keys.help import HELP
@@ -117,6 +117,47 @@ def write_page(scene: "Scene", out: Path, look: "Look", every: int, force: bool)
     if made.left_out:
         say(f"{in_a_line(out)}: {made.left_out}")
     click.echo(f"{in_a_line(out)}: {made.held} views")
+
+
+@click.command(short_help="Plot errors, NIS and NEES of COMMANDS over its steps.")
+@scene_options
+@click.option(
+    "--out", "-o", type=Result(), required=True, help="The name of a .png, an .svg or a .pdf."
+)
+@SIZE
+@DPI
+@FORCE
+def plot(
+    out: Path, size: tuple[int, int] | None, dpi: int, force: bool, confidence: float, **chosen: Any
+) -> None:
+    """Plot errors with their ±2σ, NIS and NEES with their bounds over the steps of COMMANDS.
+
+    Several filters share one picture. Events and readings that were not used are marked, and where
+    a filter is lost for good. Of a log without a truth there are innovations and NIS alone.
+    """
+    from ekfsim.views.picture.look import get_ready
+
+    get_ready()
+    from ekfsim.localization import play as steps_of
+    from ekfsim.views.curves.plot import remarks, write
+    from ekfsim.views.curves.series import Series
+    from ekfsim.views.film.still import refuse
+    from ekfsim.views.picture.lettering import boxes
+    from ekfsim.views.words.captions import texts
+
+    scene = scene_of(**chosen)
+    refuse(out, force)
+    warn(boxes(texts(scene)))
+    runs = []
+    for one, name in zip(scene.alone(), scene.watching, strict=True):
+        runs.append(Series(name))
+        for step in steps_of(one):
+            heed()
+            runs[-1].take(step)
+    write(runs, scene, out, size, dpi, force)
+    for remark in remarks(runs):
+        say(remark)
+    click.echo(f"{in_a_line(out)}: {', '.join(map(in_a_line, scene.watching))} over {runs[0].span}")
 
 
 @click.command()

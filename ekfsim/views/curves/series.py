@@ -18,9 +18,8 @@ from ekfsim.records import Reading, Step, called
 from ekfsim.views.curves.events import Event, events
 
 NONE = -1  # in `refused`: nothing was read at this step
-COLUMNS = (
-    14  # index, t, e (3), σ (3), NEES (3: value, dof, impossible), NIS (3: value, dof, refused)
-)
+# index, t, e (3), σ (3), NEES (3: value, dof, impossible), NIS (3: value, dof, refused)
+COLUMNS = 14
 BOUNDS = 0.95, 0.99, 0.999  # χ² quantiles that are drawn: usual, SURPRISING, LOST
 
 
@@ -120,6 +119,11 @@ class Series:
         return len(self) > 0 and not math.isnan(self._rows[1])
 
     @property
+    def abscissa(self) -> Array:
+        """(N,) what curves are drawn over: s where there is a clock, else the steps' indices"""
+        return self.t if self.clocked else self._columns(0, 1)[:, 0]
+
+    @property
     def error(self) -> Array:
         """e = estimate − truth of x, y (m) and θ (rad, wrapped) : (N, 3), nan without a truth"""
         return self._columns(2, 5)
@@ -173,6 +177,13 @@ class Series:
     def used(self) -> Booleans:
         """(N,) where a reading was taken and not refused"""
         return np.equal(self.refused, Refused.NOT)
+
+    @property
+    def span(self) -> str:
+        """How long the run is, in words: "80 steps", "1497 steps, 75 s"."""
+        steps = len(self) - 1
+        told = f"{steps} step" if steps == 1 else f"{steps} steps"
+        return f"{told}, {float(self.t[-1]):.6g} s" if self.clocked else told
 
     @property
     def lost_from(self) -> int | None:

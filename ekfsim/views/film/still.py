@@ -6,17 +6,20 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from ekfsim.errors import UsageError
-from ekfsim.files.results.writing import whole_file
+from ekfsim.files.results.writing import refuse_existing, whole_file
 from ekfsim.version import VERSION
 
 KINDS = (".png", ".svg", ".pdf")
 
 
-def refuse_other_kinds(target: Path) -> None:
-    """Raise UsageError where the name of a file says that it is no single picture."""
+def refuse(target: Path, force: bool) -> None:
+    """Raise UsageError where a file's name is not that of a single picture, or it may not be
+    written.
+    """
     if target.suffix.lower() not in KINDS:
         told = f"'{target.suffix}' is no" if target.suffix else "no ending tells the"
         raise UsageError(f"{target}: {told} kind of picture; name a .png, an .svg or a .pdf")
+    refuse_existing(target, force)
 
 
 def save(figure: Figure, target: Path, title: str, source: str, force: bool = False) -> None:
@@ -24,7 +27,7 @@ def save(figure: Figure, target: Path, title: str, source: str, force: bool = Fa
 
     Raises UsageError where the file is of another kind, or exists and `force` is False.
     """
-    refuse_other_kinds(target)
+    refuse(target, force)
     ending = target.suffix.lower().removeprefix(".")
     # svg draws names for its parts by lot, unless it is told what to begin with
     with whole_file(target, force) as path, rc_context({"svg.hashsalt": "ekfsim"}):
