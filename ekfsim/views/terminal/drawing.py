@@ -34,11 +34,16 @@ from ekfsim.views.terminal.readings import (
     outcome,
 )
 from ekfsim.views.terminal.wrapping import within
+from ekfsim.views.words.judgement import standing
 from ekfsim.world import Landmark, World
 
 WALL = Pen()
 UNKNOWN_WALL = Pen(ascii="%", on=4, off=3)  # stands there, and the filter does not know
 IMAGINED_WALL = Pen(ascii=":", on=1, off=3)  # the filter believes in it
+# where the truth is outside of them
+WARNING = "1;" + ansi("#D55E00")
+MISSED_ELLIPSE = Pen(WARNING, "*", on=4, off=2)
+MISSED_CONE = Pen(WARNING, "'", on=4, off=2)
 PATH = Pen(ansi("#56B4E9"), ".", on=1, off=2)
 ELLIPSE = Pen(ansi("#009E73"), "*")
 CONE = Pen(ansi("#009E73"), "'")
@@ -51,7 +56,10 @@ OTHERS = tuple(
 
 ROBOT = np.array([[2.5, 0.0], [-1.5, 1.75], [-1.5, -1.75]])  # cells' widths ahead and to the left
 HEADING = 3.5  # cells' widths from the true position to the end of its heading
-PLAIN = str.maketrans({"°": " deg", "−": "-", "–": "-"})  # for an output that knows ASCII alone
+ARROWS = dict(zip("→↗↑↖←↙↓↘", ("E", "NE", "N", "NW", "W", "SW", "S", "SE"), strict=True))
+PLAIN = str.maketrans(  # for an output that knows ASCII alone
+    {"°": " deg", "−": "-", "–": "-", "±": "+-", "σ": " sigma", "Σ": "sum of ", "·": "|", **ARROWS}
+)
 CROWDED = 300  # landmarks, above which none shows its number
 CONE_LENGTH = 0.25  # of the shorter side of the picture
 
@@ -71,28 +79,28 @@ def draw(
     jump ascii : for an output that cannot print braille
     """
     columns, rows = max(size[0], 1), max(size[1], 1)
-    heads = within(title(view, scene, ascii), columns, max(rows // 6, 1), ascii)
+    heads = within(title(view, scene, probability, ascii), columns, max(rows // 6, 1), ascii)
     canvas = Canvas(columns, max(rows - len(heads) - 1, 1), limits, ascii)
     legend = depict(canvas, view, scene, probability)
     bar = scale_bar(canvas)
     if len(heads) == 1 and cells(heads[0]) + cells(bar) + 2 <= columns:
         heads = [heads[0] + " " * (columns - cells(heads[0]) - cells(bar)) + bar]
     lines = [
-        *heads, *canvas.render(colour).split("\n"), legend_line(legend, columns, colour, ascii)
+        *heads, *canvas.render(colour).split("\n"), *legend_lines(legend, columns, 1, colour, ascii)
     ]  # fmt: skip
     return "\n".join(lines[:rows])
 
 
 def depict(canvas: Canvas, view: View, scene: Scene, probability: float) -> list[Item]:
     """Draw a view on a canvas; gives its legend, the most important first."""
-    step, (mean, P) = view.step, view.pose
+    step, mean = view.step, view.pose.mean
     legend = _draw_world(canvas, scene.world)
     canvas.polyline(view.path(), PATH)
     for other, pen in zip(view.others, OTHERS, strict=False):
         canvas.polyline(other.path(), pen)
     # over the path, so that their numbers stay whole
     _draw_landmarks(canvas, scene.world.landmarks)
-    belief = draw_particles(canvas, view) + _draw_uncertainty(canvas, mean, P, probability)
+    belief = draw_particles(canvas, view) + _draw_uncertainty(canvas, view, probability)
     legend += draw_fix(canvas, step.entry) + belief
     legend = _draw_others(canvas, view, scene, probability) + legend
     if view.beam:
@@ -177,11 +185,20 @@ def _place(ring: Array, box: Array) -> Array | None:
     return np.asarray(middles[best, 0]) if fits[best] else None
 
 
-def _draw_uncertainty(canvas: Canvas, mean: Array, P: Array, probability: float) -> list[Item]:
-    """The ellipse of the position and the cone of the heading. mean : (3,), P : (3, 3)"""
+def _draw_uncertainty(canvas: Canvas, view: View, probability: float) -> list[Item]:
+    """The ellipse of the position and the cone of the heading, in warning where the truth is not
+    inside.
+    """
+    mean, P = view.pose
     if not (np.isfinite(mean).all() and np.isfinite(P).all()):
         return [Item("!", "the belief is no number")]
-    canvas.polyline(outline(mean[:2], P[:2, :2], probability), ELLIPSE)
+    stands = standing(view, probability)
+    ellipse, cone = ELLIPSE, CONE
+    if stands.outside_ellipse:
+        ellipse = MISSED_ELLIPSE
+    if stands.outside_cone:
+        cone = MISSED_CONE
+    canvas.polyline(outline(mean[:2], P[:2, :2], probability), ellipse)
     xmin, xmax, ymin, ymax = canvas.bounds
     length, halfwidth = (
         CONE_LENGTH * min(xmax - xmin, ymax - ymin),
@@ -189,14 +206,14 @@ def _draw_uncertainty(canvas: Canvas, mean: Array, P: Array, probability: float)
     )
     if halfwidth < math.pi:
         for side in (halfwidth, -halfwidth):
-            canvas.polyline([mean[:2], mean[:2] + length * direction(mean[2] + side)], CONE)
+            canvas.polyline([mean[:2], mean[:2] + length * direction(mean[2] + side)], cone)
     return [
         Item(".." if canvas.ascii else "⠄⠠", "path", PATH.colour),
-        Item("*" if canvas.ascii else "⢎⡱", f"{100 * probability:g} % ellipse", ELLIPSE.colour),
+        Item("*" if canvas.ascii else "⢎⡱", f"{100 * probability:g} % ellipse", ellipse.colour),
         Item(
             "'" if canvas.ascii else "⡠⠊",
             "cone" if halfwidth < math.pi else "any heading",
-            CONE.colour,
+            cone.colour,
         ),
     ]
 
@@ -221,17 +238,17 @@ def _draw_robots(canvas: Canvas, mean: Array, truth: Array | None) -> list[Item]
     return [*legend, Item("o~" if canvas.ascii else "o⠒", "truth" + lost, TRUTH.colour)]
 
 
-def title(view: View, scene: Scene, ascii: bool = False) -> str:
+def title(view: View, scene: Scene, probability: float, ascii: bool = False) -> str:
     """What the picture shows: the number of the command, and what came of it."""
-    what, entry = _what(view, scene.world), view.step.entry
+    what, entry = _what(view, scene.world, probability), view.step.entry
     total = steps_of(scene)
     step = f"{entry.index} of {total}" if total else str(entry.index)
     told = f"{step if view.span is None else f't = {instants(*view.span)} s'}: {what}"
     return printable(told.translate(PLAIN) if ascii else told, ascii)
 
 
-def _what(view: View, world: World) -> str:
-    entry, step = view.step.entry, view.step
+def _what(view: View, world: World, probability: float) -> str:
+    entry = view.step.entry
     bumped = entry.bump is not None and int(entry.bump) >= 0
     match entry.command, entry.given:
         case Move(distance, angle, slip), _:
@@ -240,7 +257,7 @@ def _what(view: View, world: World) -> str:
                 ": bumped into a wall" if bumped else ""
             )
         case Sense(angle), _:
-            what = f"sense at {math.degrees(angle):.4g}°, {outcome(step, view.beam)}"
+            what = f"sense at {math.degrees(angle):.4g}°, {outcome(view, probability)}"
         case Kidnap(), _:
             what = "the robot is carried away, and the filter is not told"
         case Say(text), _:
@@ -251,7 +268,7 @@ def _what(view: View, world: World) -> str:
         case None, Control():
             what = "a motion input" if view.inputs == 1 else f"{view.inputs} motion inputs"
         case None, Reading(name=name):
-            what = f"{name}, {outcome(step, view.beam)}"
+            what = f"{name}, {outcome(view, probability)}"
         case _:
             what = f"the start in {world.name}"
     return what
@@ -266,13 +283,21 @@ def scale_bar(canvas: Canvas) -> str:
     return f"{left}{middle * (round(length / canvas.cell) - 2)}{right} {length:g} m"
 
 
-def legend_line(items: list[Item], columns: int, colour: bool, ascii: bool) -> str:
-    """As many items, from the first on, as there is room for."""
-    line, left = "", columns
+def legend_lines(
+    items: Sequence[Item], columns: int, most: int, colour: bool, ascii: bool
+) -> list[str]:
+    """As many items, from the first on, as there is room for in so many lines."""
+    lines, left = [""], columns
     for sample, word, paint_with in items:
         text = f"{sample} {word}"
-        left -= cells(text) + (2 if line else 0)
-        if left < 0:
+        if lines[-1] and cells(text) + 2 > left:
+            if len(lines) == most:
+                break
+            lines, left = [*lines, ""], columns
+        if cells(text) > left:
             break
-        line += ("  " if line else "") + (f"{paint(sample, paint_with)} {word}" if colour else text)
-    return line
+        left -= cells(text) + (2 if lines[-1] else 0)
+        lines[-1] += ("  " if lines[-1] else "") + (
+            f"{paint(sample, paint_with)} {word}" if colour else text
+        )
+    return lines

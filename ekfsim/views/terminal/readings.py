@@ -8,10 +8,11 @@ import numpy as np
 from ekfsim.filters.belief import Particles, Refused
 from ekfsim.geometry import Array
 from ekfsim.models.sensors.laser import Laser
-from ekfsim.records import Entry, Reading, Step
+from ekfsim.records import Entry, Reading
 from ekfsim.views.picture.sights import sight, told
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.braille import Canvas, Pen, ansi
+from ekfsim.views.words.changes import revised
 
 READ = ansi("#D55E00")
 BEAM, REFUSED_BEAM = Pen(READ, "-"), Pen(READ, "-", on=2, off=3)
@@ -71,14 +72,15 @@ def draw_particles(canvas: Canvas, view: View) -> list[Item]:
     return [Item("`" if canvas.ascii else "⠌⠂", "particles", PARTICLE.colour)]
 
 
-def outcome(step: Step, beam: bool) -> str:
+def outcome(view: View, probability: float) -> str:
     """What a reading said, while the beam is shown, and what became of it, after."""
+    step = view.step
     reading, correction = step.entry.given, step.correction
     if not isinstance(reading, Reading) or correction is None:
         return "not used"
     word = Refused(int(correction.refused)).word
-    if not beam:
-        return "the estimate is revised" if word is None else f"not used ({word})"
+    if not view.beam:
+        return revised(view, probability) if word is None else f"not used ({word})"
     if not isinstance(reading.sensor, Laser):
         outputs, refused = reading.sensor.outputs, "" if word is None else f"refused ({word}): "
         return (

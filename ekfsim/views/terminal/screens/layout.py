@@ -15,14 +15,19 @@ from ekfsim.views.terminal.braille import (
     CONTROL_SEQUENCE,
     Bounds,
     Canvas,
+    ansi,
     cells,
     paint,
     printable,
     shorten,
 )
-from ekfsim.views.terminal.drawing import PLAIN, depict, legend_line, scale_bar, title
+from ekfsim.views.terminal.drawing import PLAIN, depict, legend_lines, scale_bar, title
+from ekfsim.views.terminal.readings import Item
 from ekfsim.views.terminal.screens.moment import Moment
 from ekfsim.views.terminal.wrapping import within, wrapped
+from ekfsim.views.words.changes import losing
+from ekfsim.views.words.closing import meaning
+from ekfsim.views.words.judgement import judgement, warns
 
 # from so many columns side by side, from so many rows one above the other; the last column of a
 # terminal is left free
@@ -30,8 +35,11 @@ WIDE, HIGH = 110 - 1, 36
 NUMBERS = (48, 78)  # columns of the numbers beside a picture, from and to
 SHARE = 0.42  # of the width for them
 FLAT = 1.3  # how much larger a picture must become for the numbers to stand below it instead
-TITLE_LINES = 3
-BOLD, REVERSE, STRONG = "1", "7", "1;7"
+HEADS, HEADS_NARROW = 4, 5  # rows for what the step was and how it is judged
+TWO_LINES = 12  # rows of a picture from which on its legend may have two
+NARRATIVE = 26  # rows of the numbers of a reading, as most of them are
+WARNING_SIGN, WARNING = "⚠ ", "! "  # before a judgement that warns
+BOLD, REVERSE, WARNED = "1", "7", "1;" + ansi("#D55E00")
 
 
 class Panes(Enum):
@@ -81,15 +89,31 @@ class Layout:
             body = [w for line in moment.page.split("\n") for w in wrapped(line, self.columns)]
             lines, scroll = self._scrolled(body, self.rows - len(foot), scroll or 0)
             return [*_filled(lines, self.rows - len(foot)), *foot][-self.rows :], scroll
-        told = title(moment.view, self.scene, self.look.ascii)
-        heads = within(told, self.columns, min(TITLE_LINES, max(self.rows // 6, 1)),
-                       self.look.ascii)  # fmt: skip
+        heads = self._heads(moment)
         room = self.rows - len(heads) - len(foot)
-        heads = [self.look.strong(line) for line in heads]
         if room < 2:
             return [*heads, *foot][: self.rows - 1] + foot[-1:], 0
         body, scroll = self._body(moment, panes, room, scroll)
         return [*heads, *_filled(body, room), *foot], scroll
+
+    def _heads(self, moment: Moment) -> list[str]:
+        """What the step was and how its belief is to be judged; in every view of a run as many
+        lines, so that the picture stays where it is.
+        """
+        view, ascii = moment.view, self.look.ascii
+        rows = min(HEADS if self.columns >= WIDE else HEADS_NARROW, max(self.rows // 4, 1))
+        lines = within(title(view, self.scene, self.probability, ascii), self.columns,
+                       max(rows - 1, 1), ascii)  # fmt: skip
+        lines = [self.look.strong(line) for line in lines]
+        warned = warns(view, self.probability)
+        sign = (WARNING if ascii else WARNING_SIGN) if warned else ""
+        judged = sign + judgement(view, self.scene, self.probability, self.columns - len(sign))
+        for told in (judged, losing(view) or meaning(view)):
+            if told and len(lines) < rows:
+                told = printable(told.translate(PLAIN), True) if ascii else printable(told)
+                more = within(told, self.columns, rows - len(lines), ascii)
+                lines += [self.look.strong(line, WARNED if warned else BOLD) for line in more]
+        return _filled(lines, rows)
 
     def _body(
         self, moment: Moment, panes: Panes, room: int, scroll: int | None
@@ -101,9 +125,8 @@ class Layout:
         beside = min(max(round(SHARE * self.columns), NUMBERS[0]), NUMBERS[1])
         left = self.columns - beside - 3
         if self.columns < WIDE or (self.rows >= HIGH and self._flat(left, room)):
-            told = self._wrapped(moment, self.columns)
-            high = max(min(room - len(told[0]) - 1, self._needed(self.columns)), (room + 1) // 2)
-            picture = self._picture(moment, self.columns, min(high, self._needed(self.columns)))
+            high = min(max(room - NARRATIVE - 1, (room + 1) // 2), self._needed(self.columns))
+            picture = self._picture(moment, self.columns, high)
             numbers, scroll = self._numbers(moment, self.columns, room - len(picture) - 1, scroll)
             rule = ("-" if self.look.ascii else "─") * self.columns
             return [*picture, rule, *numbers], scroll
@@ -117,12 +140,13 @@ class Layout:
 
     def _picture(self, moment: Moment, columns: int, rows: int) -> list[str]:
         """The picture with its legend, in exactly so many rows."""
-        canvas = Canvas(columns, max(rows - 1, 1), self.limits, self.look.ascii)
+        two = 2 if rows > TWO_LINES else 1
+        canvas = Canvas(columns, max(rows - two, 1), self.limits, self.look.ascii)
         items = depict(canvas, moment.view, self.scene, self.probability)
-        bar = scale_bar(canvas)
-        legend = legend_line(items, columns - cells(bar) - 2, self.look.colour, self.look.ascii)
+        items.append(Item(*scale_bar(canvas).split(" ", 1)))
         drawn = canvas.render(self.look.colour).split("\n")
-        return [*drawn, _padded(legend, columns - cells(bar)) + bar][:rows]
+        legend = legend_lines(items, columns, two, self.look.colour, self.look.ascii)
+        return _filled([*drawn, *legend], rows)
 
     def _numbers(
         self, moment: Moment, columns: int, rows: int, scroll: int | None
@@ -175,7 +199,7 @@ class Layout:
             lines = [_joined([place, *hints], self.columns)]
         lines = lines[: max(self.rows // 3, 1)]
         if self.look.ascii:
-            lines = [printable(line.translate(PLAIN).replace("·", "-"), True) for line in lines]
+            lines = [printable(line.translate(PLAIN), True) for line in lines]
         lines = [shorten(line, self.columns, self.look.ascii) for line in lines]
         return [self.look.strong(_padded(line, self.columns), REVERSE) for line in lines]
 
@@ -194,7 +218,7 @@ class Layout:
         """The rows that a picture of so many columns fills, with its legend."""
         left, right, bottom, top = self.limits
         shape = max(top - bottom, 1e-9) / max(right - left, 1e-9)
-        return min(math.ceil(columns * shape / 2) + 1, self.rows)
+        return min(math.ceil(columns * shape / 2) + 2, self.rows)
 
 
 def _joined(parts: list[str], columns: int) -> str:
