@@ -28,7 +28,7 @@ from timing import optional, ratios
 from ekfsim.commands import Move, Sense
 from ekfsim.localization import play
 from ekfsim.scene import Scene
-from ekfsim.views.picture import limits
+from ekfsim.views.picture import scope
 from ekfsim.views.picture.frames import Frame, Picture
 from ekfsim.views.picture.look import STANDARD
 from ekfsim.views.playback.playback import views
@@ -43,7 +43,7 @@ def main() -> None:
     """Print the ratios."""
     scene = classroom()
     shown = list(views(play(scene)))[-20:]
-    extent = limits.of(scene, play(scene))
+    extent = scope.of(scene, play(scene))
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         frame, coming, target = Frame(scene, extent), cycle(shown), Path("ours.png")
         peers = {"a new matplotlib figure each": anew(scene, extent, cycle(shown)), **by_irsim()}
@@ -84,7 +84,7 @@ def rectangle(x: float, y: float) -> Any:
     return np.array([[x, y], [x + 0.8, y], [x + 0.8, y + 0.5], [x, y + 0.5]])
 
 
-def anew(scene: Scene, extent: limits.Limits, coming: Any) -> Callable[[], object]:
+def anew(scene: Scene, extent: scope.Scope, coming: Any) -> Callable[[], object]:
     """The same picture without a kept background: everything is drawn for each."""
 
     def task() -> None:

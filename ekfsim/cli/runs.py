@@ -81,7 +81,7 @@ def render(
     from ekfsim.files.results.outputs import kept
     from ekfsim.localization import play as steps_of
     from ekfsim.views.film import animation
-    from ekfsim.views.picture import limits
+    from ekfsim.views.picture import scope as scopes
     from ekfsim.views.picture.lettering import boxes
     from ekfsim.views.playback.playback import Tally, together
     from ekfsim.views.words.captions import texts
@@ -92,7 +92,7 @@ def render(
     names = scene.filter, *scene.beside
     runs = (kept(steps_of(first), [tally.write]), *map(steps_of, others))
     with redirect_stderr(StringIO()):  # what a filter prints it prints again as it is drawn
-        extent = limits.of_all(scene, runs, confidence)
+        extent = scopes.of_all(scene, runs, confidence)
     pictures = animation.number_of_pictures(tally.views, every)
     with click.progressbar(
         length=pictures, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()

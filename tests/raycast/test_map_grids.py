@@ -12,7 +12,7 @@ from ekfsim.files.scenes.load import check, load_scene
 from ekfsim.files.scenes.polygons import FloorPlan, fault_of
 from ekfsim.localization import play
 from ekfsim.raycast.walls import Walls
-from ekfsim.views.picture import limits
+from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.playback.playback import views
 
@@ -111,7 +111,7 @@ def test_pictures_tell_whole_coordinates(tmp_path):
     (tmp_path / "w.yaml").write_text(world_at(*PLACES[1]))
     (tmp_path / "c.yaml").write_text("world: w.yaml\ncommands: [{sense: {angle: 0}}]\n")
     scene = load_scene(tmp_path / "c.yaml")
-    frame = Frame(scene, limits.of_all(scene, [play(scene)], 0.9))
+    frame = Frame(scene, scopes.of_all(scene, [play(scene)], 0.9))
     frame.png(next(iter(views(play(scene)))), {})
     axes = frame.picture.figure.axes[0]
     for axis in (axes.xaxis, axes.yaxis):

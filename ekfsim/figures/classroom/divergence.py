@@ -21,7 +21,7 @@ from ekfsim.localization import play
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
-from ekfsim.views.picture.frames import HANDLERS
+from ekfsim.views.picture.legend import HANDLERS
 from ekfsim.views.picture.look import Look
 from ekfsim.views.playback.playback import views
 

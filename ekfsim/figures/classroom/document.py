@@ -11,7 +11,7 @@ from ekfsim.figures.classroom.ellipses import ellipse_size, theta_question
 from ekfsim.figures.classroom.proofs import proof_rows
 from ekfsim.localization import play
 from ekfsim.scene import Scene
-from ekfsim.views.picture import limits
+from ekfsim.views.picture import scope
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.playback.playback import views
 from ekfsim.views.playback.view import View
@@ -40,12 +40,12 @@ def draw_classroom(scene: Scene, album: Album) -> None:
 
 
 def contact_sheet(scene: Scene, album: Album) -> None:
-    """The display after some of the commands, the first with the legend of all."""
-    shown, extent = list(views(play(scene))), limits.of(scene, play(scene))
-    first, others = Frame(scene, extent), Frame(scene, extent, legend=False)
+    """The display after some of the commands."""
+    shown, extent = list(views(play(scene))), scope.of(scene, play(scene))
+    frame = Frame(scene, extent)
     figure = album.figure(15.0, 17.7)
     for axes, view in zip(figure.subplots(3, 2).flat, _chosen(shown), strict=True):
-        axes.imshow((others if view.number else first).rgb(view), interpolation="antialiased")
+        axes.imshow(frame.rgb(view), interpolation="antialiased")
         axes.set_axis_off()
     album.add(
         figure, "display", "The display after every command",

@@ -27,7 +27,8 @@ from ekfsim.localization import play
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Step
 from ekfsim.views.picture import limits
-from ekfsim.views.picture.frames import HANDLERS, draw
+from ekfsim.views.picture.frames import draw
+from ekfsim.views.picture.legend import HANDLERS
 from ekfsim.views.picture.look import Look
 from ekfsim.views.playback.playback import views
 from ekfsim.views.playback.view import View

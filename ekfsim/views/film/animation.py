@@ -14,8 +14,8 @@ from ekfsim.scene import Scene
 from ekfsim.views.film import gif, video
 from ekfsim.views.film.png import Pixels
 from ekfsim.views.picture.frames import Frame
-from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import STANDARD, Look
+from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
 
 BEAM, OTHER, LAST = 0.8, 1.2, 3.2  # s that a view stays
@@ -31,7 +31,7 @@ Progress = Callable[[int], object]  # told the number of pictures made so far
 def render(
     views: Iterable[View],
     scene: Scene,
-    limits: Limits,
+    scope: Scope,
     target: Path,
     *,
     look: Look = STANDARD,
@@ -59,7 +59,7 @@ def render(
     write_video = video.writer() if suffix == ".mp4" else None
     if suffix:
         refuse_existing(target, force)
-    frame, shown = Frame(scene, limits, look), _reported(thinned(views, every), progress)
+    frame, shown = Frame(scene, scope, look), _reported(thinned(views, every), progress)
     if suffix == "":
         with whole_folder(target, PATTERN, force=force) as folder:
             _number(folder, frame, shown, scene)

@@ -21,7 +21,7 @@ from ekfsim.scene import Scene
 from ekfsim.views.page.holding import Holding
 from ekfsim.views.page.scenery import inks, origin_of, scenery
 from ekfsim.views.page.told import Teller, ways
-from ekfsim.views.picture import limits as limits_of_run
+from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.look import STANDARD, Look
 from ekfsim.views.playback.playback import Tally, together
 
@@ -64,7 +64,7 @@ class Page:
         tally, (first, *others) = Tally(), runs
         with redirect_stderr(StringIO()):  # what a filter prints it prints again
             steps = kept(first, [tally.write])
-            limits = limits_of_run.of_all(scene, (steps, *others), look.probability)
+            limits = scopes.of_all(scene, (steps, *others), look.probability).whole
         origin, holding = origin_of(limits), Holding(tally.views, every)
         teller = Teller(scene, look, origin, limits.size, expanded_length(scene.commands))
         views, last = [], None

@@ -1,19 +1,18 @@
 """The picture of a view: on Axes of your own, or as a frame with legend, close-up and captions.
 
 draw(view, scene, ax)                                      # in a notebook
-Frame(scene, limits.of(scene, play(scene))).png(view)      # 900 × 700 pixels
+Frame(scene, scope.of(scene, play(scene))).png(view)      # 900 pixels wide
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
-from matplotlib.legend_handler import HandlerPathCollection, HandlerTuple
+from matplotlib.legend import Legend
 from matplotlib.text import Text
 
 from ekfsim.commands import expanded_length
@@ -21,28 +20,37 @@ from ekfsim.geometry.ellipse import outline
 from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.views.film.png import Encoder, Pixels
-from ekfsim.views.picture import limits as limits_of_run
+from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.artists import VERMILLION, empty
 from ekfsim.views.picture.labels import label_landmarks, label_obstacles
-from ekfsim.views.picture.lettering import drawable, families, wrapped
-from ekfsim.views.picture.limits import Limits, including
+from ekfsim.views.picture.layout import (
+    HIGHEST,
+    JUDGED,
+    MARGIN,
+    NOTES,
+    SPREAD,
+    TITLE,
+    WIDTH,
+    arranged,
+    fitting,
+)
+from ekfsim.views.picture.legend import HANDLERS, Legends, entries
+from ekfsim.views.picture.lettering import drawable, families, shortened, wrapped
+from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import STANDARD, Look
 from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.picture.panels import CloseUp, Main, reading
 from ekfsim.views.picture.replay import Replay
+from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.captions import notes, source, spread, title, too_large
 from ekfsim.views.words.judgement import judgement, warns
 
-INCHES, DPI = (9.0, 7.0), 100  # 900 × 700 pixels
-MAIN = (0.085, 0.08, 0.58, 0.76)  # left, bottom, width, height as shares of the figure
-CLOSE = (0.7, 0.08, 0.28, 0.36)
-HANDLERS: dict[type, Any] = {
-    tuple: HandlerTuple(ndivide=1),
-    PathCollection: HandlerPathCollection(numpoints=5),
-}
-ROOMY = 15  # entries of the legend that stand in its place at ease
-COLUMNS, LINES = 118, 3  # of the notes: characters in a line, and lines
+DPI = 100
+WHOLE = (0, 0, 1, 1)  # of the figure, until everything is in its place
+ROOMY = 14  # entries of the legend that stand in its place at ease
+LETTERS, LINES = 13.7, 3  # of the notes: characters to an inch, and lines
+TITLE_LETTERS = 9.5  # to an inch
 WARNING, BLACK = "⚠ ", "#000000"  # before a judgement that warns; the colour of one that does not
 
 
@@ -59,12 +67,12 @@ def draw(
     main = Main(
         ax,
         scene,
-        limits or limits_of_run.of(scene, [view.step], look.probability),
+        limits or scopes.of(scene, [view.step], look.probability).at(view),
         look.probability,
         look.conditional,
     )
     main.show(view, reading(view, scene))
-    handles, words = _legend(main.handles())
+    handles, words = entries(main.handles())
     ax.legend(handles, words, fontsize=8, handler_map=HANDLERS)
     return main
 
@@ -72,39 +80,42 @@ def draw(
 class Picture:
     """Everything on one figure: the main picture, the close-up, legend and captions."""
 
-    def __init__(self, figure: Figure, scene: Scene, limits: Limits, look: Look = STANDARD) -> None:
-        self._scene, self._probability = scene, look.probability
+    def __init__(self, figure: Figure, scene: Scene, scope: Scope, look: Look = STANDARD) -> None:
+        self._scene, self._scope, self._probability = scene, scope, look.probability
         self._total = expanded_length(scene.commands)
         self.figure = figure
         figure.set_facecolor("white")
-        self.main = Main(figure.add_axes(MAIN), scene, limits, look.probability, look.conditional)
-        self.close = CloseUp(figure.add_axes(CLOSE), scene, look.probability, look.conditional)
-        self.title = self._text(0.02, 0.955, 13, "title")
-        self.judgement = self._text(0.02, 0.928, 9.5, "judgement")
-        self.notes = self._text(0.02, 0.902, 9.5, "notes")
-        self.spread = self._text(CLOSE[0], 0.052, 8, "spread")
-        made = figure.text(
-            0.98,
-            0.012,
-            drawable(source(scene)),
-            fontsize=7,
-            ha="right",
-            color="#555555",
-            gid="source",
-        )
-        made.set(family=families(), parse_math=False)
-        handles, words = _legend(self.main.handles())
-        crowded = len(handles) > ROOMY
-        self.legend = figure.legend(
-            handles, words, loc="upper left", bbox_to_anchor=(CLOSE[0] - 0.015, 0.845),
-            borderaxespad=0.0,
-            fontsize=6.3 if crowded else 8, labelspacing=0.1 if crowded else 0.45, handlelength=2.4,
-            frameon=False,
-            handler_map=HANDLERS,
-        )  # fmt: skip
-        for words_of in self.legend.get_texts():
-            words_of.set(family=families(), parse_math=False)
+        probability, conditional = look.probability, look.conditional
+        self.main = Main(figure.add_axes(WHOLE), scene, scope.base, probability, conditional)
+        self.close = CloseUp(figure.add_axes(WHOLE, label="close"), scene, probability, conditional)
+        self.title, self.judgement = self._text(13, "title"), self._text(9.5, "judgement")
+        self.notes, self.spread = self._text(9.5, "notes"), self._text(8, "spread")
+        self._source = figure.text(0, 0, drawable(source(scene)), fontsize=7, gid="source")
+        self._source.set(family=families(), parse_math=False, ha="right", color="#555555")
+        self._legends = Legends(figure)
         self.names: list[Text] = []
+        self.arrange()
+
+    @property
+    def legend(self) -> Legend:
+        """What occurs in the view that is shown."""
+        return self._legends.shown
+
+    def arrange(self) -> None:
+        """Put everything in its place, for the size that the figure has."""
+        width, height = map(float, self.figure.get_size_inches())
+        self._layout = layout = arranged(width, height, self._scope.base.shape, rows(self.main))
+        self.main.axes.set_position(layout.share(layout.main))
+        self.main.limit(self.main.asked)
+        self.close.axes.set_position(layout.share(layout.close))
+        left, bottom, *_ = layout.close
+        self.title.place(MARGIN, height - TITLE)
+        self.judgement.place(MARGIN, height - JUDGED)
+        self.notes.place(MARGIN, NOTES)
+        self.spread.place(left, bottom - SPREAD + 0.05)
+        self._source.set_position((1 - MARGIN / width, 0.08 / height))
+        self._legends.arrange(layout)
+        self._legends.show(self.main.handles())
 
     def label(self) -> None:
         """Write the obstacles' names and the landmarks' numbers where the present limits leave room
@@ -117,51 +128,60 @@ class Picture:
         self.names = [*names, *label_landmarks(axes, world.landmarks, names)]
 
     def show(self, view: View) -> bool:
-        """Move everything to a view; whether the limits had to grow for it."""
-        needed = including(self.main.limits, view)
-        grown = needed != self.main.limits
-        if grown:
-            self.main.limit(needed)
+        """Move everything to a view; whether it shows another part of the plane."""
+        limits = self._scope.at(view)
+        moved = limits != self.main.asked
+        if moved:
+            self.main.limit(limits)
         read = reading(view, self._scene)
         self.main.show(view, read)
-        self.close.show(view, read, self.main.limits)
+        self.close.show(view, read, self._scope.base)
+        self._legends.show(self.main.handles())
         told = notes(view, self._scene, read, self._probability)
         x, P = view.pose
         if not self.main.limits.hold(outline(x, P[:2, :2], self._probability)):
             told = [*told, too_large(view, self._probability)]
-        self.title.set_text(title(view, self._total))
+        across = self._layout.width - 2 * MARGIN
+        columns = int(across * LETTERS)
+        self.title.set_text(shortened(title(view, self._total), int(across * TITLE_LETTERS)))
         warned = warns(view, self._probability)
-        judged = judgement(view, self._scene, self._probability, COLUMNS - len(WARNING))
+        judged = judgement(view, self._scene, self._probability, columns - len(WARNING))
         self.judgement.set_text(f"{WARNING if warned else ''}{judged}")
         self.judgement.set_facecolor(VERMILLION if warned else BLACK)
-        self.notes.set_text("\n".join(wrapped(told, COLUMNS, LINES)))
+        self.notes.set_text("\n".join(wrapped(told, columns, LINES)))
         self.spread.set_text(spread(view, self._probability))
-        return grown
+        return moved
 
     def moving(self) -> Iterator[Artist]:
-        """What differs from view to view, in the order it is drawn."""
+        """What differs from view to view but for the legend, in the order it is drawn."""
         yield from sorted(self.main.moving, key=Artist.get_zorder)
         yield from sorted(self.close.moving, key=Artist.get_zorder)
         yield from (self.title, self.judgement, self.notes, self.spread)
 
-    def _text(self, x: float, y: float, points: float, gid: str) -> OutlinedText:
-        text = OutlinedText(x, y, points, self.figure.transFigure, self.figure.dpi_scale_trans, gid)
+    def _text(self, points: float, gid: str) -> OutlinedText:
+        inches = self.figure.dpi_scale_trans
+        text = OutlinedText(0, 0, points, inches, inches, gid)
         self.figure.add_artist(text)
         return text
 
 
+def rows(main: Main) -> int:
+    """How many entries of the legend may stand below each other."""
+    return min(len(list(main.handles())), ROOMY)
+
+
 class Frame:
-    """Pictures of 900 × 700 pixels, many of one scene:
+    """Pictures 900 pixels wide and as high as the map asks for, many of one scene:
     what stands still is drawn once, what moves for each view.
     """
 
-    def __init__(
-        self, scene: Scene, limits: Limits, look: Look = STANDARD, legend: bool = True
-    ) -> None:
-        figure = Figure(figsize=INCHES, dpi=DPI)
+    def __init__(self, scene: Scene, scope: Scope, look: Look = STANDARD) -> None:
+        figure = Figure(figsize=(WIDTH, HIGHEST), dpi=DPI)
         self._canvas: Any = FigureCanvasAgg(figure)  # matplotlib leaves its methods untyped
-        self.picture = Picture(figure, scene, limits, look)
-        self.picture.legend.set_visible(legend)
+        self.picture = Picture(figure, scene, scope, look)
+        figure.set_size_inches(WIDTH, fitting(scope.base.shape, rows(self.picture.main)).height)
+        self.picture.arrange()
+        self._legends: dict[Legend, Any] = {}  # their pixels
         for artist in self.picture.moving():
             artist.set_animated(True)
         self._draw_still()
@@ -186,23 +206,24 @@ class Frame:
         if self.picture.show(view):
             self._draw_still()
         self._canvas.restore_region(self._still)
+        self._draw_legend()
         self._replay.draw(artist for artist in self.picture.moving() if not empty(artist))
         return np.asarray(self._canvas.buffer_rgba())
 
     def _draw_still(self) -> None:
         """Draw what does not move."""
         self.picture.label()
+        self.picture.legend.set_animated(True)
         self._canvas.draw()
         self._still = self._canvas.copy_from_bbox(self.picture.figure.bbox)
 
-
-def _legend(handles: Iterable[Artist | tuple[Artist, ...]]) -> tuple[list[Any], list[str]]:
-    """Handles, on top of each other where they are a tuple (which matplotlib's types do not know),
-    and their words.
-    """
-    shown = list(handles)
-    words = [
-        str((handle[0] if isinstance(handle, tuple) else handle).get_label()) for handle in shown
-    ]
-    # matplotlib leaves out what begins with _, as the name of a file may
-    return shown, [drawable(f" {word}" if word.startswith("_") else word) for word in words]
+    def _draw_legend(self) -> None:
+        """Draw the legend, or put the pixels there with which it was drawn before."""
+        legend = self.picture.legend
+        if legend in self._legends:
+            self._canvas.restore_region(self._legends[legend])
+            return
+        legend.set_animated(True)
+        legend.draw(self._canvas.get_renderer())
+        box = legend.get_window_extent()
+        self._legends[legend] = self._canvas.copy_from_bbox(box.padded(2))

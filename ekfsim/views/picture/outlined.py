@@ -39,19 +39,23 @@ class OutlinedText(PathPatch):
         halo: bool = False,
     ) -> None:
         """points : the letters' size; inches : the figure's dpi_scale_trans; halo : a white rim"""
-        origin = ScaledTranslation(x, y, system)  # type: ignore[arg-type]  # any affine transform will do
-        place = Affine2D().scale(points * PER_POINT) + inches + origin
+        self._letters, self._system = Affine2D().scale(points * PER_POINT) + inches, system
         super().__init__(
             Path(np.empty((0, 2))),
-            transform=place,
             facecolor="black",
             linewidth=0,
             gid=gid,
             zorder=7,
         )
         self._text = ""
+        self.place(x, y)
         if halo:
             self.set_path_effects([withStroke(linewidth=3, foreground="white")])
+
+    def place(self, x: float, y: float) -> None:
+        """Begin the first baseline elsewhere."""
+        # any affine transform will do
+        self.set_transform(self._letters + ScaledTranslation(x, y, self._system))  # type: ignore[arg-type]
 
     def set_text(self, text: str) -> None:
         """Show another text, in as many lines as it has."""

@@ -79,6 +79,7 @@ class Main:
         figure = self.axes.get_figure(root=True)
         assert figure is not None
         width, height = figure.get_size_inches()
+        self.asked = limits
         self.limits = limits.shaped(float(box.width * width / (box.height * height)))
         self.axes.set(
             xlim=(self.limits.left, self.limits.right), ylim=(self.limits.bottom, self.limits.top)
@@ -94,12 +95,13 @@ class Main:
         self.fixes.show(view.step.entry)
 
     def handles(self) -> Iterator[Artist | tuple[Artist, ...]]:
-        """What the legend shows, in its order."""
+        """What a legend may show, in its order; what comes and goes from view to view is last."""
         yield from self.belief.handles()
         for artists in self.others:
             yield from artists.handles()
         yield from self.world.handles()
         yield from self.fixes.handles()
+        yield from self.belief.passing()
         if not self._sensors.isdisjoint((Laser, UltrasonicBeam, InfraredBeam)):
             yield from self.beam.handles()
         yield from self.sight.handles()

@@ -73,10 +73,20 @@ class BeamArtists:
         self.expected = hollow(axes, "expected", "where it was expected to end", 3.9, BLUE, "D", 6)
         self.end = marks(axes, "beam-end", "", 3.8, VERMILLION, "", 8)
         self.end.set_markeredgewidth(1.5)
+        # never drawn: what the legend shows, and where what it stands for is to be seen
+        self._plain = _sample("beam, as measured", "-")
+        self._refused = _sample("beam, as measured, refused", "--")
+        self._lost = _sample("beam without an echo", ":")
+        self._air, self._wall = (
+            mark_end(Line2D([], [], color=VERMILLION, ls="none", ms=7, mew=1.5, label=label), solid)
+            for solid, label in ((False, "… ends in the air"), (True, "… ends in or behind a wall"))
+        )
+        self._ambiguous = _sample(str(self.probes.get_label()), ":", 1)
 
     def show(self, beam: Beam | None, far: float) -> None:
         """Move it to a beam, or away. far : m, how long a beam is drawn that meets nothing"""
-        for one in (self.measured, self.end, self.way, self.expected, self.arms):
+        samples = self._plain, self._refused, self._lost, self._air, self._wall, self._ambiguous
+        for one in (self.measured, self.end, self.way, self.expected, self.arms, *samples):
             place(one, NOWHERE)
         if beam is not None or not empty(self.probes):
             self.probes.set_segments(
@@ -89,9 +99,14 @@ class BeamArtists:
         place(self.arms, np.reshape(arms, (-1, 2)))
         echo = not np.isnan(beam.measured)
         self.measured.set_linestyle(":" if not echo else "--" if beam.refused else "-")
-        place(self.measured, ray(beam.pose, beam.measured, far))
+        seen = ray(beam.pose, beam.measured, far)
+        place(self.measured, seen)
+        place(self._lost if not echo else self._refused if beam.refused else self._plain, seen)
+        if beam.probes:
+            place(self._ambiguous, seen)
         if echo:
-            place(self.end, ray(beam.pose, beam.measured)[1:])
+            place(self._wall if beam.solid else self._air, seen[1:])
+            place(self.end, seen[1:])
             mark_end(self.end, beam.solid, beam.refused)
         if not np.isnan(beam.predicted):
             way = ray(beam.pose, beam.predicted)
@@ -100,15 +115,8 @@ class BeamArtists:
 
     def handles(self) -> Iterator[Artist]:
         """What the legend shows of it."""
-        yield self.measured
-        for solid, label in ((False, "… ends in the air"), (True, "… ends in or behind a wall")):
-            yield mark_end(
-                Line2D([], [], color=VERMILLION, ls="none", ms=7, mew=1.5, label=label), solid
-            )
-        yield Line2D([], [], color=VERMILLION, lw=2, ls="--", label="… is refused")
-        yield self.expected
-        yield Line2D([], [], color=VERMILLION, lw=1, ls=":", label=str(self.probes.get_label()))
-        yield self.walls
+        yield from (self._plain, self._refused, self._lost, self._air, self._wall)
+        yield from (self.expected, self._ambiguous, self.walls)
 
 
 class SightArtists:
@@ -124,12 +132,16 @@ class SightArtists:
         self.place = hollow(axes, "sight-place", "landmark that it is of", 3.5, VERMILLION, "o", 11)
         self.expected = hollow(axes, "sight-expected", "where it was expected", 4.6, BLUE, "D", 6)
         self.end = hollow(axes, "sight-end", "", 4.7, VERMILLION, "o", 7)
+        self._plain, self._refused = _sample(label, "-"), _sample(f"{label}, refused", "--")
 
     def show(self, sight: Sight | None) -> None:
         """Move it to a reading, or away."""
         lines = (self.line, self.end, self.way, self.expected, self.place)
         for one, points in zip(lines, _points(sight), strict=True):
             place(one, points)
+        for sample, is_refused in ((self._plain, False), (self._refused, True)):
+            known = sight is not None and bool(sight.refused) == is_refused
+            place(sample, sight.line if sight is not None and known else NOWHERE)
         if sight is not None:
             self.line.set_linestyle("--" if sight.refused else "-")
             self.line.set_linewidth(1.4 if sight.fix else 2)
@@ -141,8 +153,8 @@ class SightArtists:
             return
         points = POINTS & self._sensors
         end = mark(Line2D([], [], color=VERMILLION, ls="none"), points == {Position}, refused=False)
-        yield (self.line, end) if points else self.line
-        yield Line2D([], [], color=VERMILLION, lw=2, ls="--", label="… is refused")
+        yield (self._plain, end) if points else self._plain
+        yield self._refused
         yield self.way if self._sensors <= DIRECTIONS else self.expected
         if self._sensors - {Position, Yaw}:
             yield self.place
@@ -190,6 +202,11 @@ def recorded_fixes(entries: Iterable[Entry]) -> tuple[Array, Array]:
                 index.append(entry.index)
                 fixes.append((x, y))
     return np.array(index), np.array(fixes).reshape(-1, 2)
+
+
+def _sample(label: str, dashes: str, width: float = 2) -> Line2D:
+    """A line for the legend."""
+    return Line2D([], [], color=VERMILLION, lw=width, ls=dashes, label=label)
 
 
 def mark_end(line: Line2D, solid: bool, refused: Refused = Refused.NOT) -> Line2D:

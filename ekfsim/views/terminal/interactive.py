@@ -19,9 +19,9 @@ from ekfsim.errors import UsageError
 from ekfsim.files.yaml.telling import quoted
 from ekfsim.localization import play
 from ekfsim.scene import Scene
-from ekfsim.views.picture import limits
-from ekfsim.views.picture.limits import Limits
+from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.look import Look, get_ready
+from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.playback import UntilFailure
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal import drawing as terminal
@@ -62,7 +62,7 @@ def play_interactively(
         raise UsageError(_why_no_window())
     ahead = (UntilFailure(itertools.islice(play(one), LOOK_AHEAD)) for one in scene.alone())
     with redirect_stderr(StringIO()):  # what a filter prints it prints again as it is watched
-        extent = limits.of_all(scene, ahead, look.probability)
+        extent = scopes.of_all(scene, ahead, look.probability)
     pictures = Pictures(scene, extent, look, out, force)
     console = _console(scene, extent, look) if _in_place() else None
     window: Window | None = None
@@ -123,7 +123,7 @@ def _next_key(
             return name
 
 
-def _console(scene: Scene, extent: Limits, look: Look) -> Console:
+def _console(scene: Scene, extent: Scope, look: Look) -> Console:
     out = sys.stdout
     encoding = out.encoding or "utf-8"
 
@@ -138,10 +138,10 @@ def _console(scene: Scene, extent: Limits, look: Look) -> Console:
     return Console(scene, extent, look.probability, means, write)
 
 
-def _drawn(scene: Scene, extent: Limits, probability: float, view: View) -> str:
+def _drawn(scene: Scene, extent: Scope, probability: float, view: View) -> str:
     """The picture of a view in characters, as large as the terminal allows."""
     columns, rows = shutil.get_terminal_size()
-    e, size = extent, (min(columns - 1, WIDEST), min(rows - MARGIN, HIGHEST))
+    e, size = extent.at(view), (min(columns - 1, WIDEST), min(rows - MARGIN, HIGHEST))
     coloured = sys.stdout.isatty() and not {"NO_COLOR"} & set(os.environ)
     coloured = coloured and os.environ.get("TERM") != "dumb"
     bounds = e.left, e.right, e.bottom, e.top

@@ -14,7 +14,7 @@ from ekfsim.localization import play
 from ekfsim.provenance import metadata, told_in_a_line
 from ekfsim.views.film import animation, gif, video
 from ekfsim.views.film.animation import render
-from ekfsim.views.picture import limits
+from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.playback.playback import views
 
@@ -30,7 +30,7 @@ VIEWS = 7  # the start, two moves, two beams and what came of them
 
 
 def rendered(target, run=RUN, **how):
-    render(views(play(run)), run, limits.of(run, play(run)), target, **how)
+    render(views(play(run)), run, scopes.of(run, play(run)), target, **how)
     return target
 
 
@@ -39,7 +39,7 @@ def test_a_folder_of_numbered_pictures(tmp_path):
     assert made == [f"frame-{number:04d}.png" for number in range(VIEWS)]
     with Image.open(tmp_path / "out" / "frame-0002.png") as picture:
         assert picture.text == {**metadata(RUN), "View": "2"}
-        frame = Frame(RUN, limits.of(RUN, play(RUN)))
+        frame = Frame(RUN, scopes.of(RUN, play(RUN)))
         assert np.array_equal(np.asarray(picture), frame.rgb(list(views(play(RUN)))[2]))
 
 
@@ -66,7 +66,7 @@ def test_a_gif_has_a_frame_for_each_view_at_its_tempo_and_says_what_made_it(tmp_
 
 
 def test_a_gif_looks_like_its_pictures(tmp_path):
-    frame, every = Frame(RUN, limits.of(RUN, play(RUN))), list(views(play(RUN)))
+    frame, every = Frame(RUN, scopes.of(RUN, play(RUN))), list(views(play(RUN)))
     with Image.open(rendered(tmp_path / "run.gif")) as picture:
         for view in every:
             picture.seek(view.number)
@@ -115,7 +115,7 @@ def test_an_mp4_has_a_frame_for_each_view_at_its_tempo(tmp_path):
     shown = decoded(rendered(tmp_path / "run.mp4"))
     tenths = [0, 12, 24, 32, 44, 56, 64]
     assert [time for time, _ in shown] == [Fraction(tenth, 10) for tenth in tenths]
-    frame = Frame(RUN, limits.of(RUN, play(RUN)))
+    frame = Frame(RUN, scopes.of(RUN, play(RUN)))
     for (_, pixels), view in zip(shown, views(play(RUN)), strict=True):
         assert np.abs(pixels.astype(int) - frame.rgb(view)).mean() < 3
 
@@ -176,7 +176,7 @@ def test_nothing_is_left_of_a_run_that_breaks_off(tmp_path, name):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        render(broken(), RUN, limits.of(RUN, play(RUN)), tmp_path / name)
+        render(broken(), RUN, scopes.of(RUN, play(RUN)), tmp_path / name)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -189,7 +189,7 @@ def test_memory_does_not_grow_with_the_number_of_pictures(tmp_path, monkeypatch)
 
     def peak(times):
         run = scene(Repeat(times, (Sense(0.3),)), obstacles=(DESK,))
-        extent = limits.of(run, play(run))
+        extent = scopes.of(run, play(run))
         tracemalloc.start()
         render(views(play(run)), run, extent, tmp_path / f"{times}.gif")
         highest = tracemalloc.get_traced_memory()[1]

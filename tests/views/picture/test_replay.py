@@ -6,7 +6,8 @@ from scenes import DESK, rich, scene
 
 from ekfsim.commands import Kidnap, Move, Sense
 from ekfsim.localization import play
-from ekfsim.views.picture import limits, replay
+from ekfsim.views.picture import replay
+from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.picture.look import Look
 from ekfsim.views.playback.playback import views
@@ -28,7 +29,7 @@ SIGMA = (0.1, 0.1, 0.1)
     ],
 )
 def test_pixels_are_those_of_matplotlib(run, monkeypatch):
-    frame = Frame(run, limits.of(run, play(run)), Look(conditional=True))
+    frame = Frame(run, scopes.of(run, play(run)), Look(conditional=True))
     every = list(views(play(run)))
     shown = [frame.rgb(view) for view in [*every, *every]][len(every) :]
     assert len({pixels.tobytes() for pixels in shown}) == len(every)

@@ -132,9 +132,6 @@ class BeliefArtists:
         yield self.path
         yield self.ellipse
         yield self.cone
-        if self._true:
-            yield self.alarms
-        yield from self.ghost.handles()
         yield from self.conditioned.values()
         if self._crowd:
             yield self.particles
@@ -142,6 +139,12 @@ class BeliefArtists:
             yield self.heading, self.truth
             yield self.ways.true
         yield self.ways.reckoned
+
+    def passing(self) -> Iterator[Artist | tuple[Artist, ...]]:
+        """What it shows of what comes and goes."""
+        if self._true:
+            yield self.alarms
+        yield from self.ghost.handles()
 
 
 def _edges(axes: Axes, probability: float) -> Iterator[tuple[int, Line2D]]:

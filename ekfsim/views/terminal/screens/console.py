@@ -4,7 +4,7 @@ import shutil
 from collections.abc import Callable
 
 from ekfsim.scene import Scene
-from ekfsim.views.picture.limits import Limits
+from ekfsim.views.picture.scope import Scope
 from ekfsim.views.terminal.braille import shorten
 from ekfsim.views.terminal.keys.bindings import Action
 from ekfsim.views.terminal.screens.layout import Layout, Look, Panes, ample
@@ -25,7 +25,7 @@ class Console:
     def __init__(
         self,
         scene: Scene,
-        extent: Limits,
+        extent: Scope,
         probability: float,
         look: Look,
         write: Callable[[str], object],
@@ -95,7 +95,7 @@ class Console:
         size = columns, rows = self._now()
         if not self._inside:
             return
-        e = self._extent
+        e = self._extent.at(self._moment.view)
         layout = Layout(self._scene, self._probability, (e.left, e.right, e.bottom, e.top),
                         columns, rows, self._look)  # fmt: skip
         lines, scroll = layout.lines(self._moment, self._what(size), self._scroll)

@@ -9,8 +9,8 @@ from ekfsim.errors import EkfsimError
 from ekfsim.files.results.writing import whole_file
 from ekfsim.provenance import metadata
 from ekfsim.scene import Scene
-from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import Look, get_ready
+from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.keys.bindings import Action
 from ekfsim.views.terminal.screens.moment import Moment
@@ -24,7 +24,7 @@ class Pictures:
 
     keeps = False
 
-    def __init__(self, scene: Scene, extent: Limits, look: Look, out: Path, force: bool) -> None:
+    def __init__(self, scene: Scene, extent: Scope, look: Look, out: Path, force: bool) -> None:
         self._scene, self._extent, self._look = scene, extent, look
         self._out, self._force = out, force
         self._frame: Frame | None = None

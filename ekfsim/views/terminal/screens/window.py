@@ -11,9 +11,9 @@ from typing import Any
 from matplotlib.backend_bases import Event, KeyEvent
 
 from ekfsim.scene import Scene
-from ekfsim.views.picture.frames import DPI, INCHES, Picture
-from ekfsim.views.picture.limits import Limits
+from ekfsim.views.picture.frames import DPI, Picture
 from ekfsim.views.picture.look import STANDARD, Look
+from ekfsim.views.picture.scope import Scope
 from ekfsim.views.terminal.keys.bindings import Action
 from ekfsim.views.terminal.keys.keyboard import NO_MORE
 from ekfsim.views.terminal.screens.moment import Moment
@@ -26,6 +26,7 @@ BACKENDS = {  # matplotlib's, each with the modules of which it needs one
     "tkagg": ("_tkinter",),
     "wxagg": ("wx",),
 }
+SIZE = (9.0, 6.1)  # inches: with title and tool bar it fits a screen of 1366 × 768
 PATIENCE = 20  # s for a display to answer
 LONGEST_WAIT = 0.05  # s between two looks for keys while a poll has no end
 TRIAL = (
@@ -78,7 +79,7 @@ class Window:
 
     keeps = False
 
-    def __init__(self, scene: Scene, limits: Limits, look: Look = STANDARD) -> None:
+    def __init__(self, scene: Scene, scope: Scope, look: Look = STANDARD) -> None:
         from matplotlib import pyplot, rcParams
 
         pyplot.switch_backend(backend() or "agg")
@@ -88,9 +89,9 @@ class Window:
         self._pressed: deque[str] = deque()
         self.closed = False
         self._name = f"ekfsim: {scene.world.name}"
-        self._figure = pyplot.figure(num=self._name, figsize=INCHES, dpi=DPI)
+        self._figure = pyplot.figure(num=self._name, figsize=SIZE, dpi=DPI)
         self._canvas: Any = self._figure.canvas  # matplotlib leaves most of its methods untyped
-        self._picture = Picture(self._figure, scene, limits, look)
+        self._picture = Picture(self._figure, scene, scope, look)
         self._canvas.mpl_connect("key_press_event", self._press)
         self._canvas.mpl_connect("close_event", self._close)
         self._picture.label()

@@ -12,7 +12,7 @@ from scenes import DESK, SILENT, rich, scene, told
 from ekfsim.commands import Kidnap, Move, Say, Sense
 from ekfsim.geometry.ellipse import outline, radius_factor
 from ekfsim.localization import play
-from ekfsim.views.picture import limits
+from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.artists import empty
 from ekfsim.views.picture.belief.belief import BeliefArtists
 from ekfsim.views.picture.belief.warned import ALARM_DASHES
@@ -29,7 +29,7 @@ def artist(axes, gid):
 
 
 def main(run):
-    return Main(Figure().add_subplot(), run, limits.of(run, play(run)), 0.954, False)
+    return Main(Figure().add_subplot(), run, scopes.of(run, play(run)).base, 0.954, False)
 
 
 def seen(axes):

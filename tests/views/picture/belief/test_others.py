@@ -13,7 +13,7 @@ from ekfsim.commands import Move, Sense
 from ekfsim.diagnostics.coverage import inside_ellipse
 from ekfsim.geometry.ellipse import outline
 from ekfsim.localization import play
-from ekfsim.views.picture import limits
+from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.belief.others import STYLES
 from ekfsim.views.picture.frames import Picture
 from ekfsim.views.playback.playback import Playback, together, views
@@ -31,7 +31,12 @@ EVERY = list(together(play(RUN), [play(one) for one in RUN.alone()[1:]]))
 def picture(run):
     figure = Figure(figsize=(9, 7), dpi=100)
     FigureCanvasAgg(figure)
-    return Picture(figure, run, limits.of_all(run, map(play, run.alone())))
+    return Picture(figure, run, scopes.of_all(run, map(play, run.alone())))
+
+
+def said(made, shown):
+    made.show(shown[-1])
+    return [text.get_text() for text in made.legend.get_texts()]
 
 
 def artist(axes, gid):
@@ -71,14 +76,13 @@ def test_estimate_path_and_ellipse_of_each_are_drawn_in_both_axes(view):
 
 
 def test_the_legend_names_every_filter():
-    words = [text.get_text() for text in picture(RUN).legend.get_texts()]
+    words = said(picture(RUN), EVERY)
     assert words[0] == "ekf: estimate"
     assert [word for word in words if "ellipse, path" in word] == [
         f"{n}: estimate, ellipse, path" for n in RUN.beside
     ]
-    assert "estimate" in [
-        text.get_text() for text in picture(replace(RUN, beside=())).legend.get_texts()
-    ]
+    alone = replace(RUN, beside=())
+    assert "estimate" in said(picture(alone), list(views(play(alone))))
 
 
 def test_none_is_told_from_another_by_colour_alone():
@@ -105,11 +109,11 @@ def test_the_limits_hold_every_estimate():
     far = replace(
         EVERY[-1], others=tuple(views(play(replace(RUN, world=replace(RUN.world, told=told)))))[:1]
     )
-    extent = limits.of(RUN, play(RUN))
-    assert not extent.hold(far.others[0].path())
-    assert limits.including(extent, far).hold(far.others[0].path())
-    both = limits.of_all(RUN, [play(RUN), play(replace(RUN, world=replace(RUN.world, told=told)))])
-    assert both.hold(far.others[0].path())
+    extent = scopes.of(RUN, play(RUN))
+    assert not extent.at(far).hold(far.others[0].path())
+    assert replace(extent, last=-1).at(far).hold(far.others[0].path())
+    both = scopes.of_all(RUN, [play(RUN), play(replace(RUN, world=replace(RUN.world, told=told)))])
+    assert both.at(far).hold(far.others[0].path())
 
 
 def test_the_terminal_shows_the_first_letter_of_each():
@@ -155,8 +159,8 @@ def test_the_same_twice_does_not_differ():
 @pytest.mark.parametrize("name", ["_mine.py", "a $very$ long name of a file of somebody.py"])
 def test_the_legend_names_a_file_as_it_is_called(name):
     made = picture(replace(RUN, filter="ekf", beside=("ukf",)))
-    own = Picture(made.figure, replace(RUN, beside=(f"/tmp/{name}",)), made.main.limits)
-    words = [text.get_text().strip() for text in own.legend.get_texts()]
+    own = Picture(made.figure, replace(RUN, beside=(f"/tmp/{name}",)), made._scope)
+    words = [word.strip() for word in said(own, [replace(EVERY[-1], others=EVERY[-1].others[:1])])]
     assert any(word.startswith(name[:15]) and "estimate, ellipse" in word for word in words)
     made.figure.canvas.draw()
 
