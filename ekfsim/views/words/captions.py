@@ -73,7 +73,12 @@ def notes(
     if view.beam:  # there is much to say of it
         return _notes(view, scene, read, probability)
     parted = (apart.told for apart in view.apart if apart.since is not None)
-    said = [losing(view), meaning(view), *parted, *_notes(view, scene, read, probability)]
+    said = [
+        losing(view, watching(scene)),
+        meaning(view),
+        *parted,
+        *_notes(view, scene, read, probability),
+    ]
     return [paragraph for paragraph in said if paragraph]
 
 
@@ -100,9 +105,14 @@ def _notes(view: View, scene: Scene, read: Beam | Sight | None, probability: flo
     if step.entry.bump is not None and (wall := int(step.entry.bump)) >= 0:
         told.append(f"bumped into {called(scene.world.map.walls.name(wall)[0])}")
     if step.correction is None:
-        return [*told, carried(view, probability)]
-    refused = Refused(int(step.correction.refused))
-    return [REFUSALS[refused] + "; the estimate stays" if refused else revised(view, probability)]
+        changed = carried(view, probability)
+    else:
+        refused = Refused(int(step.correction.refused))
+        changed = (
+            REFUSALS[refused] + "; the estimate stays" if refused else revised(view, probability)
+        )
+    whose = f"{watching(scene)[0]}: " if view.others and changed else ""
+    return [*told, f"{whose}{changed}"]
 
 
 def _ranges(beam: Beam) -> list[str]:

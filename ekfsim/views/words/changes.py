@@ -3,7 +3,7 @@ grew or shrank, what a reading was worth, and whether it was the one that lost t
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -109,20 +109,25 @@ def worth(correction: Correction) -> Iterator[str]:
     yield f"the reading was {word} ({off})"
 
 
-def losing(view: View) -> str:
+def losing(view: View, names: Sequence[str]) -> str:
     """That the run is lost since this very view, and how far off the estimate is; else nothing.
-    In the last view the verdict says as much.
+    In the last view the verdict says as much. names : of the filters that watch
     """
-    step = view.step
-    if view.judged.closing is not None or not fatal(view) or step.entry.truth is None:
+    truth, given = view.step.entry.truth, view.step.entry.given
+    every = zip(names, (view, *view.others), strict=True)
+    lost = [(name, one) for name, one in every if fatal(one)]
+    if view.judged.closing is not None or truth is None or not lost:
         return ""
-    off = f"the estimate is off by {_off(view.pose, step.entry.truth)}"
-    if isinstance(step.entry.given, Reading):
-        before = _off(posed(step.prior, view.layout), step.entry.truth)
-        return f"with this reading the run is lost: {off}, before it was by {before}"
-    if step.entry.index == 0:
-        return f"lost from the start: {off}"
-    return f"with this step the run is lost: {off}"
+    what = "reading" if isinstance(given, Reading) else "step"
+    when = f"with this {what}" if view.step.entry.index else "from the start"
+    if view.others:
+        told = (f"{name} (off by {_off(one.pose, truth)})" for name, one in lost)
+        return f"lost {when}: {', '.join(told)}"
+    off = f"the estimate is off by {_off(view.pose, truth)}"
+    if not isinstance(given, Reading):
+        return f"lost {when}: {off}"
+    before = _off(posed(view.step.prior, view.layout), truth)
+    return f"lost {when}: {off}, before it was by {before}"
 
 
 def _off(pose: Gaussian, truth: Array) -> str:

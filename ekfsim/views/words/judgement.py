@@ -163,12 +163,12 @@ def _nees(stands: Standing) -> Part | None:
         told = "nothing is uncertain, and the estimate is right"
         return Part(told, told, "certain, and right", "certain")
     bound, value = figure(quantile(LOST, dof)), figure(float(nees.value))
-    told = f"NEES {value} ({bound})"
+    alone, bounded = f"NEES {value}", f"NEES {value} ({bound})"
     return Part(
         f"NEES {value} ({dof} dof, {_percent(LOST)}: {bound})",
-        told,
-        told,
-        "" if stands.lost else f"NEES {value}",
+        bounded,
+        alone if stands.lost else bounded,
+        "" if stands.lost else alone,
     )
 
 
@@ -182,15 +182,16 @@ def _sides(view: View, stands: Standing) -> Part | None:
         return None  # nothing is drawn around an estimate that is certain
     match stands.outside_ellipse, stands.outside_cone:
         case False, False:
-            side, least = "inside ellipse and cone", "inside"
+            side, small, least = "inside ellipse and cone", "inside both", "inside"
         case True, True:
-            side, least = "outside ellipse and cone", "outside"
+            side, small, least = "outside ellipse and cone", "outside both", "outside"
         case True, False:
-            side, least = "outside ellipse, inside cone", "outside ellipse"
+            side, small = "outside ellipse, inside cone", "outside ellipse"
+            least = small
         case _:
-            side, least = "inside ellipse, outside cone", "outside cone"
-    told = side.replace(" and ", ", ") if least in ("inside", "outside") else least
-    return Part(f"truth {side}", f"truth {side}", told, least)
+            side, small = "inside ellipse, outside cone", "outside cone"
+            least = small
+    return Part(f"truth {side}", f"truth {side}", f"truth {small}", least)
 
 
 def _lost(stands: Standing) -> Part | None:

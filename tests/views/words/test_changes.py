@@ -13,7 +13,7 @@ from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry.ellipse import ellipse
 from ekfsim.localization import play
 from ekfsim.views.picture.panels import reading
-from ekfsim.views.playback.playback import views
+from ekfsim.views.playback.playback import together, views
 from ekfsim.views.words.captions import notes
 from ekfsim.views.words.changes import carried, moved, revised
 from ekfsim.views.words.numbers import length
@@ -102,10 +102,12 @@ def test_the_motion_inputs_of_one_view_are_told_together():
 
 def test_the_reading_that_loses_the_run_says_so():
     said = captions(load_scene("diverge-01-wrong-wall"))
-    losing = [n for n, view in enumerate(said) if any("the run is lost" in note for note in view)]
+    losing = [
+        n for n, view in enumerate(said) if any(note.startswith("lost with") for note in view)
+    ]
     assert losing == [23]
     assert said[23][0] == (
-        "with this reading the run is lost: the estimate is off by 28.4 cm and 11.3°, "
+        "lost with this reading: the estimate is off by 28.4 cm and 11.3°, "
         "before it was by 11 cm and 3.78°"
     )
     assert "the reading was very surprising (9.1σ off)" in said[23][1]
@@ -115,7 +117,7 @@ def test_a_start_and_a_step_that_lose_the_run_say_so():
     wrong = told(scene(Move(0.1, 0), sigma=SIGMA), start=np.array([3.0, 1.0, 0.5]))
     assert captions(wrong, 0)[0].startswith("lost from the start: the estimate is off by 1.99 m")
     carried_away = captions(scene(Kidnap(5, 5, 2), Move(0.1, 0), sigma=SIGMA), 1)
-    assert carried_away[0].startswith("with this step the run is lost: the estimate is off by")
+    assert carried_away[0].startswith("lost with this step: the estimate is off by")
     assert carried_away[1].startswith("the robot was carried away")
 
 
@@ -137,6 +139,17 @@ def test_the_other_walls_of_an_ambiguous_beam_are_named():
     run = scene(Sense(0), start=(1, 3.1, 0), sigma=(0.01, 0.1, 0.01), obstacles=(DESK,))
     range_told, doubt = captions(run, 1)
     assert range_told.startswith("measured 3")
-    assert doubt.startswith("ambiguous: from 0.")
-    assert "it would meet the room's wall, edge 2" in doubt
-    assert "not desk, edge 4" in doubt
+    assert doubt == (
+        "ambiguous: from 30 cm to the right it would meet edge 2 of the room's wall, "
+        "not edge 4 of desk"
+    )
+
+
+def test_of_several_filters_each_that_a_reading_loses_is_named():
+    run = replace(load_scene("diverge-01-wrong-wall"), beside=("ukf", "iekf"))
+    first, *others = map(play, run.alone())
+    view = list(together(first, others, run.watching))[23]
+    said = notes(view, run, None, 0.954)
+    assert re.match(r"lost with this reading: ekf \(off by 28.4 cm and 11.3°\), ukf \(", said[0])
+    assert "iekf" not in said[0]
+    assert said[-1].startswith("ekf: the estimate moved")

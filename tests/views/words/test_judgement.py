@@ -142,6 +142,10 @@ def test_several_filters_are_judged_each_by_itself():
         "ekf: outside, lost since step 13 · ukf: outside, lost since step 13 · "
         "iekf: NEES 10.7, outside"
     )
+    two, run_of_two = beside(WRONG_WALL, "ekf", "ukf")
+    assert judgement(two[23], run_of_two, 0.954, 118).startswith(
+        "ekf: NEES 20341, truth outside both, lost since step 13 · ukf: NEES "
+    )
     assert judgement(seen[-1], run, 0.954, 118).startswith(
         "ekf: lost since step 13, outside · ukf: consistent, inside · iekf: "
     )

@@ -3,6 +3,7 @@ where it ends in the filter's map, and where else it might have ended.
 """
 
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -22,6 +23,7 @@ from ekfsim.views.words.beams.told import elsewhere, others_met
 from ekfsim.views.words.numbers import length
 from ekfsim.world import BOUNDARY, Map
 
+IN_METRES = re.compile(r"([\d.e-]+) m\b")
 TOUCHING = 1e-9  # of the range: what rounding makes of an end on the wall
 
 
@@ -139,7 +141,9 @@ def doubt(sensor: BeamSensor, sighting: Sighting, x: Array) -> str:
     there, and what from the others.
     """
     first = next(others_met(sensor.walls, sighting))
-    place = elsewhere(x, sighting.probes[first]).replace(" degrees", "°")
+    place = IN_METRES.sub(
+        lambda found: length(float(found[1])), elsewhere(x, sighting.probes[first])
+    ).replace(" degrees to the", "°")
     met, *more = (_edge_of(sensor, wall) for wall in other_walls(sensor, sighting))
     others = f" ({' or '.join(more)} from others)" if more else ""
     return f"from {place} it would meet {met}{others}, not {_edge_of(sensor, int(sighting.wall))}"
@@ -149,7 +153,7 @@ def _edge_of(sensor: BeamSensor, wall: int) -> str:
     if wall < 0:
         return "no wall"
     name, edge = sensor.walls.name(wall)
-    return f"{called(name)}, edge {edge + 1}"
+    return f"edge {edge + 1} of {called(name)}"
 
 
 def called(name: str) -> str:
