@@ -108,7 +108,7 @@ class Layout:
         warned = warns(view, self.probability)
         sign = (WARNING if ascii else WARNING_SIGN) if warned else ""
         judged = sign + judgement(view, self.scene, self.probability, self.columns - len(sign))
-        for told in (judged, losing(view) or meaning(view)):
+        for told in (judged, losing(view, self.scene.watching) or meaning(view)):
             if told and len(lines) < rows:
                 told = printable(told.translate(PLAIN), True) if ascii else printable(told)
                 more = within(told, self.columns, rows - len(lines), ascii)
