@@ -6,19 +6,21 @@ from ekfsim.cli.process import say, warn
 from ekfsim.errors import UsageError
 
 if TYPE_CHECKING:
+    from ekfsim.files.given.given import Given
     from ekfsim.scene import Scene
     from ekfsim.study.running.engines import Engine
     from ekfsim.systems.document import DocumentReading
 
 
 def scene_of(
-    commands: str, world: str | None = None, seed: int | None = None, run_number: int = 0,
+    commands: "str | Given", world: str | None = None, seed: int | None = None, run_number: int = 0,
     filter_name: str | None = None, gate: float | Literal["off"] | None = None,
     guard: str | None = None,
     log: str | None = None, reading: str = "corrected", settings: tuple[str, ...] = (),
     particles: int | None = None,
 ) -> "Scene":  # fmt: skip
-    """The scene of a commands file, overruled by the options that were given.
+    """The scene of a commands file, or of what one would hold, overruled by the options that were
+    given.
     filter_name : one, or several: ekf,ukf
     """
     from dataclasses import replace
@@ -31,10 +33,9 @@ def scene_of(
 
     names = () if filter_name is None else filters_in(filter_name)
     world_file = None if world is None else resolve(world, "worlds")
+    read = resolve(commands, "commands") if isinstance(commands, str) else commands
     overruling = [*(setting(text) for text in settings), *particles_of(particles)]
-    found = read_scene(
-        resolve(commands, "commands"), world_file, log, cast("DocumentReading", reading), overruling
-    )
+    found = read_scene(read, world_file, log, cast("DocumentReading", reading), overruling)
     warn(found.warnings)
     scene = found.get()
     refuse_unread(overruling, names or (scene.filter,))

@@ -127,13 +127,14 @@ WORLD = click.option(
     "--world", help="A world file or packaged world in place of the one that COMMANDS names."
 )
 SEED = click.option("--seed", type=Seed(), help="In place of the file's seed.")
+RUN = click.option(
+    "--run", "run_number", type=Whole(0, MOST), default=0, help="Which run of the seed."
+)
 PLAYED = (  # which run of which file
     click.argument("commands"),
     WORLD,
     SEED,
-    click.option(
-        "--run", "run_number", type=Whole(0, MOST), default=0, help="Which run of the seed."
-    ),
+    RUN,
     click.option(
         "--log",
         type=Source(),
@@ -172,35 +173,40 @@ MADE_WHERE = (
 )
 
 
+WATCHED = (  # by whom a run is watched
+    click.option(
+        "--filter",
+        "filter_name",
+        metavar="NAME,…",
+        help="In place of the file's filter: "
+        "kf, kf-nominal, ekf, iekf, ukf, ukf-augmented or pf, or one of your own, FILE.py, "
+        "FILE.py:NAME or package.module:NAME. Several are put side by side; the name of "
+        "each then stands before the ending of its files.",
+    ),
+    GATE,
+    GUARD,
+    SET,
+    PARTICLES,
+    click.option(
+        "--confidence",
+        type=Probability(),
+        default=0.954,
+        show_default=True,
+        help="Probability of the ellipse and the cone.",
+    ),
+    PLAIN,
+)
+
+
 def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options by which every command that plays a scene may overrule its file."""
-    return with_options(
-        command,
-        [
-            *PLAYED,
-            click.option(
-                "--filter",
-                "filter_name",
-                metavar="NAME,…",
-                help="In place of the file's filter: "
-                "kf, kf-nominal, ekf, iekf, ukf, ukf-augmented or pf, or one of your own, FILE.py, "
-                "FILE.py:NAME or package.module:NAME. Several are put side by side; the name of "
-                "each then stands before the ending of its files.",
-            ),
-            GATE,
-            GUARD,
-            SET,
-            PARTICLES,
-            click.option(
-                "--confidence",
-                type=Probability(),
-                default=0.954,
-                show_default=True,
-                help="Probability of the ellipse and the cone.",
-            ),
-            PLAIN,
-        ],
-    )
+    return with_options(command, [*PLAYED, *WATCHED])
+
+
+def drive_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The same of the command that makes a commands file."""
+    place = click.argument("place", metavar="WORLD|COMMANDS")
+    return with_options(command, [place, WORLD, SEED, RUN, *WATCHED])
 
 
 def study_options(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -184,7 +184,7 @@ def _written(about: float, suits: Callable[[float], bool]) -> str:
     texts = [f"{about:.{digits}g}" for digits in range(FEWEST, MOST)]
     texts += map(repr, near)
     found = next((text for text in texts if suits(float(text))), repr(about))
-    return found.removesuffix(".0")
+    return _number(float(found))
 
 
 def _text(text: str) -> str:

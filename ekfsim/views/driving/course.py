@@ -79,6 +79,12 @@ class Course:
         self._obey(again)
         return again
 
+    over = True  # all views there are have been made
+
+    def __len__(self) -> int:
+        """How many views there are."""
+        return len(self._views)
+
     def view(self, number: int) -> View | None:
         """View `number`, or None where the run has not come so far."""
         return self._views[number] if number < len(self._views) else None
@@ -106,6 +112,11 @@ class Course:
         kept = self._kept
         whence = f" from step {kept} of {self.scene.commands_source} on" if kept else ""
         return replace(self.scene, commands=self.driven, description=f"Driven by hand{whence}.")
+
+    @property
+    def steps(self) -> list[list[Step]]:
+        """Of each filter that watches."""
+        return [watch.steps for watch in self._watches]
 
     @property
     def summaries(self) -> list[Summary]:
@@ -220,9 +231,9 @@ class Watch:
 def refuse_what_is_not_driven(scene: Scene) -> None:
     """Raise UsageError where the robot of a scene obeys no commands."""
     if scene.log is not None:
-        wrong = "is a recorded log: what happened in it stays as it is"
+        wrong = "it is a recorded log, and what happened in it stays as it is"
     elif not scene.commanded:
-        wrong = f"the robot of system {scene.world.system} follows its own way and no commands"
+        wrong = f"the robot of the system {scene.world.system} follows its way and no commands"
     else:
         return
     raise UsageError(

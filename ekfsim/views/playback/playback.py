@@ -3,7 +3,7 @@
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from ekfsim.commands import Move, Untold
 from ekfsim.diagnostics.verdict import Evidence
@@ -169,6 +169,24 @@ class Tally:
         self._inputs = self._inputs % GATHERED + 1 if _gathered(entry) else 0
         if self._inputs <= 1:
             self.views += 2 if isinstance(entry.given, Reading) else 1
+
+
+class Run(Protocol):
+    """Views by number, however they come about."""
+
+    @property
+    def over(self) -> bool:
+        """Whether there are no more than have been made."""
+
+    @property
+    def failure(self) -> StepError | None:
+        """What the run failed by, once what comes before it has been asked for."""
+
+    def __len__(self) -> int:
+        """How many there are so far."""
+
+    def view(self, number: int) -> View | None:
+        """View `number`, or None where the run is over before it."""
 
 
 class Playback:

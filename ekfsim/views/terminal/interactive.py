@@ -1,50 +1,28 @@
-"""Puts an interactive run together:
-keys from the terminal and the window, pictures on the screen that there is.
-"""
+"""Puts an interactive run together: what is played or driven, on the screens that there are."""
 
 import itertools
-import math
-import os
-import shutil
 import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stderr
-from functools import partial
+from contextlib import redirect_stderr, suppress
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
 
-from ekfsim.errors import UsageError
-from ekfsim.files.yaml.telling import quoted
 from ekfsim.localization import play
+from ekfsim.printable import in_a_line
 from ekfsim.scene import Scene
+from ekfsim.views.driving.course import Course
+from ekfsim.views.driving.saving import Saving
 from ekfsim.views.picture import scope as scopes
-from ekfsim.views.picture.look import Look, get_ready
-from ekfsim.views.picture.scope import Scope
+from ekfsim.views.picture.look import Look
 from ekfsim.views.playback.playback import UntilFailure
-from ekfsim.views.playback.view import View
-from ekfsim.views.terminal import drawing as terminal
-from ekfsim.views.terminal.keys.interrupts import noticed, unnoticed
-from ekfsim.views.terminal.keys.keyboard import Keyboard, keys
+from ekfsim.views.terminal.driving.driver import Driver
 from ekfsim.views.terminal.pace import Pace
 from ekfsim.views.terminal.player import Player
-from ekfsim.views.terminal.screens import layout
-from ekfsim.views.terminal.screens.console import Console
-from ekfsim.views.terminal.screens.files import Pictures
-from ekfsim.views.terminal.screens.layout import Panes
-from ekfsim.views.terminal.screens.moment import Screen, Together
-from ekfsim.views.terminal.screens.stream import Stream
-
-if TYPE_CHECKING:
-    from ekfsim.views.terminal.screens.window import Window
+from ekfsim.views.terminal.stage import Stage, wants_window
+from ekfsim.views.words.closing import conclude_all
 
 # steps whose limits are known before the first picture; where a later one leaves them it grows
 LOOK_AHEAD = 3000
-POLL = 0.05  # s between two looks at the window while no key is pressed
-RESIZED = 0.2  # s between two looks at the size of the terminal
-MARGIN = 2  # rows of the terminal left free of the picture
-WIDEST, HIGHEST = 1000, 300  # columns and rows of a picture, whatever COLUMNS and LINES say
+DRIVEN = Path("drive.yaml")
 
 
 def play_interactively(
@@ -57,134 +35,48 @@ def play_interactively(
 
     Raises UsageError where a window is asked for and there is none.
     """
-    window_wanted = show == "window" or (show == "auto" and _window_available())
-    if show == "window" and not _window_available():
-        raise UsageError(_why_no_window())
+    wants_window(show)  # before anything takes long
     ahead = (UntilFailure(itertools.islice(play(one), LOOK_AHEAD)) for one in scene.alone())
     with redirect_stderr(StringIO()):  # what a filter prints it prints again as it is watched
         extent = scopes.of_all(scene, ahead, look.probability)
-    pictures = Pictures(scene, extent, look, out, force)
-    console = _console(scene, extent, look) if _in_place() else None
-    window: Window | None = None
-    screens: list[Screen] = []
-    if window_wanted:
-        from ekfsim.views.terminal.screens import window as windows
-
-        window = windows.Window(scene, extent, look)
-        screens = [window]
-    elif show == "files":
-        screens = [pictures]
-    if console is not None:
-        told: Screen = console
-        console.panes = Panes.NUMBERS if screens else None
-    else:
-        drawn = None if screens else partial(_drawn, scene, extent, look.probability)
-        told = Stream(sys.stdout, drawn, hinting=_somebody())
-    with _typed(console) as keyboard:
+    stage = Stage.of(scene, extent, show, out, look, force)
+    with stage.keys() as next_key:
         player = Player(
-            scene, play(scene), Together([told, *screens]), pictures.save, look.probability,
-            explain, Pace(auto), noticed if console is not None else unnoticed,
+            scene, play(scene), stage.screen, stage.pictures.save, look.probability, explain,
+            Pace(auto), stage.interruptible,
         )  # fmt: skip
-        player.play(partial(_next_key, keyboard, window, console))
+        player.play(next_key)
+    if player.drives:
+        view = player.playback.view(player.number)
+        assert view is not None
+        course = Course(scene, view.step.entry.index)
+        drive_interactively(course, Saving(DRIVEN), show, out, look, player.explain)
 
 
-@contextmanager
-def _typed(console: Console | None) -> Iterator[Keyboard]:
-    """The keyboard; what was read of the run stays on the terminal when it is left."""
-    if console is None:
-        with keys() as keyboard:
-            yield keyboard
-        return
-    printed = StringIO()  # by a filter: nothing comes between the lines of the screen
+def drive_interactively(
+    course: Course, saving: Saving, show: str, out: Path, look: Look, explain: bool
+) -> None:
+    """Drive a course until a key quits, then tell the verdict. show, out, explain : as of play
+
+    What was not saved is saved where something else than a key ends it.
+    Raises UsageError where a window is asked for and there is none.
+    """
+    extent = scopes.of_all(course.scene, course.steps, look.probability)
+    stage = Stage.of(course.scene, extent, show, out, look)
+    driver = Driver(
+        course.scene, (), stage.screen, stage.pictures.save, look.probability, explain,
+        interruptible=stage.interruptible, course=course, saving=saving,
+    )  # fmt: skip
     try:
-        with redirect_stderr(printed), keys(drawn=console) as keyboard:
-            yield keyboard
-    finally:
-        sys.stderr.write(printed.getvalue())
-    sys.stdout.write(console.farewell())
-
-
-def _next_key(
-    keyboard: Keyboard, window: "Window | None", console: Console | None, timeout: float | None
-) -> str | None:
-    """The next key, pressed in the terminal or in the window; None where none is in that time."""
-    deadline = math.inf if timeout is None else time.monotonic() + timeout
-    while True:
-        left = max(0.0, deadline - time.monotonic())
-        if window is not None:
-            name = window.poll(min(POLL, left))
-            name = keyboard(0.0) if name is None else name
-        elif console is not None:
-            name = keyboard(min(RESIZED, left))
-            console.refresh()
-        else:
-            name = keyboard(None if left == math.inf else left)
-        if name is not None or left <= 0:
-            return name
-
-
-def _console(scene: Scene, extent: Scope, look: Look) -> Console:
-    out = sys.stdout
-    encoding = out.encoding or "utf-8"
-
-    def write(text: str) -> None:
-        """Past all buffers: a signal may come while one is written."""
-        left = text.encode(encoding, "replace")
-        while left:
-            left = left[os.write(out.fileno(), left) :]
-
-    out.flush()
-    means = layout.Look("NO_COLOR" not in os.environ, not _can_print("⠿", out))
-    return Console(scene, extent, look.probability, means, write)
-
-
-def _drawn(scene: Scene, extent: Scope, probability: float, view: View) -> str:
-    """The picture of a view in characters, as large as the terminal allows."""
-    columns, rows = shutil.get_terminal_size()
-    e, size = extent.at(view), (min(columns - 1, WIDEST), min(rows - MARGIN, HIGHEST))
-    coloured = sys.stdout.isatty() and not {"NO_COLOR"} & set(os.environ)
-    coloured = coloured and os.environ.get("TERM") != "dumb"
-    bounds = e.left, e.right, e.bottom, e.top
-    ascii = not _can_print("⠿", sys.stdout)
-    return terminal.draw(view, scene, probability, size, bounds, coloured, ascii)
-
-
-def _somebody() -> bool:
-    """Whether somebody sits before it."""
-    return sys.stdin.isatty() and sys.stdout.isatty()
-
-
-def _in_place() -> bool:
-    """Whether somebody sits before a terminal that can be drawn on in place."""
-    return _somebody() and os.environ.get("TERM", "dumb") != "dumb"
-
-
-def _display() -> bool:
-    displays = ("DISPLAY", "WAYLAND_DISPLAY")
-    return sys.platform in ("darwin", "win32") or any(os.environ.get(name) for name in displays)
-
-
-def _window_available() -> bool:
-    if not _display():
-        return False  # without the second that it takes to import matplotlib
-    get_ready()
-    from ekfsim.views.terminal.screens.window import available
-
-    return available()
-
-
-def _why_no_window() -> str:
-    """Why no window can be opened, and the way out."""
-    wanted = os.environ.get("MPLBACKEND")
-    if wanted and _display():
-        told = f"MPLBACKEND names {quoted(wanted)}, which opens no window here"
-        return f"{told}; unset it, or --show text draws in the terminal"
-    return "there is no display to open a window on; --show text draws in the terminal"
-
-
-def _can_print(text: str, out: TextIO) -> bool:
-    try:
-        text.encode(out.encoding or "utf-8")
-    except (UnicodeEncodeError, LookupError):
-        return False
-    return True
+        with stage.keys() as next_key:
+            driver.play(next_key)
+    except BaseException:
+        if any(course.unsaved):
+            with suppress(OSError):  # nobody may be there to read it
+                sys.stderr.write(f"{in_a_line(driver.write())}\n")
+        raise
+    if stage.console is not None and driver.written:
+        sys.stdout.write(f"{driver.written}\n")
+    if course.failure is not None:
+        raise course.failure
+    sys.stdout.write(conclude_all(course.scene, course.summaries, parted=course.last.apart))

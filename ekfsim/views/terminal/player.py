@@ -5,21 +5,24 @@ import time
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
 from dataclasses import InitVar, dataclass, field
+from typing import ClassVar
 
 from ekfsim.diagnostics.summary import Summary
+from ekfsim.errors import UsageError
 from ekfsim.files.results.outputs import kept
 from ekfsim.localization import play
 from ekfsim.printable import shown
 from ekfsim.records import Step
 from ekfsim.scene import Scene
+from ekfsim.views.driving.course import refuse_what_is_not_driven
 from ekfsim.views.playback.length import Length, length_of
-from ekfsim.views.playback.playback import Playback
+from ekfsim.views.playback.playback import Playback, Run
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.keys.bindings import Action, Counted
 from ekfsim.views.terminal.keys.help import HELP
 from ekfsim.views.terminal.keys.interrupts import unnoticed
 from ekfsim.views.terminal.pace import Pace
-from ekfsim.views.terminal.screens.moment import Moment, Screen
+from ekfsim.views.terminal.screens.moment import HINTS, Moment, Screen
 from ekfsim.views.words.closing import conclude_all
 from ekfsim.views.words.long_form import WORDS
 from ekfsim.views.words.narrative import narrate
@@ -36,6 +39,7 @@ NextKey = Callable[[float | None], str | None]
 class Player:
     """Steps through a run as keys are pressed. What is to be seen goes to `screen`."""
 
+    hints: ClassVar[tuple[str, ...]] = HINTS
     scene: Scene
     steps: InitVar[Iterable[Step]]
     screen: Screen
@@ -46,11 +50,13 @@ class Player:
     # a block in which a long way asks whether it is to stop
     interruptible: Callable[[], AbstractContextManager[Callable[[], bool]]] = unnoticed
     number: int = 0  # of the view on the screen
-    playback: Playback = field(init=False)
+    drives: bool = False  # whether it ended because somebody wants to drive on from there
+    playback: Run = field(init=False)
     # of the steps so far, by filter; ahead of what is shown by a view
     _summaries: list[Summary] = field(init=False)
     _length: Length | None = field(init=False)
     _stayed: tuple[str, int] = ("", 0)  # why the view stayed at the last key, and which
+    _counted: Counted = field(default_factory=Counted)
 
     def __post_init__(self, steps: Iterable[Step]) -> None:
         alone = self.scene.alone()
@@ -61,25 +67,30 @@ class Player:
         self._length = length_of(self.scene)
 
     def play(self, next_key: NextKey) -> None:
-        """From the first view until a key quits."""
+        """Until a key quits."""
         self._show()
         self.pace.begin()
-        counted = Counted()
-        while True:
+        goes_on = True
+        while goes_on:
             name = next_key(self.pace.left)
             if name is None:
                 self._go_on()
-                continue
-            pressed = counted.press(name)
-            if pressed is None:
-                self._show(typed=counted.typed)
-                continue
-            action, count = pressed
-            if action is Action.QUIT:
-                if self.playback.failure is not None:
-                    raise self.playback.failure
-                return
-            self.press(action, count)
+            else:
+                goes_on = self._take(name)
+
+    def _take(self, name: str) -> bool:
+        """Do what one key asks for; whether the run goes on."""
+        pressed = self._counted.press(name)
+        if pressed is None:
+            self._show(typed=self._counted.typed)
+            return True
+        action, count = pressed
+        if action is Action.QUIT:
+            if self.playback.failure is not None:
+                raise self.playback.failure
+            return False
+        self.press(action, count)
+        return not self.drives
 
     def press(self, action: Action, count: int = 1) -> None:
         """Do what one key asks for. count : how often, or of STEP to which one"""
@@ -115,10 +126,20 @@ class Player:
                 self._show(note=self.screen.arrange(action, count))
             case Action.SAVE:
                 self._show(note=self.save(self._view(self.number)))
+            case Action.DRIVE:
+                self._drive_on()
             case Action.HELP:
                 self._show(page=f"{HELP}\n\n{WORDS}")
             case _:
                 self._show(note="That key does nothing here; ? shows those that do")
+
+    def _drive_on(self) -> None:
+        try:
+            refuse_what_is_not_driven(self.scene)
+        except UsageError as refusal:
+            self._show(note=str(refusal))
+        else:
+            self.drives = True
 
     def _forward(self, count: int) -> None:
         """So many views on, or to the end."""
@@ -232,8 +253,9 @@ class Player:
         revised = self.number > 0 and not view.beam and self._view(self.number - 1).beam
         before = self._narrated(self._view(self.number - 1)) if revised else ""
         moment = Moment(
-            view, self._told(view), self._place, self.explain, before, passed, note, page, typed
-        )
+            view, self._told(view), self._place, self.explain, before, passed, note, page, typed,
+            self.hints,
+        )  # fmt: skip
         self.screen.show(moment)
 
     def _told(self, view: View) -> str:
@@ -243,7 +265,11 @@ class Player:
             return text
         if self.playback.failure is not None:
             return f"{text}The run failed: {shown(self.playback.failure)}\n"
-        return text + conclude_all(self.scene, self._summaries, parted=view.apart)
+        return text + self._last_words(view)
+
+    def _last_words(self, view: View) -> str:
+        """What stands below the narrative of the last view."""
+        return conclude_all(self.scene, self._summaries, parted=view.apart)
 
     def _narrated(self, view: View) -> str:
         return narrate(view, self.scene, self.probability, self.explain)

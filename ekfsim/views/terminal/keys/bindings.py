@@ -22,6 +22,7 @@ class Action(Enum):
     DOWN = "scroll down"
     UP = "scroll up"
     SAVE = "save"
+    DRIVE = "drive on from here"
     HELP = "help"
     QUIT = "quit"
     UNKNOWN = "unknown"
@@ -42,6 +43,7 @@ KEYS: dict[str, Action] = {
     "j": Action.DOWN,
     "k": Action.UP,
     "s": Action.SAVE,
+    "d": Action.DRIVE,
     **dict.fromkeys(("?", "h", "f1"), Action.HELP),
     **dict.fromkeys(("q", "ctrl+d", NO_MORE), Action.QUIT),
 }
@@ -78,6 +80,11 @@ class Counted:
             self.typed = min(10 * self.typed + int(name), MOST)
             return None
         action, number, self.typed = action_of(name), self.typed, 0
-        if action is Action.STEP:
-            return action, number
-        return action, max(number, 1) if action in REPEATED else 1
+        return action, meant(action, number)
+
+
+def meant(action: Action, number: int) -> int:
+    """What a number means to an action: how often, or to which step; 0: none was typed."""
+    if action is Action.STEP:
+        return number
+    return max(number, 1) if action in REPEATED else 1

@@ -26,6 +26,7 @@ CHARACTERS = {  # keys that send a control character
     **dict.fromkeys("\b\x7f", "backspace"),
     "\t": "tab",
     "\x04": "ctrl+d",
+    "\x12": "ctrl+r",
     "\x1a": "ctrl+z",
 }
 SEQUENCES = {  # what follows "Esc [" or "Esc O", modifiers left out

@@ -189,7 +189,7 @@ class Layout:
         """The status line; more than one where what there is to say is longer."""
         place = moment.place + (f" · {moment.typed}" if moment.typed else "")
         note = " ".join(shown(moment.note).split())
-        hints = ["n next", "? keys", self._other(panes), "p back", "q quit"]
+        hints = [*moment.hints[:2], self._other(panes), *moment.hints[2:]]
         if moment.page:
             hints = ["any key goes back to the run"]
         if note:

@@ -7,6 +7,8 @@ from typing import Protocol
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.keys.bindings import Action
 
+HINTS = "n next", "? keys", "p back", "q quit"
+
 
 @dataclass(frozen=True, slots=True)
 class Moment:
@@ -22,6 +24,7 @@ class Moment:
     note: str = ""  # what there is to say of the key
     page: str = ""  # what was asked for in place of the run, until the next key: the help
     typed: int = 0  # the number that is being typed, 0 where none is
+    hints: tuple[str, ...] = HINTS  # the keys to know, those most needed first
 
 
 class Screen(Protocol):

@@ -7,8 +7,6 @@ from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.keys.bindings import Action
 from ekfsim.views.terminal.screens.moment import Moment
 
-HINT = "n next, ? keys"
-
 
 class Stream:
     """Writes what is new below what stands there: narrative, picture, and what there is to say."""
@@ -37,7 +35,7 @@ class Stream:
         if moved and moment.note:
             self._out.write(f"{moment.note}\n")
         elif moved and self._hinting:
-            self._out.write(f"{moment.place}: {HINT}\n")
+            self._out.write(f"{moment.place}: {', '.join(moment.hints[:2])}\n")
         self._out.flush()
 
     def arrange(self, action: Action, count: int) -> str:

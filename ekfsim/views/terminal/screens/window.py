@@ -116,6 +116,12 @@ class Window:
         self._say(note)
         self._canvas.flush_events()
 
+    def close(self) -> None:
+        """Take it away."""
+        from matplotlib import pyplot
+
+        pyplot.close(self._figure)
+
     def _say(self, what: str) -> None:
         """Say it in the window's frame, beside the name of the world."""
         self._canvas.manager.set_window_title(f"{self._name}: {what}")

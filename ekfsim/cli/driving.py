@@ -1,0 +1,76 @@
+"""The command that drives a robot by keys: drive."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ekfsim.cli.asked import scene_of
+from ekfsim.cli.kinds import Result
+from ekfsim.cli.options import EXPLAIN, drive_options
+from ekfsim.errors import UsageError
+from ekfsim.views.terminal.driving.help import HELP
+
+if TYPE_CHECKING:
+    from ekfsim.scene import Scene
+
+PICTURES = Path("out")  # the folder for those of the key s, as in play
+
+
+@click.command(
+    help="Drive the robot through WORLD by keys, and write what was done as a commands file.\n\n"
+    f"\b\n{HELP}",
+    short_help="Drive the robot through WORLD by keys, into a commands file.",
+)
+@drive_options
+@click.option(
+    "--out",
+    "-o",
+    type=Result(),
+    default=Path("drive.yaml"),
+    show_default=True,
+    help="The commands file that w writes; where another lies there, a number is put behind "
+    "the name.",
+)
+@click.option("--force", is_flag=True, help="Replace the file that lies there.")
+@click.option(
+    "--show",
+    type=click.Choice(["auto", "window", "text", "files"]),
+    default="auto",
+    show_default=True,
+    help="Draw in a window, as text in the terminal, or into one file rewritten in place.",
+)
+@click.option(
+    "--conditional",
+    is_flag=True,
+    help="Draw the ellipse for the heading at either edge of its cone, too.",
+)
+@EXPLAIN
+def drive(
+    place: str, out: Path, force: bool, show: str, conditional: bool, explain: bool,
+    confidence: float, **chosen: Any,
+) -> None:  # fmt: skip
+    """A commands file is driven on from where it ends."""
+    from ekfsim.views.driving.course import Course
+    from ekfsim.views.driving.saving import Saving
+    from ekfsim.views.picture.look import Look
+    from ekfsim.views.terminal.interactive import drive_interactively
+
+    saving = Saving(out, force)
+    course = Course(_scene_to_drive(place, out, **chosen))
+    drive_interactively(course, saving, show, PICTURES, Look(confidence, conditional), explain)
+
+
+def _scene_to_drive(place: str, out: Path, world: str | None, **chosen: Any) -> "Scene":
+    """The scene of a commands file, or that of a world in which nothing has been done yet."""
+    from ekfsim.files.given.given import Given
+    from ekfsim.files.packaged import packaged, resolve
+    from ekfsim.files.scenes.one_file import kind_of
+
+    path = resolve(place, "commands" if place in packaged("commands") else "worlds")
+    if kind_of(path) != "world":
+        return scene_of(str(path), world, **chosen)
+    if world is not None:
+        raise UsageError(f"--world: {place} is a world itself; leave this out")
+    nothing_yet = Given.values({"commands": []}, str(out))
+    return scene_of(nothing_yet, str(path), **chosen)

@@ -1,0 +1,204 @@
+"""What an interactive run is seen on and heard from: the screens that there are, and their keys."""
+
+import math
+import os
+import shutil
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, redirect_stderr
+from dataclasses import dataclass
+from functools import partial
+from io import StringIO
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
+
+from ekfsim.errors import UsageError
+from ekfsim.files.yaml.telling import quoted
+from ekfsim.scene import Scene
+from ekfsim.views.picture.look import Look, get_ready
+from ekfsim.views.picture.scope import Scope
+from ekfsim.views.playback.view import View
+from ekfsim.views.terminal import drawing as terminal
+from ekfsim.views.terminal.keys.interrupts import noticed, unnoticed
+from ekfsim.views.terminal.keys.keyboard import Keyboard, keys
+from ekfsim.views.terminal.screens import layout
+from ekfsim.views.terminal.screens.console import Console
+from ekfsim.views.terminal.screens.files import Pictures
+from ekfsim.views.terminal.screens.layout import Panes
+from ekfsim.views.terminal.screens.moment import Screen, Together
+from ekfsim.views.terminal.screens.stream import Stream
+
+if TYPE_CHECKING:
+    from ekfsim.views.terminal.screens.window import Window
+
+POLL = 0.05  # s between two looks at the window while no key is pressed
+RESIZED = 0.2  # s between two looks at the size of the terminal
+MARGIN = 2  # rows of the terminal left free of the picture
+WIDEST, HIGHEST = 1000, 300  # columns and rows of a picture, whatever COLUMNS and LINES say
+NextKey = Callable[[float | None], str | None]
+
+
+def wants_window(show: str) -> bool:
+    """Whether a window is to be opened. show : auto, window, text or files
+
+    Raises UsageError where one is asked for and there is none.
+    """
+    wanted = show == "window" or (show == "auto" and _window_available())
+    if show == "window" and not _window_available():
+        raise UsageError(_why_no_window())
+    return wanted
+
+
+@dataclass
+class Stage:
+    """The screens of one run, and the keys pressed before them."""
+
+    screen: Screen
+    pictures: Pictures
+    console: Console | None
+    window: "Window | None"
+
+    @classmethod
+    def of(
+        cls, scene: Scene, extent: Scope, show: str, out: Path, look: Look, force: bool = False
+    ) -> "Stage":
+        """Those that are asked for. out : folder of saved pictures
+
+        Raises UsageError where a window is asked for and there is none.
+        """
+        pictures = Pictures(scene, extent, look, out, force)
+        window: Window | None = None
+        screens: list[Screen] = []
+        if wants_window(show):
+            from ekfsim.views.terminal.screens import window as windows
+
+            window = windows.Window(scene, extent, look)
+            screens = [window]
+        elif show == "files":
+            screens = [pictures]
+        console = _console(scene, extent, look) if _in_place() else None
+        if console is not None:
+            told: Screen = console
+            console.panes = Panes.NUMBERS if screens else None
+        else:
+            drawn = None if screens else partial(_drawn, scene, extent, look.probability)
+            told = Stream(sys.stdout, drawn, hinting=_somebody())
+        return cls(Together([told, *screens]), pictures, console, window)
+
+    @property
+    def interruptible(self) -> Callable[[], AbstractContextManager[Callable[[], bool]]]:
+        """A block in which Ctrl-C stops what takes long, and not the program."""
+        return unnoticed if self.console is None else noticed
+
+    @contextmanager
+    def keys(self) -> Iterator[NextKey]:
+        """The keys; what was read of the run stays on the terminal when it is left."""
+        try:
+            with _typed(self.console) as keyboard:
+                yield partial(_next_key, keyboard, self.window, self.console)
+        finally:
+            if self.window is not None:
+                self.window.close()
+
+
+@contextmanager
+def _typed(console: Console | None) -> Iterator[Keyboard]:
+    """The keyboard; what was read of the run stays on the terminal when it is left."""
+    if console is None:
+        with keys() as keyboard:
+            yield keyboard
+        return
+    printed = StringIO()  # by a filter: nothing comes between the lines of the screen
+    try:
+        with redirect_stderr(printed), keys(drawn=console) as keyboard:
+            yield keyboard
+    finally:
+        sys.stderr.write(printed.getvalue())
+    sys.stdout.write(console.farewell())
+
+
+def _next_key(
+    keyboard: Keyboard, window: "Window | None", console: Console | None, timeout: float | None
+) -> str | None:
+    """The next key, pressed in the terminal or in the window; None where none is in that time."""
+    deadline = math.inf if timeout is None else time.monotonic() + timeout
+    while True:
+        left = max(0.0, deadline - time.monotonic())
+        if window is not None:
+            name = window.poll(min(POLL, left))
+            name = keyboard(0.0) if name is None else name
+        elif console is not None:
+            name = keyboard(min(RESIZED, left))
+            console.refresh()
+        else:
+            name = keyboard(None if left == math.inf else left)
+        if name is not None or left <= 0:
+            return name
+
+
+def _console(scene: Scene, extent: Scope, look: Look) -> Console:
+    out = sys.stdout
+    encoding = out.encoding or "utf-8"
+
+    def write(text: str) -> None:
+        """Past all buffers: a signal may come while one is written."""
+        left = text.encode(encoding, "replace")
+        while left:
+            left = left[os.write(out.fileno(), left) :]
+
+    out.flush()
+    means = layout.Look("NO_COLOR" not in os.environ, not _can_print("⠿", out))
+    return Console(scene, extent, look.probability, means, write)
+
+
+def _drawn(scene: Scene, extent: Scope, probability: float, view: View) -> str:
+    """The picture of a view in characters, as large as the terminal allows."""
+    columns, rows = shutil.get_terminal_size()
+    e, size = extent.at(view), (min(columns - 1, WIDEST), min(rows - MARGIN, HIGHEST))
+    coloured = sys.stdout.isatty() and not {"NO_COLOR"} & set(os.environ)
+    coloured = coloured and os.environ.get("TERM") != "dumb"
+    bounds = e.left, e.right, e.bottom, e.top
+    ascii = not _can_print("⠿", sys.stdout)
+    return terminal.draw(view, scene, probability, size, bounds, coloured, ascii)
+
+
+def _somebody() -> bool:
+    """Whether somebody sits before it."""
+    return sys.stdin.isatty() and sys.stdout.isatty()
+
+
+def _in_place() -> bool:
+    """Whether somebody sits before a terminal that can be drawn on in place."""
+    return _somebody() and os.environ.get("TERM", "dumb") != "dumb"
+
+
+def _display() -> bool:
+    displays = ("DISPLAY", "WAYLAND_DISPLAY")
+    return sys.platform in ("darwin", "win32") or any(os.environ.get(name) for name in displays)
+
+
+def _window_available() -> bool:
+    if not _display():
+        return False  # without the second that it takes to import matplotlib
+    get_ready()
+    from ekfsim.views.terminal.screens.window import available
+
+    return available()
+
+
+def _why_no_window() -> str:
+    """Why no window can be opened, and the way out."""
+    wanted = os.environ.get("MPLBACKEND")
+    if wanted and _display():
+        told = f"MPLBACKEND names {quoted(wanted)}, which opens no window here"
+        return f"{told}; unset it, or --show text draws in the terminal"
+    return "there is no display to open a window on; --show text draws in the terminal"
+
+
+def _can_print(text: str, out: TextIO) -> bool:
+    try:
+        text.encode(out.encoding or "utf-8")
+    except (UnicodeEncodeError, LookupError):
+        return False
+    return True
