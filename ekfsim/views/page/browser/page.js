@@ -48,7 +48,7 @@ function show() {
   at("slider").value = current;
   at("slider").setAttribute("aria-valuetext", spoken);
   at("count").textContent = `step ${view.step} of ${lesson.last}`;
-  at("map-told").textContent = `${spoken}. ${view.judged}. ${belief.spread}.`;
+  at("map-told").textContent = `${spoken}. ${where(belief.pose)}; ${belief.spread}. ${view.judged}.`;
   at("close-told").textContent = belief.spread;
   map.show(view, before, 0.022 * size, told, shown);
   const [x, y] = belief.pose, w = view.wide / 2;
@@ -65,6 +65,11 @@ function ghost() {
   const before = views[current - 1], view = views[current];
   if (!before || view.beam || view.apart) return null;
   return view.by.some((one, i) => String([one.pose, one.P]) !== String([before.by[i].pose, before.by[i].P])) ? before : null;
+}
+
+function where([x, y, turn]) {
+  const [east, north] = [x + lesson.origin[0], y + lesson.origin[1]].map(value => value.toFixed(2));
+  return `The estimate is at x ${east} m, y ${north} m, heading ${(turn * 180 / Math.PI).toFixed(1)} degrees`;
 }
 
 // The lecture's text: that of this step, or else the last one that was said.
@@ -103,7 +108,7 @@ function bar(width) {
 // Everything that depends on the width of the page.
 function lay() {
   const width = Math.max(280, at("pictures").clientWidth), [left, bottom, right, top] = lesson.limits;
-  const wide = width - MARGIN.left - MARGIN.right, most = Math.max(220, 0.47 * innerHeight);
+  const wide = width - MARGIN.left - MARGIN.right, most = Math.max(220, 0.42 * innerHeight);
   const height = Math.min(most, wide * (top - bottom) / (right - left)) + MARGIN.top + MARGIN.bottom;
   map.fit(lesson.limits, width, height, MARGIN);
   map.label();
@@ -114,7 +119,8 @@ function lay() {
 function play(on) {
   clearTimeout(clock);
   clock = 0;
-  at("play").textContent = on ? "⏸ pause" : "▶ play";
+  at("play").textContent = on ? "❚❚ pause" : "▶ play";
+  at("narrative").setAttribute("aria-live", on ? "off" : "polite"); // nobody reads so fast
   if (!on) return;
   if (current === views.length - 1) go(0);
   const tick = () => {
@@ -132,16 +138,15 @@ function pause() {
 }
 
 const KEYS = {
-  n: () => go(current + 1), ArrowRight: () => go(current + 1), ArrowDown: () => go(current + 1), PageDown: () => go(current + 1),
-  p: () => go(current - 1), ArrowLeft: () => go(current - 1), ArrowUp: () => go(current - 1), PageUp: () => go(current - 1),
+  n: () => go(current + 1), ArrowRight: () => go(current + 1),
+  p: () => go(current - 1), ArrowLeft: () => go(current - 1),
   Home: () => go(0), End: () => go(views.length - 1), " ": () => play(!clock),
 };
 
 addEventListener("keydown", event => {
   if (event.ctrlKey || event.metaKey || event.altKey || !KEYS[event.key]) return;
   const on = event.target.closest?.("button, summary, input, [role=button]");
-  if (on && (event.key === " " || on.type === "range" && event.key.length > 1 || ["radio", "checkbox"].includes(on.type) && event.key.startsWith("Arrow"))) return;
-  if (event.key.startsWith("Arrow") && /Up|Down/.test(event.key)) return; // the page scrolls
+  if (on && (event.key === " " || on.matches("input") && event.key.length > 1)) return; // they have a meaning there
   if (event.key !== " ") play(false);
   event.preventDefault();
   KEYS[event.key]();

@@ -140,7 +140,9 @@ class Picture {
     this.line("path", "path", path);
     const covers = ellipse(P, k).major < lesson.covered * unit; // then it is hollow
     if (!this.close) this.line("body", covers ? "body hollow" : "body", shown ? robot(pose, unit) : [], true);
-    this.line("shift", "shift", old && belief.K ? [old[0], old[1], pose[0], pose[1]] : [], false, "K");
+    const moved = old && belief.K ? [old[0], old[1], pose[0], pose[1]] : [];
+    this.line("shift", "shift", moved);
+    this.line("shift-hit", "hit", moved, false, "K");
     this.line("ellipse", off ? "ellipse wrong" : "ellipse", oval, true, "P");
     this.line("ghost", "ghost", old ? outline(old, was, k) : [], true);
     this.mark("crowd", "particle", "dot", shown && belief.crowd || []);
@@ -152,7 +154,7 @@ class Picture {
     this.line("probes", "probe", probes.flatMap(probe => [...probe, null, null]));
     this.line("way", "way", way);
     this.line("beam", "beam " + style, line);
-    this.line("hit", "hit", line, false, "H");
+    this.line("beam-hit", "hit", line, false, "H");
     this.mark("place", "place", "ring", place);
     this.mark("end", seen?.hollow ? "end hollow" : "end", seen?.in ?? "air", end);
     this.mark("expected", "expected", "diamond", expected);
