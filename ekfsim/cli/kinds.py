@@ -100,6 +100,50 @@ class Gate(Probability):
         return value if value == "off" else super().convert(value, param, ctx)
 
 
+class Area(click.ParamType):  # type: ignore[type-arg]
+    """A rectangle of the plane."""
+
+    name = "area"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float, float, float]:
+        """Left, bottom, right and top in m. Fails for what is no rectangle."""
+        try:
+            x, y, width, height = map(float, str(value).split(","))
+        except ValueError:
+            x = y = width = height = math.nan
+        area = x, y, x + width, y + height
+        if (
+            not all(map(math.isfinite, area))
+            or width <= 0
+            or height <= 0
+            or not (area[0] < area[2] and area[1] < area[3])
+        ):
+            self.fail(
+                f"{value!r} is no part of the plane; write X,Y,W,H: the lower left corner, then "
+                "how wide and how high, in m, e.g. 0,0,4,3",
+                param, ctx,
+            )  # fmt: skip
+        return area
+
+
+class StepNumber(click.ParamType):  # type: ignore[type-arg]
+    """The number of a step; with a b for the beam of a reading."""
+
+    name = "step"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, bool]:
+        """The number, and whether the beam is wanted. Fails for what is none."""
+        digits = str(value).removesuffix("b")
+        if not (digits.isascii() and digits.isdecimal() and len(digits) < 19):
+            self.fail(f"{value!r} is no step; write its number, or 13b for the beam of 13",
+                      param, ctx)  # fmt: skip
+        return int(digits), digits != value
+
+
 class Result(click.Path):
     """Where a result is to be written."""
 

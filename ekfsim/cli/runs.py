@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ekfsim.cli.asked import scene_of
-from ekfsim.cli.kinds import Pace, Result, Whole
+from ekfsim.cli.kinds import Area, Pace, Result, StepNumber, Whole
 from ekfsim.cli.options import DPI, EXPLAIN, FORCE, SIZE, scene_options
 from ekfsim.cli.process import heed, say, warn
+from ekfsim.errors import UsageError
 from ekfsim.printable import in_a_line
 from ekfsim.views.terminal.keys.help import HELP
 
@@ -59,8 +60,9 @@ def play(
     "-o",
     type=Result(),
     required=True,
-    help="A folder for numbered PNG files, or the name of a .gif, of an .mp4, "
-    "or of an .html: one page that plays in a browser.",
+    help="A folder for PNG files, step-0013.png and before it step-0013-beam.png, or the name of "
+    "a .gif, of an .mp4, or of an .html: one page that plays in a browser. With --step, of a .png, "
+    "an .svg or a .pdf.",
 )
 @click.option("--every", type=Whole(min=1), default=1, metavar="N", help="Only every N-th picture.")
 @click.option(
@@ -68,21 +70,42 @@ def play(
     is_flag=True,
     help="Draw the ellipse for the heading at either edge of its cone, too.",
 )
+@click.option(
+    "--step",
+    type=StepNumber(),
+    metavar="N",
+    help="One picture, of this step; of a reading 13 is the revised estimate, 13b the beam.",
+)
+@click.option("--follow", is_flag=True, help="Show a part of the world that goes with the robot.")
+@click.option(
+    "--zoom",
+    type=Area(),
+    metavar="X,Y,W,H",
+    help="Show this part of the world: the lower left corner, the width and the height, in m.",
+)
+@SIZE
+@DPI
 @FORCE
 def render(
-    out: Path, every: int, conditional: bool, force: bool, confidence: float, **chosen: Any
-) -> None:
-    """Draw every step of COMMANDS into files."""
-    from ekfsim.views.picture.look import Look, get_ready
+    out: Path, every: int, conditional: bool, step: tuple[int, bool] | None, follow: bool,
+    zoom: tuple[float, float, float, float] | None, size: tuple[int, int] | None, dpi: int,
+    force: bool, confidence: float, **chosen: Any,
+) -> None:  # fmt: skip
+    """Draw every step of COMMANDS into files, or one step."""
+    from ekfsim.views.picture.look import Look, Paper, get_ready
 
     get_ready()
+    paper = Paper(size, dpi)
+    paper.check()
+    _refuse_together(out, every, step is not None, follow, zoom is not None, paper != Paper())
     if out.suffix.lower() == ".html":
         return write_page(scene_of(**chosen), out, Look(confidence, conditional), every, force)
     from ekfsim.files.results.outputs import kept
     from ekfsim.localization import play as steps_of
-    from ekfsim.views.film import animation
+    from ekfsim.views.film import animation, one_step
     from ekfsim.views.picture import scope as scopes
     from ekfsim.views.picture.lettering import boxes
+    from ekfsim.views.picture.limits import Limits
     from ekfsim.views.playback.playback import Tally, together
     from ekfsim.views.words.captions import texts
 
@@ -92,7 +115,16 @@ def render(
     names = scene.filter, *scene.beside
     runs = (kept(steps_of(first), [tally.write]), *map(steps_of, others))
     with redirect_stderr(StringIO()):  # what a filter prints it prints again as it is drawn
-        extent = scopes.of_all(scene, runs, confidence)
+        scope = scopes.of_all(scene, runs, confidence, follow)
+    scope = scope if zoom is None else scopes.Scope(Limits(*zoom))
+    views, look = (
+        together(steps_of(first), map(steps_of, others), names),
+        Look(confidence, conditional),
+    )
+    if step is not None:
+        view = one_step.find(views, *step)
+        one_step.render(view, scene, scope, out, look=look, paper=paper, force=force)
+        return click.echo(f"{in_a_line(out)}: step {view.step.entry.index}")
     pictures = animation.number_of_pictures(tally.views, every)
     with click.progressbar(
         length=pictures, label="pictures", file=sys.stderr, hidden=not sys.stderr.isatty()
@@ -103,10 +135,30 @@ def render(
             bar.update(1)
 
         animation.render(
-            together(steps_of(first), map(steps_of, others), names), scene, extent, out,
-            look=Look(confidence, conditional), every=every, force=force, progress=made_one,
+            views, scene, scope, out,
+            look=look, paper=paper, every=every, force=force, progress=made_one,
         )  # fmt: skip
     click.echo(f"{in_a_line(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
+
+
+def _refuse_together(
+    out: Path, every: int, one: bool, follow: bool, zoom: bool, shaped: bool
+) -> None:
+    """Raises UsageError where options do not go together."""
+    if follow and zoom:
+        raise UsageError("--follow and --zoom both say what is shown; choose one")
+    if one and every > 1:
+        raise UsageError("--step draws one picture, and --every leaves out some of many")
+    if one:
+        from ekfsim.views.film.still import KINDS
+
+        if out.suffix.lower() not in KINDS:
+            raise UsageError(f"{out}: --step draws one picture; name a .png, an .svg or a .pdf")
+    if out.suffix.lower() == ".html" and (follow or zoom or shaped):
+        raise UsageError(
+            f"{out}: a page fits its window, and is not drawn with "
+            "--follow, --zoom, --size or --dpi"
+        )
 
 
 def write_page(scene: "Scene", out: Path, look: "Look", every: int, force: bool) -> None:

@@ -4,6 +4,7 @@ import os
 import signal
 
 import pytest
+from PIL import Image
 from program import (
     LONG,
     MEASURED,
@@ -22,7 +23,7 @@ from ekfsim.views.film.png import SIGNATURE
 from ekfsim.views.picture import lettering
 
 PUT_IN = ["long.yaml", "short.yaml", "world.yaml"]
-FRAMES = [f"frame-{number:04}.png" for number in range(5)]
+FRAMES = [f"step-000{name}.png" for name in ("0", "1", "2-beam", "2", "3")]
 
 
 @pytest.fixture(autouse=True)
@@ -118,6 +119,65 @@ def test_where_no_picture_can_be_none_is_drawn(place, out, why):
     assert refused.err.startswith(f"ekfsim: {why}")
     assert left_in(place) == before
     assert (place / "foreign/thesis.tex").read_text() == "years"
+
+
+def test_one_step_is_one_picture_as_in_the_folder_of_all_and_alike_each_time(place):
+    assert ekfsim("render", "short.yaml", "-o", "all").status == 0
+    for step, name in (("2b", "step-0002-beam"), ("2", "step-0002"), ("3", "step-0003")):
+        drawn = ekfsim("render", "short.yaml", "--step", step, "-o", f"{step}.png")
+        assert (drawn.status, drawn.out) == (0, f"{step}.png: step {step.strip('b')}\n")
+        assert (place / f"{step}.png").read_bytes() == (place / f"all/{name}.png").read_bytes()
+    for ending in ("svg", "pdf"):
+        for out in ("one", "two"):
+            drawn = ekfsim("render", "short.yaml", "--step", "2b", "-o", f"{out}.{ending}")
+            assert drawn.status == 0
+        one, two = ((place / f"{out}.{ending}").read_bytes() for out in ("one", "two"))
+        assert one == two
+        assert b"short.yaml" in one  # what made it
+
+
+def test_size_zoom_and_follow_shape_the_pictures(place):
+    for more, size in (
+        (["--size", "640x480"], (640, 480)),
+        (["--size", "1281x900", "--dpi", "140"], (1281, 900)),
+        (["--zoom", "1,1,4,1"], None),
+        (["--follow"], None),
+    ):
+        drawn = ekfsim("render", "short.yaml", "--step", "2b", "-o", "a.png", "--force", *more)
+        assert (drawn.status, drawn.err) == (0, "")
+        with Image.open(place / "a.png") as picture:
+            assert size in (None, picture.size)
+    assert ekfsim("render", "short.yaml", "-o", "b", "--follow").status == 0
+    assert pictures(place / "b") == FRAMES
+
+
+@pytest.mark.parametrize(
+    ("more", "why"),
+    [
+        (["--step", "4", "-o", "a.png"], "--step 4: the last step is 3"),
+        (["--step", "1b", "-o", "a.png"], "--step 1b: step 1 is no reading; leave out the b"),
+        (["--step", "1", "-o", "a.gif"], "a.gif: --step draws one picture; name a .png, an .svg"),
+        (["--step", "1", "-o", "a"], "a: --step draws one picture; name a .png, an .svg or a .pdf"),
+        (["--step", "x", "-o", "a.png"], "'x' is no step; write its number, or 13b for the beam"),
+        (["-o", "a.svg"], "a.svg: one picture is of one step; say which, e.g. --step 1"),
+        (["--step", "1", "--every", "2", "-o", "a.png"], "--step draws one picture, and --every"),
+        (["--zoom", "0,0,1", "-o", "a"], "'0,0,1' is no part of the plane; write X,Y,W,H: the"),
+        (["--zoom", "0,0,-1,1", "-o", "a"], "'0,0,-1,1' is no part of the plane"),
+        (["--zoom", "0,0,inf,1", "-o", "a"], "'0,0,inf,1' is no part of the plane"),
+        (["--zoom", "1e9,0,1e-9,1", "-o", "a"], "'1e9,0,1e-9,1' is no part of the plane"),
+        (
+            ["--zoom", "0,0,1,1", "--follow", "-o", "a"],
+            "--follow and --zoom both say what is shown",
+        ),
+        (["--follow", "-o", "a.html"], "a.html: a page fits its window, and is not drawn with "),
+        (["--size", "640x480", "--dpi", "300", "-o", "a"], "--size 640x480 at 300 dpi is 2.13 by"),
+    ],
+)
+def test_options_that_do_not_fit_are_refused_in_a_line(place, more, why):
+    refused = ekfsim("render", "short.yaml", *more)
+    assert (refused.status, refused.out) == (2, "")
+    assert why in refused.err
+    assert left_in(place) == PUT_IN
 
 
 @pytest.mark.parametrize(
@@ -217,9 +277,9 @@ def test_files_are_drawn_whatever_backend_of_windows_the_settings_name(place):
     # what is asked when all can be drawn
     assert drawn.err == 3 * "ekfsim: world.yaml: this is a file; name a folder\n"
     for result in (
-        "frames/frame-0000.png",
+        "frames/step-0000.png",
         "frames.gif",
-        "again/frame-0000.png",
+        "again/step-0000.png",
         "out/current.png",
     ):
         assert (place / result).exists()

@@ -156,7 +156,7 @@ def test_an_interactive_run_shows_all_and_sums_all_up(place, show):
 def test_pictures_tell_which_filters_they_show(place):
     assert ekfsim("render", "short.yaml", "--filter", "ekf,ukf", "-o", "out").status == 0
     assert len(left_in(place / "out")) == 5
-    assert b"filter ekf,ukf" in (place / "out/frame-0004.png").read_bytes()
+    assert b"filter ekf,ukf" in (place / "out/step-0003.png").read_bytes()
 
 
 def test_driven_and_recorded_robots_have_several_filters_too(place):

@@ -1,4 +1,4 @@
-"""A run as pictures: numbered PNG files in a folder, a GIF or an MP4.
+"""A run as pictures: PNG files in a folder, named by their steps, a GIF or an MP4.
 Memory does not grow with their number.
 """
 
@@ -11,17 +11,17 @@ from ekfsim.files.looking import is_folder
 from ekfsim.files.results.writing import refuse_existing, told, whole_file, whole_folder
 from ekfsim.provenance import metadata, told_in_a_line
 from ekfsim.scene import Scene
-from ekfsim.views.film import gif, video
+from ekfsim.views.film import gif, still, video
 from ekfsim.views.film.png import Pixels
 from ekfsim.views.picture.frames import Frame
-from ekfsim.views.picture.look import STANDARD, Look
+from ekfsim.views.picture.look import SCREEN, STANDARD, Look, Paper
 from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
 
 BEAM, OTHER, LAST = 0.8, 1.2, 3.2  # s that a view stays
 DRIVEN = 0.4  # the same for a driven or recorded robot, whose run has thousands
 ANIMATIONS = (".gif", ".mp4")
-PATTERN = "frame-*.png"
+PATTERNS = "step-*.png", "frame-*.png"  # as they are called, and were in version 0.1.0
 # in the pictures' names: at least, and where the length of a run is not known
 DIGITS, UNKNOWN_DIGITS = 4, 6
 
@@ -35,14 +35,15 @@ def render(
     target: Path,
     *,
     look: Look = STANDARD,
+    paper: Paper = SCREEN,
     every: int = 1,
     force: bool = False,
     progress: Progress = lambda made: None,
 ) -> None:
     """Make a picture of every `every`-th view, and of the last.
 
-    A target that ends in .gif or .mp4 is an animation, one without a suffix a folder of numbered
-    PNG files. Raises UsageError if the target is of another kind, exists (without `force`), or
+    A target that ends in .gif or .mp4 is an animation, one without a suffix a folder of PNG
+    files. Raises UsageError if the target is of another kind, exists (without `force`), or
     cannot be made here.
     """
     if every < 1:
@@ -51,6 +52,8 @@ def render(
     if suffix not in ("", *ANIMATIONS):
         with told(target):
             suffix = "" if is_folder(target) else suffix
+    if suffix in still.KINDS:
+        raise UsageError(f"{target}: one picture is of one step; say which, e.g. --step 1")
     if suffix not in ("", *ANIMATIONS):
         raise UsageError(
             f"{target}: '{suffix}' is no kind of picture; "
@@ -59,9 +62,10 @@ def render(
     write_video = video.writer() if suffix == ".mp4" else None
     if suffix:
         refuse_existing(target, force)
-    frame, shown = Frame(scene, scope, look), _reported(thinned(views, every), progress)
+    frame = Frame(scene, scope, look, paper)
+    shown = _reported(thinned(views, every), progress)
     if suffix == "":
-        with whole_folder(target, PATTERN, force=force) as folder:
+        with whole_folder(target, *PATTERNS, force=force) as folder:
             _number(folder, frame, shown, scene)
         return
     with whole_file(target, force) as path:
@@ -90,13 +94,13 @@ def thinned(views: Iterable[View], every: int) -> Iterator[View]:
 
 
 def _number(folder: Path, frame: Frame, views: Iterable[View], scene: Scene) -> None:
-    """frame-0000.png, … by the views' numbers, with digits enough for them to sort."""
-    most = 2 * expanded_length(scene.commands) + 1
+    """step-0000.png, … by the views' steps, with digits enough for them to sort."""
+    most = expanded_length(scene.commands)
     digits = max(DIGITS, len(str(most))) if scene.commands else UNKNOWN_DIGITS
     made_by = metadata(scene)
     for view in views:
         picture = frame.png(view, {**made_by, "View": str(view.number)})
-        (folder / f"frame-{view.number:0{digits}d}.png").write_bytes(picture)
+        (folder / f"{view.named(digits)}.png").write_bytes(picture)
 
 
 def _timed(

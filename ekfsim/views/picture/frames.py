@@ -5,7 +5,7 @@ Frame(scene, scope.of(scene, play(scene))).png(view)      # 900 pixels wide
 """
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -37,7 +37,7 @@ from ekfsim.views.picture.layout import (
 from ekfsim.views.picture.legend import HANDLERS, Legends, entries
 from ekfsim.views.picture.lettering import drawable, families, shortened, wrapped
 from ekfsim.views.picture.limits import Limits
-from ekfsim.views.picture.look import STANDARD, Look
+from ekfsim.views.picture.look import SCREEN, STANDARD, Look, Paper
 from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.picture.panels import CloseUp, Main, reading
 from ekfsim.views.picture.replay import Replay
@@ -46,7 +46,6 @@ from ekfsim.views.playback.view import View
 from ekfsim.views.words.captions import notes, source, spread, title, too_large
 from ekfsim.views.words.judgement import judgement, warns
 
-DPI = 100
 WHOLE = (0, 0, 1, 1)  # of the figure, until everything is in its place
 ROOMY = 14  # entries of the legend that stand in its place at ease
 LETTERS, LINES = 13.7, 3  # of the notes: characters to an inch, and lines
@@ -100,6 +99,21 @@ class Picture:
     def legend(self) -> Legend:
         """What occurs in the view that is shown."""
         return self._legends.shown
+
+    @classmethod
+    def on(cls, paper: Paper, scene: Scene, scope: Scope, look: Look = STANDARD) -> Self:
+        """On a figure of its own."""
+        figure = Figure(figsize=(WIDTH, HIGHEST), dpi=paper.dpi)
+        FigureCanvasAgg(figure)
+        picture = cls(figure, scene, scope, look)
+        if paper.size is None:
+            height = fitting(scope.base.shape, rows(picture.main)).height
+            figure.set_size_inches(WIDTH, height)
+        else:
+            width, height = paper.size
+            figure.set_size_inches(width / paper.dpi, height / paper.dpi)
+        picture.arrange()
+        return picture
 
     def arrange(self) -> None:
         """Put everything in its place, for the size that the figure has."""
@@ -171,16 +185,15 @@ def rows(main: Main) -> int:
 
 
 class Frame:
-    """Pictures 900 pixels wide and as high as the map asks for, many of one scene:
+    """Pictures of one size, many of one scene:
     what stands still is drawn once, what moves for each view.
     """
 
-    def __init__(self, scene: Scene, scope: Scope, look: Look = STANDARD) -> None:
-        figure = Figure(figsize=(WIDTH, HIGHEST), dpi=DPI)
-        self._canvas: Any = FigureCanvasAgg(figure)  # matplotlib leaves its methods untyped
-        self.picture = Picture(figure, scene, scope, look)
-        figure.set_size_inches(WIDTH, fitting(scope.base.shape, rows(self.picture.main)).height)
-        self.picture.arrange()
+    def __init__(
+        self, scene: Scene, scope: Scope, look: Look = STANDARD, paper: Paper = SCREEN
+    ) -> None:
+        self.picture = Picture.on(paper, scene, scope, look)
+        self._canvas: Any = self.picture.figure.canvas  # matplotlib leaves its methods untyped
         self._legends: dict[Legend, Any] = {}  # their pixels
         for artist in self.picture.moving():
             artist.set_animated(True)

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 from ekfsim.errors import UsageError
 
+NARROWEST, LOWEST = 5.0, 4.2  # inches of a picture
+
 
 @dataclass(frozen=True, slots=True)
 class Look:
@@ -18,6 +20,29 @@ class Look:
 
 
 STANDARD = Look()
+
+
+@dataclass(frozen=True, slots=True)
+class Paper:
+    """What a picture is drawn on: of so many pixels, or as high as what it shows asks for."""
+
+    size: tuple[int, int] | None = None  # width and height
+    dpi: int = 100
+
+    def check(self) -> None:
+        """Raises UsageError where the letters would leave no room for anything else."""
+        if self.size is None:
+            return
+        width, height = (side / self.dpi for side in self.size)
+        if width < NARROWEST or height < LOWEST:
+            raise UsageError(
+                f"--size {self.size[0]}x{self.size[1]} at {self.dpi} dpi is {width:.3g} by "
+                f"{height:.3g} inches, which the letters fill; choose at least {NARROWEST:g} by "
+                f"{LOWEST:g} inches, by a larger --size or a smaller --dpi"
+            )
+
+
+SCREEN = Paper()
 
 
 def get_ready() -> None:

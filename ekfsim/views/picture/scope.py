@@ -90,9 +90,18 @@ def of(scene: Scene, steps: Iterable[Step], probability: float = 0.954) -> Scope
     return Scope(base, _changes(base, stages), reach.last)
 
 
-def of_all(scene: Scene, runs: Iterable[Iterable[Step]], probability: float = 0.954) -> Scope:
-    """The same for a run that several filters watch."""
-    return functools.reduce(Scope.joined, (of(scene, steps, probability) for steps in runs))
+def of_all(
+    scene: Scene,
+    runs: Iterable[Iterable[Step]],
+    probability: float = 0.954,
+    follow: bool = False,
+) -> Scope:
+    """The same for a run that several filters watch; or `following` the first of them."""
+    first, *others = runs
+    if follow:
+        return following(scene, first, probability)
+    each = (of(scene, steps, probability) for steps in (first, *others))
+    return functools.reduce(Scope.joined, each)
 
 
 def following(scene: Scene, steps: Iterable[Step], probability: float = 0.954) -> Scope:

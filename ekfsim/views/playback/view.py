@@ -86,6 +86,10 @@ class View:
             else ((last if self.since is None else self.since) - self.start, last - self.start)
         )
 
+    def named(self, digits: int = 4) -> str:
+        """What the file of its picture is called; the beam of a reading comes before its step."""
+        return f"step-{self.step.entry.index:0{digits}}" + ("-beam" if self.beam else "")
+
     def path(self) -> Array:
         """All estimated positions from the start to the one that is drawn : (n, 2) m"""
         return np.vstack([self.settled.points(), self.layout.pose(self.belief.mean)[:2]])

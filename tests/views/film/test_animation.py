@@ -26,7 +26,8 @@ RUN = scene(
     sigma=(0.1, 0.1, 0.1),
     obstacles=(DESK,),
 )
-VIEWS = 7  # the start, two moves, two beams and what came of them
+NAMES = [f"step-000{name}.png" for name in ("0", "1", "2-beam", "2", "3", "4-beam", "4")]
+VIEWS = len(NAMES)  # the start, two moves, two beams and what came of them
 
 
 def rendered(target, run=RUN, **how):
@@ -36,8 +37,8 @@ def rendered(target, run=RUN, **how):
 
 def test_a_folder_of_numbered_pictures(tmp_path):
     made = sorted(path.name for path in rendered(tmp_path / "out").iterdir())
-    assert made == [f"frame-{number:04d}.png" for number in range(VIEWS)]
-    with Image.open(tmp_path / "out" / "frame-0002.png") as picture:
+    assert made == NAMES
+    with Image.open(tmp_path / "out" / "step-0002-beam.png") as picture:
         assert picture.text == {**metadata(RUN), "View": "2"}
         frame = Frame(RUN, scopes.of(RUN, play(RUN)))
         assert np.array_equal(np.asarray(picture), frame.rgb(list(views(play(RUN)))[2]))
@@ -48,7 +49,7 @@ def test_a_folder_of_numbered_pictures(tmp_path):
 )
 def test_every_so_many_views_and_the_last(tmp_path, every, numbers):
     made = sorted(path.name for path in rendered(tmp_path / "out", every=every).iterdir())
-    assert made == [f"frame-{number:04d}.png" for number in numbers]
+    assert made == [NAMES[number] for number in numbers]
 
 
 def test_a_gif_has_a_frame_for_each_view_at_its_tempo_and_says_what_made_it(tmp_path):

@@ -47,7 +47,7 @@ class Pictures:
         """Save the picture of a view under its step, beside those saved of it before;
         says where, or why not.
         """
-        name = named(view)
+        name = view.named()
         path = self._out / f"{name}.png"
         for again in itertools.count(2):
             if self._force or not os.path.lexists(path):
@@ -67,8 +67,3 @@ class Pictures:
             self._frame = Frame(self._scene, self._extent, self._look)
         with whole_file(path, force) as beside:
             beside.write_bytes(self._frame.png(view, metadata(self._scene)))
-
-
-def named(view: View) -> str:
-    """The name of a view's picture: of the two views of a reading the first is the beam's."""
-    return f"step-{view.step.entry.index:04}" + ("-beam" if view.beam else "")

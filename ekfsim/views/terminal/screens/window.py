@@ -11,8 +11,8 @@ from typing import Any
 from matplotlib.backend_bases import Event, KeyEvent
 
 from ekfsim.scene import Scene
-from ekfsim.views.picture.frames import DPI, Picture
-from ekfsim.views.picture.look import STANDARD, Look
+from ekfsim.views.picture.frames import Picture
+from ekfsim.views.picture.look import SCREEN, STANDARD, Look
 from ekfsim.views.picture.scope import Scope
 from ekfsim.views.terminal.keys.bindings import Action
 from ekfsim.views.terminal.keys.keyboard import NO_MORE
@@ -89,7 +89,7 @@ class Window:
         self._pressed: deque[str] = deque()
         self.closed = False
         self._name = f"ekfsim: {scene.world.name}"
-        self._figure = pyplot.figure(num=self._name, figsize=SIZE, dpi=DPI)
+        self._figure = pyplot.figure(num=self._name, figsize=SIZE, dpi=SCREEN.dpi)
         self._canvas: Any = self._figure.canvas  # matplotlib leaves most of its methods untyped
         self._picture = Picture(self._figure, scene, scope, look)
         self._canvas.mpl_connect("key_press_event", self._press)
