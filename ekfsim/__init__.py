@@ -17,7 +17,9 @@ and to the filter alike, as `--set` does it; so are `scene.with_(filter="ukf", g
 and `scene.with_("filter.particles", 20_000)`, a number that a filter alone has (see Tuning).
 `ekfsim.scene` and `load_scene` take the text of a file, or a dict, as well, and
 `ekfsim.World.of(boundary=…, start=…, noise=…)` makes a world of lists and arrays, with all the
-checks of a file. One level deeper, the two halves of `play`:
+checks of a file. `ekfsim.study(scene, runs=1000)` and `ekfsim.compare(scene, {"guard": "off"},
+{"guard": "skip"})` have the numbers and the words of the command line. One level deeper, the two
+halves of `play`:
 `ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter,
 belief)` the Steps (what a filter made of them), with `ekfsim.filter_of(scene)` and
 `ekfsim.first_belief(scene)` to begin with. A filter of your own is two functions, or a class, that
@@ -98,6 +100,8 @@ if TYPE_CHECKING:
     from ekfsim.simulation import simulate as simulate
     from ekfsim.student.own.bring import bring as bring
     from ekfsim.views.curves.errors import plot_errors as plot_errors
+    from ekfsim.views.notebook.studies import compare as compare
+    from ekfsim.views.notebook.studies import study as study
     from ekfsim.views.notebook.table import table as table
     from ekfsim.views.picture.frames import draw as draw
     from ekfsim.views.picture.look import Look as Look
@@ -130,6 +134,7 @@ _HOMES = {
     "student.own.bring": ("bring",),
     "views.words.closing": ("conclude",),
     "views.curves.errors": ("plot_errors",),
+    "views.notebook.studies": ("compare",),
     "views.notebook.table": ("table",),
     "views.picture.frames": ("draw",),
     "views.picture.look": ("Look",),
@@ -139,7 +144,7 @@ _HOMES = {
 }
 _HOME_OF = {name: f"ekfsim.{home}" for home, names in _HOMES.items() for name in names}
 # Modules that can be called, by the same names whatever is imported first.
-_ROOMS = ("scene",)
+_ROOMS = ("scene", "study")
 # What `help(ekfsim)` tells at length; the classes have pages of their own, or it would run to a
 # thousand lines.
 __all__ = sorted(name for name in _HOME_OF if name[0].islower())

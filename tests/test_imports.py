@@ -46,6 +46,7 @@ DOORS = {  # the imports from below, each made when it is called for
     ("ekfsim.world", "ekfsim.files.given.worlds"),
     ("ekfsim.world", "ekfsim.files.given.changes"),
     ("ekfsim.scene", "ekfsim.files.given.changes"),
+    ("ekfsim.study", "ekfsim.views.notebook.studies"),  # as is `ekfsim.study(…)`
     ("ekfsim.scene", "ekfsim.files.scenes.load"),  # the module itself is `ekfsim.scene(…)`
 }
 CORE = {

@@ -35,7 +35,10 @@ def test_the_cells_of_the_readme_do_what_they_say(capsys):
         np.testing.assert_array_equal(ours.posterior.mean, theirs.posterior.mean)
 
 
-ROOMS = {"scene": "ekfsim.scene('square').seed"}
+ROOMS = {
+    "scene": "ekfsim.scene('square').seed",
+    "study": "ekfsim.study('square', runs=5).plan.request.runs",
+}
 
 
 @pytest.mark.parametrize(

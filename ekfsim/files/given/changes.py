@@ -55,10 +55,15 @@ def changed_scene(scene: Scene, pairs: Sequence[object], more: Mapping[str, obje
 
     Raises UsageError or InputError where a key or a value is wrong.
     """
-    asked = _asked(pairs, more)
-    settings = [_setting(key, value) for key, value in asked.items() if key not in OWN]
-    for one in settings:
-        path_of(one)
+    scene, remarks = scene_with(scene, _asked(pairs, more))
+    for remark in remarks:
+        warnings.warn(remark, stacklevel=3)
+    return scene
+
+
+def scene_with(scene: Scene, asked: Mapping[str, object]) -> tuple[Scene, list[str]]:
+    """The same, and what is to be said of it."""
+    settings = settings_of(asked)
     if OF_FILTERS in asked:
         first, *others = filters_in(_names(asked[OF_FILTERS]), OF_FILTERS)
         scene = replace(scene, filter=first, beside=tuple(others))
@@ -67,15 +72,21 @@ def changed_scene(scene: Scene, pairs: Sequence[object], more: Mapping[str, obje
     if RUN in asked:
         scene = replace(scene, run=_run(asked[RUN]))
     refuse_unread(settings, (scene.filter, *scene.beside), OF_FILTERS)
-    scene = _with_own(scene, settings)
+    scene, remarks = _with_own(scene, settings), list[str]()
     if of_world := [one for one in settings if kind_of(one) == "world"]:
         scene, remarks = _in_other_world(scene, of_world)
-        for remark in remarks:
-            warnings.warn(remark, stacklevel=3)
     keys = {one.key for one in settings}
     kept = (told for told in scene.settings if told.partition("=")[0] not in keys)
     new = (str(one) for one in settings if one.key not in OF_COMMANDS)
-    return replace(scene, settings=(*kept, *new))
+    return replace(scene, settings=(*kept, *new)), remarks
+
+
+def settings_of(asked: Mapping[str, object]) -> list[Setting]:
+    """What of it `--set` would set. Raises UsageError where no file has such a key."""
+    settings = [_setting(key, value) for key, value in asked.items() if key not in OWN]
+    for one in settings:
+        path_of(one)
+    return settings
 
 
 def _asked(pairs: Sequence[object], more: Mapping[str, object]) -> dict[str, object]:

@@ -60,6 +60,7 @@ class Request:
     name: str = ""  # of the file that asks, as it was given
     commands_name: str = ""  # as a person writes them on a command line
     world_name: str | None = None
+    in_python: bool = False  # of a scene that a notebook holds, not of files
 
     def overruled(
         self, settings: tuple[Setting, ...], sweep: tuple[tuple[Setting, ...], ...]

@@ -1,4 +1,6 @@
 """What a notebook shows: tables, and what its cells make of scenes, steps, views and studies.
 
-table.py  steps → the columns of `run --csv`
+table.py    steps → the columns of `run --csv`
+studies.py  study and compare of a scene that a notebook holds
+cells.py    words and pictures → what a cell shows
 """

@@ -1,6 +1,6 @@
 """Steps → the columns of `run --csv`, as a DataFrame where pandas is there."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from importlib.util import find_spec
 from typing import Any
@@ -63,8 +63,15 @@ def table(steps: Iterable[Step], confidence: float = 0.954) -> Any:
     commanded = all(step.entry.t is None for step in known)
     rows = [row_of(step, commanded, confidence) for step in known]
     names = columns_of(commanded)
-    columns = zip(names, zip(*rows, strict=True) if rows else [()] * len(names), strict=True)
-    found = Columns((name, _array(values, name in TEXTS)) for name, values in columns)
+    columns = zip(*rows, strict=True) if rows else [()] * len(names)
+    return framed(dict(zip(names, columns, strict=True)))
+
+
+def framed(columns: Mapping[str, Sequence[Any]]) -> Any:
+    """Columns of numbers and texts, "" where a number is undefined: a DataFrame where pandas is
+    installed, else Columns.
+    """
+    found = Columns((name, _array(values, name in TEXTS)) for name, values in columns.items())
     if find_spec("pandas") is None:
         return found
     from pandas import DataFrame

@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Sequence
 
 from ekfsim.files.scenes.filter_checks import unread
+from ekfsim.files.yaml.marked import scalar
 from ekfsim.printable import in_a_line
 from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
@@ -25,10 +26,7 @@ from ekfsim.views.words.numbers import instant
 from ekfsim.views.words.text_table import aligned, folded
 
 MOST_TOLD = 6  # rows, each with what its verdict rests on
-IN_TABLE = (
-    "What each verdict rests on, and the worst and a typical run of each row, "
-    "stand in summary.csv (-o)."
-)
+IN_TABLE = "What each verdict rests on, and the worst and a typical run of each row, stand in {}."
 HEAD = (
     *(
         "filter",
@@ -64,10 +62,11 @@ def conclude(
         *aligned([[*plan.keys, *HEAD], *map(_row, results)], len(plan.keys) + 1, width),
     ]
     if len(results) > MOST_TOLD:  # the table is what is wanted
+        where = "table()" if request.in_python else "summary.csv (-o)"
         worst = max(
             results, key=lambda result: (result.tally.worst.impossible, result.tally.worst.nees)
         )
-        lines += ["", *folded(IN_TABLE, width), *plays(plan, worst)[:1]]
+        lines += ["", *folded(IN_TABLE.format(where), width), *plays(plan, worst)[:1]]
         return "\n".join(lines) + "\n"
     for result in results:
         lines += ["", *folded(f"{title(result)}: {sentence(Verdict(result))}", width)]
@@ -276,6 +275,8 @@ def plays(plan: Plan, result: Result) -> list[str]:
 def played(plan: Plan, result: Result, run: int) -> str:
     """The command that plays one run of a row."""
     request, scene = plan.request, result.case.scene
+    if request.in_python:
+        return _replayed(plan, result, run)
     words = ["ekfsim", "play", request.commands_name]
     words += [] if request.world_name is None else ["--world", request.world_name]
     words += ["--seed", str(scene.seed), "--run", str(run), "--filter", scene.filter]
@@ -286,3 +287,12 @@ def played(plan: Plan, result: Result, run: int) -> str:
     for one in settings:
         words += [] if one in others else ["--set", str(one)]
     return in_a_line(shlex.join(words))
+
+
+def _replayed(plan: Plan, result: Result, run: int) -> str:
+    """The same in Python, of the scene that was studied."""
+    scene = result.case.scene
+    own = [f"seed={scene.seed}", f"run={run}"]
+    own += [f"filter={scene.filter!r}"] if len(plan.filters) > 1 else []
+    swept = [f"{one.key!r}, {scalar(one.value)!r}" for one in result.case.values]
+    return in_a_line(f"ekfsim.play(scene.with_({', '.join([*swept, *own])}))")
