@@ -3,6 +3,7 @@ when not?
 """
 
 import re
+from pathlib import Path
 
 import pytest
 from scipy.stats import chi2
@@ -74,3 +75,14 @@ def test_the_last_picture_says_whether_to_believe_the_filter_and_since_when_not(
 
 def test_every_mechanism_is_among_them():
     assert {name[8:10] for name in LESSONS} == {f"{n:02}" for n in range(13)}
+
+
+def test_the_page_on_pictures_quotes_what_they_say():
+    scene = load_scene("diverge-01-wrong-wall")
+    said = set()
+    for view in views(play(scene)):
+        said |= {judgement(view, scene, 0.954), *notes(view, scene, None)}
+    page = (Path(__file__).parents[3] / "docs" / "pictures.md").read_text(encoding="utf-8")
+    quoted = [line for block in page.split("```")[1::2] for line in block.strip().splitlines()]
+    assert len(quoted) == 5
+    assert {line.removeprefix("⚠ ") for line in quoted} <= said
