@@ -9,12 +9,13 @@ import numpy as np
 
 from ekfsim.commands import Kidnap, Move, Say, Sense, Untold
 from ekfsim.geometry import Array
-from ekfsim.geometry.ellipse import cone_halfwidth, outline
+from ekfsim.geometry.ellipse import outline
 from ekfsim.records import Control, Reading
 from ekfsim.scene import Scene
 from ekfsim.views.picture.sights import instants
 from ekfsim.views.playback.length import steps_of
 from ekfsim.views.playback.view import View
+from ekfsim.views.terminal.beliefs import ALARM, draw_true_way, draw_uncertainty
 from ekfsim.views.terminal.braille import (
     Bounds,
     Canvas,
@@ -40,13 +41,7 @@ from ekfsim.world import Landmark, World
 WALL = Pen()
 UNKNOWN_WALL = Pen(ascii="%", on=4, off=3)  # stands there, and the filter does not know
 IMAGINED_WALL = Pen(ascii=":", on=1, off=3)  # the filter believes in it
-# where the truth is outside of them
-WARNING = "1;" + ansi("#D55E00")
-MISSED_ELLIPSE = Pen(WARNING, "*", on=4, off=2)
-MISSED_CONE = Pen(WARNING, "'", on=4, off=2)
 PATH = Pen(ansi("#56B4E9"), ".", on=1, off=2)
-ELLIPSE = Pen(ansi("#009E73"), "*")
-CONE = Pen(ansi("#009E73"), "'")
 MEANT = Pen(ansi("#777777"), ",", on=1, off=4)  # the way that was meant
 ESTIMATE = Pen("1;" + ansi("#0072B2"))
 TRUTH = Pen("1", "~")  # bright, on a light terminal as on a dark one
@@ -61,7 +56,6 @@ PLAIN = str.maketrans(  # for an output that knows ASCII alone
     {"°": " deg", "−": "-", "–": "-", "±": "+-", "σ": " sigma", "Σ": "sum of ", "·": "|", **ARROWS}
 )
 CROWDED = 300  # landmarks, above which none shows its number
-CONE_LENGTH = 0.25  # of the shorter side of the picture
 
 
 def draw(
@@ -95,13 +89,15 @@ def depict(canvas: Canvas, view: View, scene: Scene, probability: float) -> list
     """Draw a view on a canvas; gives its legend, the most important first."""
     step, mean = view.step, view.pose.mean
     legend = _draw_world(canvas, scene.world)
+    true_way = draw_true_way(canvas, view)
     canvas.polyline(view.path(), PATH)
+    path = Item(".." if canvas.ascii else "⠄⠠", "path", PATH.colour)
     for other, pen in zip(view.others, OTHERS, strict=False):
         canvas.polyline(other.path(), pen)
     # over the path, so that their numbers stay whole
     _draw_landmarks(canvas, scene.world.landmarks)
-    belief = draw_particles(canvas, view) + _draw_uncertainty(canvas, view, probability)
-    legend += draw_fix(canvas, step.entry) + belief
+    belief = [*draw_particles(canvas, view), path, *draw_uncertainty(canvas, view, probability)]
+    legend += draw_fix(canvas, step.entry) + belief + true_way
     legend = _draw_others(canvas, view, scene, probability) + legend
     if view.beam:
         legend = draw_reading(canvas, view) + legend
@@ -116,7 +112,8 @@ def _draw_others(canvas: Canvas, view: View, scene: Scene, probability: float) -
     for name, other, pen in zip(scene.watching[1:], view.others, OTHERS, strict=False):
         x, P = other.pose
         if np.isfinite(x).all() and np.isfinite(P).all():
-            canvas.polyline(outline(x[:2], P[:2, :2], probability), pen)
+            outside = standing(other, probability).outside_ellipse
+            canvas.polyline(outline(x[:2], P[:2, :2], probability), ALARM if outside else pen)
             canvas.text(x[:2], name[0], pen.colour)
         legend.append(Item(name[0], name, pen.colour))
     return legend
@@ -183,39 +180,6 @@ def _place(ring: Array, box: Array) -> Array | None:
         np.where(fits, np.linalg.norm(middles[:, 0] - (low + high) / 2, axis=-1), np.inf)
     )
     return np.asarray(middles[best, 0]) if fits[best] else None
-
-
-def _draw_uncertainty(canvas: Canvas, view: View, probability: float) -> list[Item]:
-    """The ellipse of the position and the cone of the heading, in warning where the truth is not
-    inside.
-    """
-    mean, P = view.pose
-    if not (np.isfinite(mean).all() and np.isfinite(P).all()):
-        return [Item("!", "the belief is no number")]
-    stands = standing(view, probability)
-    ellipse, cone = ELLIPSE, CONE
-    if stands.outside_ellipse:
-        ellipse = MISSED_ELLIPSE
-    if stands.outside_cone:
-        cone = MISSED_CONE
-    canvas.polyline(outline(mean[:2], P[:2, :2], probability), ellipse)
-    xmin, xmax, ymin, ymax = canvas.bounds
-    length, halfwidth = (
-        CONE_LENGTH * min(xmax - xmin, ymax - ymin),
-        cone_halfwidth(float(P[2, 2]), probability),
-    )
-    if halfwidth < math.pi:
-        for side in (halfwidth, -halfwidth):
-            canvas.polyline([mean[:2], mean[:2] + length * direction(mean[2] + side)], cone)
-    return [
-        Item(".." if canvas.ascii else "⠄⠠", "path", PATH.colour),
-        Item("*" if canvas.ascii else "⢎⡱", f"{100 * probability:g} % ellipse", ellipse.colour),
-        Item(
-            "'" if canvas.ascii else "⡠⠊",
-            "cone" if halfwidth < math.pi else "any heading",
-            cone.colour,
-        ),
-    ]
 
 
 def _draw_robots(canvas: Canvas, mean: Array, truth: Array | None) -> list[Item]:

@@ -87,11 +87,52 @@ def test_the_ellipse_has_its_radii() -> None:
     room = scene(obstacles=())
     P = np.diag([(2.0 / 2.4816) ** 2, (1.0 / 2.4816) ** 2, 0.0])  # radii 2 m and 1 m
     lines = draw(
-        believing(view(room, 0), [5.0, 4.0, 0.0], P), room, 0.954, SIZE, LIMITS, False, True
+        believing(view(room, 0), [3.0, 4.0, 0.0], P), room, 0.954, SIZE, LIMITS, False, True
     ).split("\n")
     stars = {(i, j) for i, line in enumerate(lines[1:-1]) for j, c in enumerate(line) if c == "*"}
     assert max(j for _, j in stars) - min(j for _, j in stars) == pytest.approx(4 * 42 / 8, abs=1)
     assert max(i for i, _ in stars) - min(i for i, _ in stars) == pytest.approx(2 * 21 / 8, abs=1)
+
+
+def test_ellipse_and_cone_warn_each_by_itself() -> None:
+    room = scene(obstacles=())
+    P = np.diag([(2.0 / 2.4816) ** 2, (1.0 / 2.4816) ** 2, 0.01])  # the cone is 0.2 rad wide
+    for mean, ellipse, cone in (
+        ([3.9, 4.0, 0.19], "*", "'"),
+        ([4.1, 4.0, 0.19], "!", "'"),
+        ([3.9, 4.0, 0.21], "*", "!"),
+    ):
+        seen = believing(view(room, 0), mean, P)
+        lines = draw(seen, room, 0.954, SIZE, LIMITS, False, True).split("\n")
+        drawn = set("".join(lines[1:-1]))
+        assert drawn & set("*!'") == {ellipse, cone}
+        words = "ellipse: truth outside" if ellipse == "!" else "95.4 % ellipse"
+        words += f"  {cone} cone" + (": truth outside" if cone == "!" else "")
+        assert f"{ellipse} {words}" in lines[-1]
+    unknown = replace(seen.step.entry, truth=None)
+    seen = replace(seen, step=replace(seen.step, entry=unknown))
+    assert "!" not in draw(seen, room, 0.954, SIZE, LIMITS, False, True)
+
+
+def test_what_was_believed_before_is_dotted() -> None:
+    room = scene(obstacles=())
+    seen = believing(view(room, 0), [5.0, 4.0, 0.0], np.diag([0.01, 0.01, 0.01]))
+    before = Gaussian(np.array([5.0, 4.0, 0.0]), np.diag([(2.0 / 2.4816) ** 2, 0.1, 0.01]))
+    seen = replace(seen, step=replace(seen.step, prior=before))
+    lines = draw(seen, room, 0.954, (120, 24), LIMITS, False, True).split("\n")
+    ghost = {j for line in lines[1:-1] for j, c in enumerate(line) if c == '"'}
+    assert max(ghost) - min(ghost) == pytest.approx(4 * 42 / 8, abs=1)
+    assert '" before' in lines[-1]
+
+
+def test_the_true_way_leads_to_the_truth() -> None:
+    run = scene(Move(2.0, math.pi / 2), Kidnap(2.0, 6.0, 0.0), Move(4.0, 0.0))
+    seen = view(run, 3)
+    lines = draw(seen, run, 0.954, (120, 40), LIMITS, False, True).split("\n")
+    assert lines[-1].endswith("~~ true way")
+    way = {(i, j) for i, line in enumerate(lines[1:-1]) for j, c in enumerate(line) if c == "~"}
+    levels = {i for i, _ in way}
+    assert len(levels) == 2  # of the first move, and after it was carried away, with none between
 
 
 @pytest.mark.parametrize("degrees", [0, 45, 90, 160, -30])

@@ -11,11 +11,11 @@ from scipy.stats import chi2
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
-from ekfsim.views.picture.frames import COLUMNS, LINES
+from ekfsim.views.picture.frames import LINES
 from ekfsim.views.picture.lettering import wrapped
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.captions import notes
-from ekfsim.views.words.judgement import judgement, warns
+from ekfsim.views.words.judgement import COLUMNS, judgement, warns
 
 LESSONS = sorted(name for name in packaged("commands") if name.startswith("diverge-"))
 

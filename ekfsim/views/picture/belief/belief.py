@@ -33,10 +33,11 @@ from ekfsim.views.picture.artists import (
     sector,
 )
 from ekfsim.views.picture.belief.ghost import GhostArtists
-from ekfsim.views.picture.belief.warned import EitherArea, Outside, alarm
+from ekfsim.views.picture.belief.warned import EitherArea, alarm
 from ekfsim.views.picture.belief.ways import WayArtists
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.captions import conditioned_label, cone_label, ellipse_label
+from ekfsim.views.words.judgement import standing
 
 COVERED = 1.4  # body radii: an ellipse with a smaller major radius is not seen beneath the body
 LARGE, SMALL = 7.0, 3.5  # points, of the mark at the reference point
@@ -88,10 +89,10 @@ class BeliefArtists:
     def show(self, view: View, unit: float) -> None:
         """Move everything to a view. unit : m, what the robot's body measures in this Axes"""
         x, P = view.pose
-        outside = Outside.of(view, self._probability)
+        stands = standing(view, self._probability)
         half = cone_halfwidth(float(P[2, 2]), self._probability)
-        self._cone.show(sector(x, half, CONE * unit), outside.cone)
-        self._ellipse.show(outline(x, P[:2, :2], self._probability), outside.ellipse)
+        self._cone.show(sector(x, half, CONE * unit), stands.outside_cone)
+        self._ellipse.show(outline(x, P[:2, :2], self._probability), stands.outside_ellipse)
         self.ghost.show(view, unit)
         self.ways.show(view)
         for sign, edge in self.conditioned.items():

@@ -11,8 +11,9 @@ from matplotlib.axes import Axes
 
 from ekfsim.geometry.ellipse import outline
 from ekfsim.views.picture.artists import NOSE, NOWHERE, direction, line, marks, place
-from ekfsim.views.picture.belief.warned import ALARM, ALARM_DASHES, Outside
+from ekfsim.views.picture.belief.warned import ALARM, ALARM_DASHES
 from ekfsim.views.playback.view import View
+from ekfsim.views.words.judgement import standing
 
 BAND = 4.0  # points, of a warning
 
@@ -59,7 +60,7 @@ class OtherArtists:
         place(self.path, view.path())
         rim = outline(x, P[:2, :2], self._probability)
         place(self.ellipse, rim)
-        outside = Outside.of(view, self._probability).ellipse
+        outside = standing(view, self._probability).outside_ellipse
         place(self.warning, rim if outside else NOWHERE)
         place(self.heading, np.stack([x[:2], x[:2] + NOSE * unit * direction(x[2])]))
         place(self.reference, x[None, :2])

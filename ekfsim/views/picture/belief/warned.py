@@ -1,36 +1,14 @@
 """Areas in their own style while the truth is inside, in that of a warning while it is not."""
 
-from typing import NamedTuple
-
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
-from ekfsim.diagnostics.coverage import inside_cone, inside_ellipse
 from ekfsim.geometry import Array
 from ekfsim.views.picture.artists import NOWHERE, VERMILLION, Dashes, area, empty
-from ekfsim.views.playback.view import View
 
 ALARM = VERMILLION
 ALARM_DASHES: Dashes = (0, (5, 1.6, 1.2, 1.6))  # as nothing else is drawn, for a print in grey
 ALARM_WIDTH, ALARM_FILL = 2.2, 0.12
-
-
-class Outside(NamedTuple):
-    """Of which of a belief's areas the truth is outside; of none where no truth is known."""
-
-    ellipse: bool
-    cone: bool
-
-    @classmethod
-    def of(cls, view: View, probability: float) -> "Outside":
-        """Of those that the view shows."""
-        truth = view.step.entry.truth
-        if truth is None:
-            return cls(False, False)
-        return cls(
-            not inside_ellipse(view.pose, truth, probability),
-            not inside_cone(view.pose, truth, probability),
-        )
 
 
 class EitherArea:
