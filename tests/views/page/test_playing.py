@@ -79,7 +79,7 @@ def test_a_link_leads_to_a_step_and_follows(opened, pages):
         assert title(page).startswith("4 of 8: sense")
         assert page.locator("#map .beam").is_visible()
         page.keyboard.press("n")
-        assert page.evaluate("location.hash") == "#4b"
+        page.wait_for_function("location.hash === '#4b'")
         page.evaluate("location.hash = '#6b'")
         page.wait_for_function("document.getElementById('title').textContent.startsWith('6 of 8')")
         assert not page.locator("#map .beam").is_visible()

@@ -4,7 +4,7 @@ const lesson = JSON.parse(document.getElementById("lesson").textContent);
 const views = lesson.views, at = id => document.getElementById(id);
 const TEMPO = { beam: 1300, other: 900, driven: 120 }; // ms that a view stays while the run plays
 const still = matchMedia("(prefers-reduced-motion: reduce)");
-let current = 0, told = 0, symbol = "P", clock = 0;
+let current = 0, told = 0, symbol = "P", clock = 0, linking = 0;
 const shown = lesson.filters.map(() => true);
 
 const map = new Picture(at("map"), false), close = new Picture(at("close"), true);
@@ -15,8 +15,13 @@ const size = Math.max(lesson.limits[2] - lesson.limits[0], lesson.limits[3] - le
 function go(i) {
   current = Math.min(views.length - 1, Math.max(0, i));
   show();
-  const link = "#" + name(views[current]);
-  if (location.hash !== link) try { history.replaceState(null, "", link); } catch { /* a sandbox has no history */ }
+  clearTimeout(linking);
+  linking = setTimeout(link, 200); // not at each of many: browsers bear few changes a second
+}
+
+function link() {
+  const to = "#" + name(views[current]);
+  if (location.hash !== to) try { history.replaceState(null, "", to); } catch { /* a sandbox has no history */ }
 }
 
 // A step's link: of two views, the revised estimate's ends in b.
