@@ -55,6 +55,7 @@ class Player:
     # of the steps so far, by filter; ahead of what is shown by a view
     _summaries: list[Summary] = field(init=False)
     _length: Length | None = field(init=False)
+    _page: str = ""  # what is read in place of the run
     _stayed: tuple[str, int] = ("", 0)  # why the view stayed at the last key, and which
     _counted: Counted = field(default_factory=Counted)
 
@@ -123,7 +124,8 @@ class Player:
                 form = "long" if self.explain else "short"
                 self._show(note=f"The narrative in its {form} form, from this view on:")
             case Action.PANES | Action.UP | Action.DOWN:
-                self._show(note=self.screen.arrange(action, count))
+                page = "" if action is Action.PANES else self._page
+                self._show(note=self.screen.arrange(action, count), page=page)
             case Action.SAVE:
                 self._show(note=self.save(self._view(self.number)))
             case Action.DRIVE:
@@ -179,7 +181,7 @@ class Player:
             self.pace.slower()
         if self.pace.seconds is None:
             return "It waits for keys again"
-        return f"Every {self.pace.seconds:g} s a view: + faster, - slower, space waits"
+        return "+ faster, - slower, space waits"
 
     def _to_step(self, step: int) -> None:
         """To the first view of a step: of a reading the beam."""
@@ -252,9 +254,11 @@ class Player:
         view = self._view(self.number)
         revised = self.number > 0 and not view.beam and self._view(self.number - 1).beam
         before = self._narrated(self._view(self.number - 1)) if revised else ""
+        self._page = page
+        pace = "" if self.pace.seconds is None else f" · every {self.pace.seconds:g} s"
         moment = Moment(
-            view, self._told(view), self._place, self.explain, before, passed, note, page, typed,
-            self.hints,
+            view, self._told(view), self._place + pace, self.explain, before, passed, note, page,
+            typed, self.hints,
         )  # fmt: skip
         self.screen.show(moment)
 

@@ -13,7 +13,7 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from ekfsim.errors import UsageError
+from ekfsim.errors import StepError, UsageError
 from ekfsim.files.yaml.telling import quoted
 from ekfsim.scene import Scene
 from ekfsim.views.picture.look import Look, get_ready
@@ -109,13 +109,18 @@ def _typed(console: Console | None) -> Iterator[Keyboard]:
         with keys() as keyboard:
             yield keyboard
         return
-    printed = StringIO()  # by a filter: nothing comes between the lines of the screen
+    printed, over = StringIO(), False  # by a filter: nothing comes between the lines of the screen
     try:
         with redirect_stderr(printed), keys(drawn=console) as keyboard:
             yield keyboard
+        over = True
+    except (KeyboardInterrupt, StepError):
+        over = True
+        raise
     finally:
         sys.stderr.write(printed.getvalue())
-    sys.stdout.write(console.farewell())
+        if over:
+            sys.stdout.write(console.farewell())
 
 
 def _next_key(

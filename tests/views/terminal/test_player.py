@@ -1,15 +1,19 @@
 import io
+from contextlib import contextmanager
 from itertools import groupby
 
 import pytest
 from recordings import recording, speeds
 from scenes import scene
 
-from ekfsim.commands import Move, Sense
+from ekfsim.commands import Kidnap, Move, Sense
 from ekfsim.diagnostics.summary import Summary
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
 from ekfsim.views.playback.playback import views
+from ekfsim.views.terminal import player as player_module
 from ekfsim.views.terminal.keys.help import HELP
+from ekfsim.views.terminal.pace import Pace
 from ekfsim.views.terminal.player import Player
 from ekfsim.views.terminal.screens.moment import Together
 from ekfsim.views.terminal.screens.stream import Stream
@@ -189,3 +193,132 @@ def test_a_recorded_run_is_stepped_through_and_summed_up_whole(place):
     assert told == "".join(narrate(view, place) for view in seen) + conclude(summary)
     assert summary.steps == len(place.log.entries) - 1
     assert played(*[NEXT] * (len(seen) - 1), BACK, NEXT, place=place)[1].endswith(conclude(summary))
+
+
+def went(*keys, place=PLACE):
+    """The view that the last key led to, and what was said of it."""
+    last = moments(*"".join(keys), place=place)[-1]
+    return last.view.number, last.note
+
+
+def test_g_goes_to_a_step_to_the_beam_of_a_reading_and_alone_to_the_start():
+    assert went("1g") == (1, "")
+    assert went("2g") == (2, "")
+    assert went("3g") == (4, "")
+    assert went("G", "2g") == (2, "")
+    assert went("nn", "g") == (0, "")
+
+
+def test_beyond_the_end_it_goes_to_the_end_and_says_so():
+    assert went("13g") == (4, "There is no step 13: the run ends at step 3")
+    assert went("G") == (4, "")
+    assert went("Gn") == (4, OVER.rstrip())
+
+
+def test_a_way_by_steps_is_told_as_such_in_a_pipe():
+    shown, told = played(*"3gg")
+    assert shown == [0, 4, 0]
+    assert told.startswith(story(0) + f"<==On to {at(4)}\n\n" + story(4))
+    assert told.endswith(f"<==Back at {at(0)}\n\n" + story(0))
+
+
+def ambiguous(view):
+    return view.beam and bool(view.step.remark.ambiguous)
+
+
+def test_a_goes_from_one_ambiguous_beam_to_the_next():
+    tour = load_scene("tour")
+    beams = [view.number for view in views(play(tour)) if ambiguous(view)]
+    assert beams
+    for many, number in enumerate(beams, start=1):
+        assert went("a" * many, place=tour) == (number, "")
+    none = "No beam is ambiguous from here on"
+    assert went("a" * (len(beams) + 1), place=tour) == (beams[-1], none)
+
+
+def test_l_goes_to_where_the_filter_was_lost():
+    carried = scene(Move(1.0, 0.5), Sense(0.2), Kidnap(3.0, 1.0, 2.0), Sense(0.1), Move(0.1, 0.0))
+    every = list(views(play(carried)))
+    since = every[-1].judged.lost_from
+    number, note = went("l", place=carried)
+    assert every[number].step.entry.index == since
+    assert every[number].judged.lost_from == since
+    assert every[number - 1].judged.lost_from is None
+    assert note == f"Lost since step {since}, up to the end"
+    assert went("nl") == (1, "The filter is not lost at the end")
+
+
+def test_back_at_the_revised_estimate_what_its_beam_told_is_there_as_well():
+    revised = moments(*"Gp")[-1]
+    assert (revised.before, revised.narrative) == (story(2), story(3))
+    assert moments(*"Gpp")[-1].before == ""
+
+
+def test_the_help_is_scrolled_and_left_by_any_other_key():
+    pages = [bool(moment.page) for moment in moments(*"?jkn")]
+    assert pages == [False, True, True, True, False]
+
+
+def test_the_number_that_is_typed_is_seen():
+    assert [moment.typed for moment in moments(*"12p")] == [0, 1, 12, 0]
+
+
+class Ticking:
+    """Time passes without a key where None is given."""
+
+    def __init__(self, *keys):
+        self.keys, self.waits = iter([*keys, QUIT]), []
+
+    def __call__(self, timeout):
+        self.waits.append(timeout)
+        return next(self.keys)
+
+
+def ticked(*keys, auto=None):
+    screen, ticking = Screen(), Ticking(*keys)
+    Player(PLACE, play(PLACE), screen, lambda view: "", 0.954, pace=Pace(auto)).play(ticking)
+    return screen.moments, ticking.waits
+
+
+def test_it_goes_on_by_itself_until_a_key_that_steps_or_the_end():
+    shown, waits = ticked(None, None, "p", None, auto=0.5)
+    assert [m.view.number for m in shown] == [0, 1, 2, 1, 2]
+    assert all(wait <= 0.5 for wait in waits[:3])
+    assert waits[3] is None  # after p it waits for keys
+    shown, waits = ticked(*[None] * 5, auto=0.5)
+    assert [m.view.number for m in shown] == [0, 1, 2, 3, 4, 4]
+    assert waits[-1] is None
+    assert shown[-1].note == OVER.rstrip()
+
+
+def test_plus_and_minus_change_the_pace_and_space_pauses():
+    shown, waits = ticked("+", "+", "-", "-", " ", "+")
+    paces = [wait and round(wait + 0.05, 1) for wait in waits]
+    assert paces == [None, 2.0, 1.0, 2.0, 5.0, None, 5.0]
+    assert [m.view.number for m in shown] == [0] * 7
+    assert "every 2 s" in shown[1].place
+    assert "every" not in shown[5].place
+
+
+def test_ctrl_c_stops_a_long_way_and_nothing_else():
+    @contextmanager
+    def pressed():
+        asked = iter([False, False, True])
+        yield lambda: next(asked)
+
+    screen, waiting = Screen(), iter("nGq")
+    player = Player(PLACE, play(PLACE), screen, lambda view: "", 0.954, interruptible=pressed)
+    player.play(lambda timeout: next(waiting))
+    last = screen.moments[-1]
+    assert last.view.number == 1
+    assert last.note == "Stopped on the way; Ctrl-C again ends the program"
+
+
+def test_a_long_way_tells_how_far_it_has_come(monkeypatch):
+    monkeypatch.setattr(player_module, "OFTEN", -1.0)
+    said = []
+    screen, waiting = Screen(), iter("Gq")
+    screen.wait = said.append
+    Player(PLACE, play(PLACE), screen, lambda view: "", 0.954).play(lambda timeout: next(waiting))
+    assert said[0] == "to the end: step 0 of 3 · Ctrl-C stops"
+    assert len(said) == 5

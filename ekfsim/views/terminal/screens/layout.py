@@ -6,6 +6,8 @@ status line
 """
 
 import math
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -86,8 +88,8 @@ class Layout:
         """
         foot = self._foot(moment, panes)
         if moment.page:
-            body = [w for line in moment.page.split("\n") for w in wrapped(line, self.columns)]
-            lines, scroll = self._scrolled(body, self.rows - len(foot), scroll or 0)
+            page = _page(moment.page, self.columns)
+            lines, scroll = self._scrolled(page, self.columns, self.rows - len(foot), scroll or 0)
             return [*_filled(lines, self.rows - len(foot)), *foot][-self.rows :], scroll
         heads = self._heads(moment)
         room = self.rows - len(heads) - len(foot)
@@ -154,8 +156,8 @@ class Layout:
         """The narrative of the step, as far as there is room; and how far it is scrolled."""
         lines, own = self._wrapped(moment, columns)
         if scroll is None:  # the newest is seen whole, or at least from its beginning
-            scroll = min(own, max(len(lines) - rows, 0)) if own else 0
-        lines, scroll = self._scrolled(lines, rows, scroll)
+            scroll = max(own - 1, 0)
+        lines, scroll = self._scrolled(lines, columns, rows, scroll)
         return [
             self.look.strong(line) if line.startswith("==>") else line for line in lines
         ], scroll
@@ -171,19 +173,24 @@ class Layout:
         lines = shown(text).rstrip("\n").split("\n") if text else []
         return [part for line in lines for part in wrapped(line, columns)]
 
-    def _scrolled(self, lines: list[str], rows: int, scroll: int) -> tuple[list[str], int]:
+    def _scrolled(
+        self, lines: list[str], columns: int, rows: int, scroll: int
+    ) -> tuple[list[str], int]:
         """So many of the lines as fit, with signs where there are more."""
         if len(lines) <= rows or rows < 3:
             return lines[:rows], 0
         up, down = ("^", "v") if self.look.ascii else ("▲", "▼")
-        scroll = min(scroll, len(lines) - rows + 1)  # the sign above takes a row
-        above = [self.look.strong(f"{up} {scroll + 1} more: k", REVERSE)] if scroll > 0 else []
-        first = scroll + 1 if scroll > 0 else 0
+        scroll = min(scroll, len(lines) - rows)
+        above = [self._sign(f"{up} {scroll + 1} more: k", columns)] if scroll > 0 else []
+        first = scroll + 1 if scroll > 0 else 0  # the sign takes a row
         left = len(lines) - first - (rows - len(above))
         if left <= 0:
             return [*above, *lines[first:]], scroll
-        below = [self.look.strong(f"{down} {left + 1} more: j", REVERSE)]
+        below = [self._sign(f"{down} {left + 1} more: j", columns)]
         return [*above, *lines[first : first + rows - len(above) - 1], *below], scroll
+
+    def _sign(self, text: str, columns: int) -> str:
+        return self.look.strong(shorten(text, columns, self.look.ascii), REVERSE)
 
     def _foot(self, moment: Moment, panes: Panes) -> list[str]:
         """The status line; more than one where what there is to say is longer."""
@@ -191,12 +198,12 @@ class Layout:
         note = " ".join(shown(moment.note).split())
         hints = [*moment.hints[:2], self._other(panes), *moment.hints[2:]]
         if moment.page:
-            hints = ["any key goes back to the run"]
+            place, hints = "the keys", ["n goes on", "any other key: back to the run"]
         if note:
             told = f"{place} · {note}"
             lines = [told] if cells(told) <= self.columns else within(note, self.columns, 3, False)
         else:
-            lines = [_joined([place, *hints], self.columns)]
+            lines = [_hinted(place, hints, self.columns)]
         lines = lines[: max(self.rows // 3, 1)]
         if self.look.ascii:
             lines = [printable(line.translate(PLAIN), True) for line in lines]
@@ -221,13 +228,22 @@ class Layout:
         return min(math.ceil(columns * shape / 2) + 2, self.rows)
 
 
-def _joined(parts: list[str], columns: int) -> str:
-    """As many parts, from the first on, as there is room for."""
-    line = parts[0]
-    for part in parts[1:]:
-        if cells(line) + 3 + cells(part) <= columns:
-            line = f"{line} · {part}"
-    return line
+def _hinted(place: str, hints: Sequence[str], columns: int) -> str:
+    """A place, and as many hints as there is room for; the one on all keys gives way last."""
+    for most in (*range(len(hints), 1, -1), 1):
+        line = " · ".join([place, *(hints[:most] if most > 1 else hints[1:2])])
+        if cells(line) <= columns:
+            return line
+    return place
+
+
+def _page(text: str, columns: int) -> list[str]:
+    """A page of text in lines; what stands side by side in it stands below where it is narrow."""
+    lines = []
+    for line in text.split("\n"):
+        parts = [line] if cells(line) <= columns else re.split(" {3,}", line)
+        lines += [piece for part in parts for piece in wrapped(part, columns)]
+    return lines
 
 
 def _filled(lines: list[str], rows: int) -> list[str]:

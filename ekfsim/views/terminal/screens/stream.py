@@ -24,7 +24,7 @@ class Stream:
         """Write what is new: of another view all of it, of the same what is said of the key."""
         last, self._shown = self._shown, moment
         moved = last is None or moment.view.number != last.view.number
-        if moment.page:
+        if moment.page and not (last and last.page):
             self._out.write(f"{moment.page}\n")
         if moment.note and not moved:
             self._out.write(f"{moment.note}\n")
