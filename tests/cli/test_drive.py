@@ -100,6 +100,7 @@ def test_a_commands_file_is_driven_on_and_its_end_can_be_undone(place):
 def test_play_is_driven_on_from_the_view_that_is_shown(place):
     played = ekfsim("play", "short.yaml", "--show", "text", keys=b"nnndfw")
     assert (played.status, played.err) == (0, "")
+    assert "1 more command comes here: U does them, what is driven leaves them out\n" in played.out
     told = (place / "drive.yaml").read_text()
     assert told.endswith("  - sense: {angle: 0}\n  - move: {distance: 0.25, angle: 0}\n")
     assert "The run is over after 3 commands" in played.out

@@ -27,7 +27,8 @@ DRAWING = Move | Sense  # the commands that draw numbers
 
 
 class Course:
-    """The run of a scene as far as it was driven; what the scene commands is driven first.
+    """The run of a scene as far as it was driven; what the scene commands is driven first. Where
+    that is only a part of it, the rest waits to be done again.
 
     Draws belong to a command's number, so that a command more leaves all before it as it was: what
     is added is simulated and filtered alone, what is undone is cut off. A run that fails at a
@@ -35,7 +36,7 @@ class Course:
     """
 
     def __init__(self, scene: Scene, length: int | None = None) -> None:
-        """length : how many of the scene's commands; None: all
+        """length : how many of the scene's commands are driven; None: all
 
         Raises UsageError where the robot of the scene obeys no commands.
         """
@@ -55,7 +56,10 @@ class Course:
         self._go_on()
         if self.failure is not None:  # the filter cannot begin
             raise self.failure
-        self.add(*expand(first(scene.commands, length)))
+        own = list(expand(scene.commands))
+        self._obey(own[:length])
+        if length is not None:
+            self._undone += reversed(own[length:])
         self.mark_as_saved()
 
     def add(self, *commands: Expanded) -> None:
@@ -88,6 +92,11 @@ class Course:
     def view(self, number: int) -> View | None:
         """View `number`, or None where the run has not come so far."""
         return self._views[number] if number < len(self._views) else None
+
+    @property
+    def undone(self) -> int:
+        """How many commands can be done again."""
+        return len(self._undone)
 
     @property
     def last(self) -> View:

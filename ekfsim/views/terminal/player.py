@@ -50,6 +50,7 @@ class Player:
     # a block in which a long way asks whether it is to stop
     interruptible: Callable[[], AbstractContextManager[Callable[[], bool]]] = unnoticed
     number: int = 0  # of the view on the screen
+    greeting: str = ""  # what there is to say before any key
     drives: bool = False  # whether it ended because somebody wants to drive on from there
     playback: Run = field(init=False)
     # of the steps so far, by filter; ahead of what is shown by a view
@@ -69,7 +70,7 @@ class Player:
 
     def play(self, next_key: NextKey) -> None:
         """Until a key quits."""
-        self._show()
+        self._show(note=self.greeting)
         self.pace.begin()
         goes_on = True
         while goes_on:

@@ -62,6 +62,15 @@ def test_a_scene_is_driven_on_from_any_of_its_commands():
         assert shown(course)[-9:] == played(there)[-9:]
 
 
+def test_what_is_left_of_the_scene_waits_to_be_done_again():
+    course = Course(scene(*MANY), 2)
+    assert course.undone == 4
+    assert course.redo() == [MANY[2]]
+    assert course.unsaved == (1, 0)
+    assert course.redo(9) == list(MANY[3:])
+    assert shown(course) == played(scene(*MANY))
+
+
 def test_undo_and_redo_go_as_far_as_there_is_something():
     course = Course(scene(*MANY[:2]))
     course.add(*MANY[2:])

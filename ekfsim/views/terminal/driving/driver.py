@@ -44,6 +44,9 @@ class Driver(Player):
         self.playback = self.course
         self._length = None
         self.number = self.course.last.number
+        if left := self.course.undone:
+            comes = "command comes" if left == 1 else "commands come"
+            self.greeting = f"{left} more {comes} here: U does them, what is driven leaves them out"
 
     def _take(self, name: str) -> bool:
         if self._typed.take(name):
@@ -175,7 +178,7 @@ class Driver(Player):
         index = self._view(self.number).step.entry.index
         left = len(self.course.commands) - index
         back = f", {left} before the last" if left else ""
-        aims = f"step {self.step:g} m, turn {self.turn:g}°, beam {self.beam:g}°"
+        aims = f"move {self.step:g} m, turn {self.turn:g}°, beam {self.beam:g}°"
         return " · ".join(
             filter(None, (f"step {index}{back}", self._typed.text, aims, self._unsaved))
         )

@@ -128,11 +128,11 @@ def test_what_was_undone_is_told():
 
 
 def test_the_line_below_tells_what_the_keys_do():
-    assert Driven("").last.place == "step 0 · step 0.25 m, turn 15°, beam 0°"
-    told = "step 2, 1 before the last · step 0.5 m, turn 7.5°, beam -90° · not saved: 3 commands"
+    assert Driven("").last.place == "step 0 · move 0.25 m, turn 15°, beam 0°"
+    told = "step 2, 1 before the last · move 0.5 m, turn 7.5°, beam -90° · not saved: 3 commands"
     assert Driven("]{f-90bfp").last.place == told
     assert Driven("-4").last.place.split(" · ")[1] == "-4"
-    assert Driven("fw").last.place == "step 1 · step 0.25 m, turn 15°, beam 0°"
+    assert Driven("fw").last.place == "step 1 · move 0.25 m, turn 15°, beam 0°"
     assert Driven("ffwu").last.place.endswith("not saved: 1 command undone")
 
 
