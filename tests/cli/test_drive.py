@@ -1,7 +1,9 @@
 """drive, and d in play: what keys have driven is a file, and playing it is the same run."""
 
 import signal
+import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from program import ekfsim, ended, lay_out, left_in, started
@@ -141,8 +143,6 @@ def test_what_is_wrong_is_told_before_anything_is_driven(args, wrong, place):
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
 def test_a_signal_loses_nothing(number, place):
-    import subprocess
-
     running = started("drive", "world.yaml", "--show", "text", stdin=subprocess.PIPE,
                       stdout=subprocess.PIPE)  # fmt: skip
     assert running.stdin is not None
@@ -163,3 +163,20 @@ def test_the_help_tells_the_keys():
     told = ekfsim("drive", "--help").out
     assert "\n  up  f     down  x     forward" in told
     assert "d  drive the robot yourself from here on" in ekfsim("play", "--help").out
+
+
+def test_what_the_page_drives_is_lost_as_it_says():
+    page = (Path(__file__).parents[2] / "docs/scenarios.md").read_text(encoding="utf-8")
+    block = page.partition("## Drive until it is lost")[2].partition("```sh\n")[2]
+    told, said = "", 0
+    for line in block.partition("```")[0].splitlines():
+        if line.startswith("# > "):
+            assert line.removeprefix("# > ") in told
+            said += 1
+            continue
+        keys, _, command = line.rpartition(" | ")
+        typed = keys.removeprefix("printf '").removesuffix("'").encode()
+        done = ekfsim(*command.split()[1:], keys=typed)
+        assert done.status == 0
+        told = done.out
+    assert said == 7
