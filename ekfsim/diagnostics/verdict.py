@@ -44,6 +44,8 @@ class Evidence:
     nis_readings: int = 0  # how many readings it sums
     # index of the reading since which the sum lies outside its band without a gap
     nis_outside_from: int | None = None
+    used_sum: float = 0.0  # the same sum without the readings that were refused
+    used_dof: int = 0
 
     def add(self, step: Step) -> None:
         """Take one more step into account."""
@@ -52,7 +54,11 @@ class Evidence:
             self.nis_sum += nis
             self.nis_dof += correction.innovation.shape[-1]
             self.nis_readings += 1
-            self.nis_refused += int(correction.refused) != Refused.NOT
+            if int(correction.refused) != Refused.NOT:
+                self.nis_refused += 1
+            else:
+                self.used_sum += nis
+                self.used_dof += correction.innovation.shape[-1]
             low, high = self.nis_band
             if low <= self.nis_sum <= high:
                 self.nis_outside_from = None

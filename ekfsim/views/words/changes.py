@@ -61,7 +61,10 @@ def revised(view: View, probability: float) -> str:
     before, after = posed(view.step.prior, view.layout), view.pose
     if not _finite(after):
         return NO_NUMBER
-    most = min(_sizes(view, before, after, probability), key=lambda size: size.ratio)
+    sizes = list(_sizes(view, before, after, probability))
+    if not any(size.before for size in sizes):
+        return "; ".join(["nothing was uncertain, so the estimate stays", *worth(correction)])
+    most = min(sizes, key=lambda size: size.ratio)
     shrunk = most.told if most.ratio < 1 - ALIKE else "it is hardly more certain than before"
     return "; ".join([moved(before, after), shrunk, *worth(correction)])
 

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 
 from ekfsim.diagnostics.summary import Errors, Summary
 from ekfsim.diagnostics.verdict import BAND, LOST, Evidence, Verdict
-from ekfsim.filters.arithmetic.chi_square import quantile
+from ekfsim.filters.arithmetic.chi_square import band, quantile
 from ekfsim.filters.belief import Refused
 from ekfsim.records import Nees
 from ekfsim.scene import Scene
 from ekfsim.views.playback.parting import Apart
 from ekfsim.views.playback.view import View
-from ekfsim.views.words.numbers import figure, number, turn
+from ekfsim.views.words.numbers import between, figure, number, turn
 from ekfsim.views.words.text_table import aligned
 
 REASONS = {
@@ -162,7 +162,7 @@ def meaning(view: View) -> str:
         case Verdict.LOST:
             return f"not to be believed: lost since step {evidence.lost_from}{_shown(evidence)}"
         case Verdict.OVER_CONFIDENT:
-            return (
+            return _but_for_refused(evidence) or (
                 f"not to be believed since step {evidence.nis_outside_from}: "
                 "it trusts itself more than its readings allow"
             )
@@ -184,12 +184,24 @@ def _shown(evidence: Evidence) -> str:
     low, high = evidence.nis_band
     side = "above" if evidence.nis_sum > high else "below" if evidence.nis_sum < low else "within"
     told = (
-        f"(ΣNIS {figure(evidence.nis_sum)} of {evidence.nis_readings}, "
-        f"{side} {figure(low)} to {figure(high)})"
+        f"(ΣNIS {figure(evidence.nis_sum)} of {evidence.nis_readings}, {side} {between(low, high)})"
     )
     if side == "above":
         return f"; its readings say so since step {evidence.nis_outside_from} {told}"
     return f", though its readings do not say so {told}"
+
+
+def _but_for_refused(evidence: Evidence) -> str:
+    """That only readings which were refused speak against a filter, where it is so."""
+    low, high = band(BAND, evidence.used_dof)
+    if not evidence.nis_refused or evidence.used_sum > high:
+        return ""
+    side = "below" if evidence.used_sum < low else "within"
+    used = _count(evidence.nis_readings - evidence.nis_refused, "reading")
+    return (
+        f"to be believed but for what it refused: ΣNIS of the {used} that it used is "
+        f"{figure(evidence.used_sum)}, {side} {between(low, high)}"
+    )
 
 
 def _nis(evidence: Evidence, side: str) -> str:

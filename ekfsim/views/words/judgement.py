@@ -16,7 +16,7 @@ from ekfsim.printable import in_a_line, short
 from ekfsim.records import Nees
 from ekfsim.scene import Scene
 from ekfsim.views.playback.view import View
-from ekfsim.views.words.numbers import figure
+from ekfsim.views.words.numbers import between, figure
 
 COLUMNS = 118  # signs in the line of a picture
 NAME = 24  # signs of a filter's name
@@ -219,17 +219,18 @@ def _verdict(evidence: Evidence) -> Part:
             return Part(
                 f"Verdict: {told}{hidden}", f"Verdict: {told}{hidden}", f"Verdict: {told}", told
             )
-    low, high = map(figure, evidence.nis_band)
+    band = between(*evidence.nis_band)
     if evidence.verdict is Verdict.OVER_CONFIDENT:
         word += f" since step {evidence.nis_outside_from}"
     side = {Verdict.OVER_CONFIDENT: "above", Verdict.OVER_CAUTIOUS: "below"}
     where = side.get(evidence.verdict, "within")
     total, readings = figure(evidence.nis_sum), count(evidence.nis_readings, "reading")
+    refused = f" ({evidence.nis_refused} refused)" if evidence.nis_refused else ""
     return Part(
-        f"Verdict: {word}: ΣNIS {total} of {readings}, {where} its {_percent(BAND)} band "
-        f"{low} to {high}",
-        f"Verdict: {word}: ΣNIS {total} {where} {low} to {high}",
-        f"{word}: ΣNIS {total} {where} {low} to {high}",
+        f"Verdict: {word}: ΣNIS {total} of {readings}{refused}, {where} its {_percent(BAND)} band "
+        f"{band}",
+        f"Verdict: {word}: ΣNIS {total}{refused} {where} {band}",
+        f"{word}: ΣNIS {total} {where} {band}",
         word,
     )
 

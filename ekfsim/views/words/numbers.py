@@ -135,6 +135,15 @@ def figure(value: float) -> str:
     return f"{value:.0f}" if 1000 <= value < WHOLE else f"{value:.3g}"
 
 
+def between(low: float, high: float) -> str:
+    """A band, as a glance takes it.
+
+    >>> between(38.6098, 96.8781), between(3.9e-5, 7.88)
+    ('38.6 to 96.9', '0 to 7.88')
+    """
+    return f"{figure(low) if low >= TINY else 0} to {figure(high)}"
+
+
 def instant(t: float) -> str:
     """An instant in s, to a microsecond however long ago the clock began.
 

@@ -153,3 +153,9 @@ def test_of_several_filters_each_that_a_reading_loses_is_named():
     assert re.match(r"lost with this reading: ekf \(off by 28.4 cm and 11.3°\), ukf \(", said[0])
     assert "iekf" not in said[0]
     assert said[-1].startswith("ekf: the estimate moved")
+
+
+def test_where_nothing_was_uncertain_a_reading_teaches_nothing():
+    run = told(scene(Sense(0.3)), start=np.array([1.5, 1.0, 0.5]))
+    view = list(views(play(run)))[2]
+    assert revised(view, 0.954).startswith("nothing was uncertain, so the estimate stays; ")

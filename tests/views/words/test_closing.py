@@ -1,11 +1,17 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from ekfsim.diagnostics.summary import Errors, Summary
 from ekfsim.diagnostics.verdict import Evidence
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.belief import Refused
+from ekfsim.localization import play
 from ekfsim.records import Nees
-from ekfsim.views.words.closing import conclude, sentence
+from ekfsim.views.playback.playback import views
+from ekfsim.views.words.closing import conclude, meaning, sentence
 
 IMPOSSIBLE = "the belief is impossible: the error has a part where the covariance claims certainty"
 
@@ -103,4 +109,25 @@ def test_a_run_of_nothing():
     assert conclude(Summary()) == (
         "The run is over after 0 commands: 0 updates\n"
         "Verdict: no evidence: not one reading could be held against a prediction\n"
+    )
+
+
+@pytest.mark.parametrize("guard", ["warn", "skip"])
+def test_a_filter_is_not_condemned_for_what_it_refused(guard):
+    """Where the guard leaves out the beam that loses the run, only what is left out speaks against
+    the filter.
+    """
+    run = replace(load_scene("diverge-01-wrong-wall"), guard=guard)
+    steps = list(play(run))
+    *_, last = views(steps)
+    used = [s for s in steps if s.correction is not None and not s.correction.refused]
+    total = sum(float(s.correction.nis) for s in used)
+    low, high = chi2.interval(0.99, len(used))
+    if guard == "warn":
+        assert meaning(last).startswith("not to be believed: lost since step 13; ")
+        return
+    assert len(used) < sum(s.correction is not None for s in steps)
+    assert meaning(last) == (
+        f"to be believed but for what it refused: ΣNIS of the {len(used)} readings that it used is "
+        f"{total:.3g}, within {low:.3g} to {high:.3g}"
     )
