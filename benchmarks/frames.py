@@ -91,7 +91,6 @@ def anew(scene: Scene, extent: scope.Scope, coming: Any) -> Callable[[], object]
         figure = Figure(figsize=(9, 7), dpi=100)
         FigureCanvasAgg(figure)
         picture = Picture(figure, scene, extent, STANDARD)
-        picture.label()
         picture.show(next(coming))
         figure.savefig("anew.png")
 

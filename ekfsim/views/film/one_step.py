@@ -39,7 +39,6 @@ def render(
         return
     drawn = Picture.on(paper, scene, scope, look)
     drawn.show(view)
-    drawn.label()
     still.save(drawn.figure, target, drawn.title.get_text(), told_in_a_line(scene), force)
 
 

@@ -13,7 +13,6 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
-from matplotlib.text import Text
 
 from ekfsim.commands import expanded_length
 from ekfsim.geometry.ellipse import outline
@@ -22,7 +21,6 @@ from ekfsim.scene import Scene
 from ekfsim.views.film.png import Encoder, Pixels
 from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.artists import VERMILLION, empty
-from ekfsim.views.picture.labels import label_landmarks, label_obstacles
 from ekfsim.views.picture.layout import (
     HIGHEST,
     JUDGED,
@@ -38,6 +36,7 @@ from ekfsim.views.picture.legend import HANDLERS, Legends, entries
 from ekfsim.views.picture.lettering import drawable, families, shortened, wrapped
 from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import SCREEN, STANDARD, Look, Paper
+from ekfsim.views.picture.names import Names
 from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.picture.panels import CloseUp, Main, reading
 from ekfsim.views.picture.replay import Replay
@@ -92,7 +91,7 @@ class Picture:
         self._source = figure.text(0, 0, drawable(source(scene)), fontsize=7, gid="source")
         self._source.set(family=families(), parse_math=False, ha="right", color="#555555")
         self._legends = Legends(figure)
-        self.names: list[Text] = []
+        self.names = Names(self.main.axes, scene.world)
         self.arrange()
 
     @property
@@ -131,16 +130,6 @@ class Picture:
         self._legends.arrange(layout)
         self._legends.show(self.main.handles())
 
-    def label(self) -> None:
-        """Write the obstacles' names and the landmarks' numbers where the present limits leave room
-        for them.
-        """
-        for name in self.names:
-            name.remove()
-        world, axes = self._scene.world, self.main.axes
-        names = label_obstacles(axes, world.map)
-        self.names = [*names, *label_landmarks(axes, world.landmarks, names)]
-
     def show(self, view: View) -> bool:
         """Move everything to a view; whether it shows another part of the plane."""
         limits = self._scope.at(view)
@@ -149,6 +138,7 @@ class Picture:
             self.main.limit(limits)
         read = reading(view, self._scene)
         self.main.show(view, read)
+        self.names.show(self.main.moving)
         self.close.show(view, read, self._scope.base)
         self._legends.show(self.main.handles())
         told = notes(view, self._scene, read, self._probability)
@@ -168,6 +158,7 @@ class Picture:
 
     def moving(self) -> Iterator[Artist]:
         """What differs from view to view but for the legend, in the order it is drawn."""
+        yield self.names.artist
         yield from sorted(self.main.moving, key=Artist.get_zorder)
         yield from sorted(self.close.moving, key=Artist.get_zorder)
         yield from (self.title, self.judgement, self.notes, self.spread)
@@ -225,7 +216,6 @@ class Frame:
 
     def _draw_still(self) -> None:
         """Draw what does not move."""
-        self.picture.label()
         self.picture.legend.set_animated(True)
         self._canvas.draw()
         self._still = self._canvas.copy_from_bbox(self.picture.figure.bbox)

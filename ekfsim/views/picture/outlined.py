@@ -68,13 +68,26 @@ class OutlinedText(PathPatch):
             for outline, right in _line(line):
                 outlines.append(outline)
                 places.append((right, i * down))
-        vertices, codes = zip(*outlines, strict=True)
-        offsets = np.repeat(places, [len(each) for each in codes], axis=0)
-        self.set_path(Path(np.concatenate(vertices) + offsets, np.concatenate(codes)))
+        self.set_path(Path(*_joined(outlines, places)))
 
     def get_text(self) -> str:
         """The text shown."""
         return self._text
+
+
+@cache
+def lettered(text: str) -> tuple[Outline, float]:
+    """The outline of a line of text that begins at (0, 0), and how wide it is."""
+    glyphs = [(NOTHING, 0.0), *_line(text)]
+    outlines = [outline for outline, _ in glyphs]
+    return _joined(outlines, [(right, 0.0) for _, right in glyphs]), _width(text)
+
+
+def _joined(outlines: list[Outline], places: list[tuple[float, float]]) -> Outline:
+    """Several outlines as one, each moved to its place."""
+    vertices, codes = zip(*outlines, strict=True)
+    offsets = np.repeat(places, [len(each) for each in codes], axis=0)
+    return np.concatenate(vertices) + offsets, np.concatenate(codes)
 
 
 def _line(text: str) -> Iterator[tuple[Outline, float]]:

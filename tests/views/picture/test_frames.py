@@ -8,7 +8,6 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
-from matplotlib.text import Text
 from PIL import Image
 from scenes import DESK, NOISE, ROOM, SILENT, START, rich, scene, told, unbounded
 
@@ -333,7 +332,8 @@ def test_a_png_is_reproducible_and_says_what_made_it():
 def test_names_stand_in_the_picture_where_they_fit():
     run = scene(obstacles=(DESK, replace(DESK, name="a" * 40, points=DESK.points + 2)))
     frame = Frame(run, scopes.of(run, play(run)))
-    said = [name.get_text() for name in frame.picture.names if isinstance(name, Text)]
+    frame.rgb(next(views(play(run))))
+    said = [name.text for name in frame.picture.names.shown]
     assert "desk" in said
     assert all(re.fullmatch("desk|a{19}…", name) for name in said)
 

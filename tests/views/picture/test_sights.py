@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 import systems_scenes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import same_color
@@ -450,14 +451,17 @@ def test_a_far_fix_does_not_shrink_the_world_to_a_dot():
 def test_landmarks_have_their_numbers_where_there_is_room():
     run = systems_scenes.mower()
     frame = Frame(run, scopes.of(run, play(run)))
-    assert [name.get_text() for name in frame.picture.names] == ["0", "1", "2", "3", "4"]
+    frame.rgb(next(views(play(run))))
+    assert [name.text for name in frame.picture.names.shown] == ["0", "1", "2", "3", "4"]
     crowd = tuple(Landmark(i, 0.02 * i, 0.0) for i in range(50))
     run = replace(run, world=replace(run.world, landmarks=(*crowd, Landmark(99, 3.0, 3.0))))
-    names = Frame(run, scopes.of(run, play(run))).picture.names
-    assert "99" in [name.get_text() for name in names]
+    frame = Frame(run, scopes.of(run, play(run)))
+    frame.rgb(next(views(play(run))))
+    names = frame.picture.names.shown
+    assert "99" in [name.text for name in names]
     assert len(names) < 20
-    boxes = [name.get_window_extent() for name in names]
-    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+    boxes = [shapely.box(*name.box) for name in names]
+    assert not any(a.intersects(b) for i, a in enumerate(boxes) for b in boxes[:i])
     text = draw(next(views(play(run))), run, 0.954, (80, 24), (-5.0, 7.0, -5.0, 5.0), colour=False)
     assert "#99" in text
     assert "#49" not in text

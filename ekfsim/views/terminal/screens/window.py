@@ -14,6 +14,7 @@ from ekfsim.scene import Scene
 from ekfsim.views.picture.frames import Picture
 from ekfsim.views.picture.look import SCREEN, STANDARD, Look
 from ekfsim.views.picture.scope import Scope
+from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.keys.bindings import Action
 from ekfsim.views.terminal.keys.keyboard import NO_MORE
 from ekfsim.views.terminal.screens.moment import Moment
@@ -94,15 +95,16 @@ class Window:
         self._picture = Picture(self._figure, scene, scope, look)
         self._canvas.mpl_connect("key_press_event", self._press)
         self._canvas.mpl_connect("close_event", self._close)
-        self._picture.label()
+        self._canvas.mpl_connect("resize_event", self._resize)
+        self._shown: View | None = None
         pyplot.show(block=False)
 
     def show(self, moment: Moment) -> None:
         """Show a view, and do not wait."""
         if self.closed:
             return
-        if self._picture.show(moment.view):
-            self._picture.label()
+        self._shown = moment.view
+        self._picture.show(moment.view)
         self._say(moment.note or moment.place)
         self._canvas.draw_idle()
         self._canvas.flush_events()
@@ -138,6 +140,12 @@ class Window:
         if self._pressed:
             return self._pressed.popleft()
         return NO_MORE if self.closed else None
+
+    def _resize(self, event: Event) -> None:
+        """Divide the window anew."""
+        self._picture.arrange()
+        if self._shown is not None:
+            self._picture.show(self._shown)
 
     def _press(self, event: Event) -> None:
         assert isinstance(event, KeyEvent)
