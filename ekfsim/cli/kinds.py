@@ -1,7 +1,6 @@
 """What an option accepts: numbers, words and names, and how each is refused."""
 
 import math
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +39,8 @@ class Word(click.Choice[str]):
         try:
             return super().convert(value, param, ctx)
         except click.BadParameter as refusal:
+            from difflib import get_close_matches
+
             if near := get_close_matches(str(value).lower(), map(str, self.choices), 1):
                 self.fail(f"{refusal.message.rstrip('.')}; did you mean {near[0]!r}?", param, ctx)
             raise

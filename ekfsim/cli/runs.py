@@ -100,12 +100,12 @@ def render(
     _refuse_together(out, every, step is not None, follow, zoom is not None, paper != Paper())
     if out.suffix.lower() == ".html":
         return write_page(scene_of(**chosen), out, Look(confidence, conditional), every, force)
-    from ekfsim.files.results.outputs import kept
     from ekfsim.localization import play as steps_of
     from ekfsim.views.film import animation, one_step
     from ekfsim.views.picture import scope as scopes
     from ekfsim.views.picture.lettering import boxes
     from ekfsim.views.picture.limits import Limits
+    from ekfsim.views.playback.kept import kept
     from ekfsim.views.playback.playback import Tally, together
     from ekfsim.views.words.captions import texts
 
@@ -228,8 +228,9 @@ def run(
 ) -> None:  # fmt: skip
     """Narrate COMMANDS from the first step to the last, and sum up."""
     from ekfsim.diagnostics.summary import Summary
-    from ekfsim.files.results.outputs import Outputs, kept
+    from ekfsim.files.results.outputs import Outputs
     from ekfsim.localization import play as steps_of
+    from ekfsim.views.playback.kept import kept
     from ekfsim.views.playback.playback import together
     from ekfsim.views.words.closing import conclude_all
     from ekfsim.views.words.narrative import narrate

@@ -1,6 +1,5 @@
 """The worlds and commands that come with ekfsim, and how outputs name files."""
 
-import difflib
 import os
 import re
 from pathlib import Path
@@ -52,6 +51,8 @@ def resolve(name_or_path: str | Path, kind: Folder) -> Path:
     if there or name not in known:
         is_bare = not path.suffix and path.name == name and name.isprintable()
         if not there and is_bare:
+            import difflib
+
             near = difflib.get_close_matches(name, known, 3, 0.7)
             right = (
                 f"did you mean {' or '.join(map(repr, near))}?"

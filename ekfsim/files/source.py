@@ -1,6 +1,5 @@
 """Bytes → text: what can be wrong with a file before anything in it is read."""
 
-import difflib
 import os
 import re
 from pathlib import Path
@@ -82,6 +81,8 @@ def nearest_file(path: Path, shown: str) -> str:
         }
     except (OSError, ValueError):
         return ""
+    import difflib
+
     near = difflib.get_close_matches(path.stem, neighbours, 1)
     return (
         f"; did you mean '{os.path.join(os.path.dirname(shown), neighbours[near[0]])}'?"

@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -27,16 +27,6 @@ class Sink(Protocol):
 
     def write(self, step: Step) -> None:
         """Take one step."""
-
-
-def kept(steps: Iterable[Step], takers: Sequence[Callable[[Step], None]]) -> Iterator[Step]:
-    """The same steps, each handed to every taker before it goes on:
-    what is shown may leave some out.
-    """
-    for step in steps:
-        for take in takers:
-            take(step)
-        yield step
 
 
 @dataclass(frozen=True)

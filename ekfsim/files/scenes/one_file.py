@@ -21,7 +21,7 @@ from ekfsim.files.source import as_written
 from ekfsim.files.yaml.marked import Mark, Node
 from ekfsim.files.yaml.marked import Path as Route
 from ekfsim.files.yaml.parsing import parse, without_collection
-from ekfsim.files.yaml.schema import MODELS, Kind
+from ekfsim.files.yaml.schema import Kind, model_of
 from ekfsim.files.yaml.telling import at, details_of, tell
 
 T = TypeVar("T")
@@ -80,7 +80,7 @@ def read(
     root = overruled(root, kind, settings)
     keys, wrong = None, set[tuple[str | int, ...]]()
     try:
-        keys = MODELS[kind].model_validate(root.plain())
+        keys = model_of(kind).model_validate(root.plain())
     except ValidationError as error:
         mistakes += tell(error, kind, root, shown)
         wrong = {detail["loc"] for detail in details_of(error)}

@@ -3,15 +3,11 @@ editors complete and check with it, and messages read it.
 """
 
 from functools import cache, lru_cache
+from importlib import import_module
 from typing import Any, Literal
 
 from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
-
-from ekfsim.files.keys.commands import CommandsKeys
-from ekfsim.files.keys.homework import HomeworkKeys
-from ekfsim.files.keys.study import StudyKeys
-from ekfsim.files.keys.world import WorldKeys
 
 Kind = Literal["world", "commands", "study", "homework"]
 Schema = dict[str, Any]
@@ -47,12 +43,19 @@ CANNOT_OF: dict[Kind, tuple[str, ...]] = {
         "what is asked for and handed out",
     ),
 }
-MODELS: dict[Kind, type[BaseModel]] = {
-    "world": WorldKeys,
-    "commands": CommandsKeys,
-    "study": StudyKeys,
-    "homework": HomeworkKeys,
+MODELS: dict[Kind, tuple[str, str]] = {  # where the keys of each stand
+    "world": ("ekfsim.files.keys.world", "WorldKeys"),
+    "commands": ("ekfsim.files.keys.commands", "CommandsKeys"),
+    "study": ("ekfsim.files.keys.study", "StudyKeys"),
+    "homework": ("ekfsim.files.keys.homework", "HomeworkKeys"),
 }
+
+
+def model_of(kind: Kind) -> type[BaseModel]:
+    """The keys of a kind of file. Those of the others are not imported: it takes its time."""
+    module, name = MODELS[kind]
+    found: type[BaseModel] = getattr(import_module(module), name)
+    return found
 
 
 class WithoutNull(GenerateJsonSchema):
@@ -91,7 +94,7 @@ def json_schema(kind: Kind) -> Schema:
     >>> json_schema("world")["required"]
     ['name', 'start']
     """
-    schema = MODELS[kind].model_json_schema(schema_generator=WithoutNull)
+    schema = model_of(kind).model_json_schema(schema_generator=WithoutNull)
     cannot = "; ".join((*CANNOT, *CANNOT_OF[kind]))
     told = f"{schema['description']}\n\nOnly `ekfsim check` sees what no schema can tell: {cannot}."
     return {"$schema": WithoutNull.schema_dialect, **schema, "description": told}

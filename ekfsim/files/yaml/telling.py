@@ -1,6 +1,5 @@
 """Each mistake that a model finds in a file, in words for the one who wrote it."""
 
-import difflib
 import math
 import re
 from typing import Any
@@ -284,5 +283,7 @@ def shown(node: Node) -> str:
 def nearest(word: str, known: list[str]) -> str:
     """The known word that is nearest to another, "" where none is near."""
     lower = {name.lower(): name for name in known}
+    import difflib
+
     near = difflib.get_close_matches(word.lower()[:100], lower, 1)
     return lower[near[0]] if near else ""

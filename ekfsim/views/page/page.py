@@ -13,7 +13,6 @@ from io import StringIO
 from typing import Any, Self
 
 from ekfsim.commands import expanded_length
-from ekfsim.files.results.outputs import kept
 from ekfsim.printable import in_a_line, shown
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Step
@@ -23,6 +22,7 @@ from ekfsim.views.page.scenery import inks, origin_of, scenery
 from ekfsim.views.page.told import Teller, ways
 from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.look import STANDARD, Look
+from ekfsim.views.playback.kept import kept
 from ekfsim.views.playback.playback import Tally, together
 
 BROWSER = files("ekfsim.views.page") / "browser"

@@ -8,10 +8,10 @@ from typing import Protocol, TypeVar
 from ekfsim.commands import Move, Untold
 from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.errors import StepError
-from ekfsim.files.results.outputs import kept
 from ekfsim.filters.belief import Belief
 from ekfsim.models.layout import Layout
 from ekfsim.records import Control, Entry, Nees, Reading, Step
+from ekfsim.views.playback.kept import kept
 from ekfsim.views.playback.parting import Parting
 from ekfsim.views.playback.trail import Trail, Way, Ways
 from ekfsim.views.playback.view import Judged, View

@@ -5,20 +5,22 @@ import sys
 from contextlib import redirect_stderr, suppress
 from io import StringIO
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ekfsim.localization import play
 from ekfsim.printable import in_a_line
 from ekfsim.scene import Scene
-from ekfsim.views.driving.course import Course
-from ekfsim.views.driving.saving import Saving
 from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.look import Look
 from ekfsim.views.playback.playback import UntilFailure
-from ekfsim.views.terminal.driving.driver import Driver
 from ekfsim.views.terminal.pace import Pace
 from ekfsim.views.terminal.player import Player
 from ekfsim.views.terminal.stage import Stage, wants_window
 from ekfsim.views.words.closing import conclude_all
+
+if TYPE_CHECKING:
+    from ekfsim.views.driving.course import Course
+    from ekfsim.views.driving.saving import Saving
 
 # steps whose limits are known before the first picture; where a later one leaves them it grows
 LOOK_AHEAD = 3000
@@ -47,6 +49,9 @@ def play_interactively(
         )  # fmt: skip
         player.play(next_key)
     if player.drives:
+        from ekfsim.views.driving.course import Course
+        from ekfsim.views.driving.saving import Saving
+
         view = player.playback.view(player.number)
         assert view is not None
         course = Course(scene, view.step.entry.index)
@@ -54,13 +59,15 @@ def play_interactively(
 
 
 def drive_interactively(
-    course: Course, saving: Saving, show: str, out: Path, look: Look, explain: bool
+    course: "Course", saving: "Saving", show: str, out: Path, look: Look, explain: bool
 ) -> None:
     """Drive a course until a key quits, then tell the verdict. show, out, explain : as of play
 
     What was not saved is saved where something else than a key ends it.
     Raises UsageError where a window is asked for and there is none.
     """
+    from ekfsim.views.terminal.driving.driver import Driver
+
     extent = scopes.of_all(course.scene, course.steps, look.probability)
     stage = Stage.of(course.scene, extent, show, out, look)
     driver = Driver(

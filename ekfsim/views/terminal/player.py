@@ -9,12 +9,11 @@ from typing import ClassVar
 
 from ekfsim.diagnostics.summary import Summary
 from ekfsim.errors import UsageError
-from ekfsim.files.results.outputs import kept
 from ekfsim.localization import play
 from ekfsim.printable import shown
 from ekfsim.records import Step
 from ekfsim.scene import Scene
-from ekfsim.views.driving.course import refuse_what_is_not_driven
+from ekfsim.views.playback.kept import kept
 from ekfsim.views.playback.length import Length, length_of
 from ekfsim.views.playback.playback import Playback, Run
 from ekfsim.views.playback.view import View
@@ -137,6 +136,8 @@ class Player:
                 self._show(note="That key does nothing here; ? shows those that do")
 
     def _drive_on(self) -> None:
+        from ekfsim.views.driving.course import refuse_what_is_not_driven
+
         try:
             refuse_what_is_not_driven(self.scene)
         except UsageError as refusal:
