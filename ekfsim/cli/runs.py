@@ -83,13 +83,16 @@ def play(
     metavar="X,Y,W,H",
     help="Show this part of the world: the lower left corner, the width and the height, in m.",
 )
+@click.option(
+    "--strip", is_flag=True, help="Draw the curves of `plot` beneath each picture, with a cursor."
+)
 @SIZE
 @DPI
 @FORCE
 def render(
     out: Path, every: int, conditional: bool, step: tuple[int, bool] | None, follow: bool,
     zoom: tuple[float, float, float, float] | None, size: tuple[int, int] | None, dpi: int,
-    force: bool, confidence: float, **chosen: Any,
+    strip: bool, force: bool, confidence: float, **chosen: Any,
 ) -> None:  # fmt: skip
     """Draw every step of COMMANDS into files, or one step."""
     from ekfsim.views.picture.look import Look, Paper, get_ready
@@ -101,6 +104,7 @@ def render(
     if out.suffix.lower() == ".html":
         return write_page(scene_of(**chosen), out, Look(confidence, conditional), every, force)
     from ekfsim.localization import play as steps_of
+    from ekfsim.views.curves.series import Series
     from ekfsim.views.film import animation, one_step
     from ekfsim.views.picture import scope as scopes
     from ekfsim.views.picture.lettering import boxes
@@ -113,7 +117,10 @@ def render(
     warn(boxes(texts(scene)))
     first, *others = scene.alone()
     names = scene.filter, *scene.beside
-    runs = (kept(steps_of(first), [tally.write]), *map(steps_of, others))
+    curves = [Series(name) for name in scene.watching] if strip else []
+    takers = [[run.take] for run in curves] or [[] for _ in names]
+    takers[0].append(tally.write)
+    runs = map(kept, map(steps_of, scene.alone()), takers)
     with redirect_stderr(StringIO()):  # what a filter prints it prints again as it is drawn
         scope = scopes.of_all(scene, runs, confidence, follow)
     scope = scope if zoom is None else scopes.Scope(Limits(*zoom))
@@ -123,7 +130,7 @@ def render(
     )
     if step is not None:
         view = one_step.find(views, *step)
-        one_step.render(view, scene, scope, out, look=look, paper=paper, force=force)
+        one_step.render(view, scene, scope, out, look=look, paper=paper, strip=curves, force=force)
         return click.echo(f"{in_a_line(out)}: step {view.step.entry.index}")
     pictures = animation.number_of_pictures(tally.views, every)
     with click.progressbar(
@@ -135,8 +142,8 @@ def render(
             bar.update(1)
 
         animation.render(
-            views, scene, scope, out,
-            look=look, paper=paper, every=every, force=force, progress=made_one,
+            views, scene, scope, out, look=look, paper=paper, strip=curves,
+            every=every, force=force, progress=made_one,
         )  # fmt: skip
     click.echo(f"{in_a_line(out)}: {pictures} {'picture' if pictures == 1 else 'pictures'}")
 
@@ -191,7 +198,8 @@ def plot(
 
     get_ready()
     from ekfsim.localization import play as steps_of
-    from ekfsim.views.curves.plot import remarks, write
+    from ekfsim.views.curves.panels import remarks
+    from ekfsim.views.curves.plot import write
     from ekfsim.views.curves.series import Series
     from ekfsim.views.film.still import refuse
     from ekfsim.views.picture.lettering import boxes
@@ -206,7 +214,7 @@ def plot(
         for step in steps_of(one):
             heed()
             runs[-1].take(step)
-    write(runs, scene, out, size, dpi, force)
+    write(runs, scene, out, size, dpi, confidence, force)
     for remark in remarks(runs):
         say(remark)
     click.echo(f"{in_a_line(out)}: {', '.join(map(in_a_line, scene.watching))} over {runs[0].span}")

@@ -131,3 +131,27 @@ def test_the_page_on_plots_tells_what_they_show():
 def test_the_cell_on_the_page_runs():
     (cell,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
     exec(cell, {})
+
+
+def test_a_strip_of_the_curves_beneath_each_picture(place):
+    shown = "render", "short.yaml", "--filter", "ekf,ukf", "-o"
+    assert ekfsim(*shown, "plain").status == ekfsim(*shown, "strip", "--strip").status == 0
+    width, height = size(next((place / "plain").iterdir()))
+    assert {size(file) for file in (place / "strip").iterdir()} == {(width, height + 240)}
+
+
+def test_a_picture_of_one_step_has_it_too_and_both_share_the_size(place):
+    one = "render", "short.yaml", "--step", "2", "--strip", "-o"
+    assert ekfsim(*one, "a.png", "--size", "1000x800", "--dpi", "77").status == 0
+    assert size(place / "a.png") == (1000, 800)
+    refused = ekfsim(*one, "b.svg")
+    assert (
+        refused.err
+        == "ekfsim: b.svg: --strip is made of pixels; name a .png, or see `ekfsim plot`\n"
+    )
+    refused = ekfsim(*one, "b.png", "--size", "1000x500")
+    assert refused.status == 2
+    assert refused.err.startswith(
+        "ekfsim: --size 1000x500: --strip takes 240 rows of it, and leaves"
+    )
+    assert not (place / "b.png").exists()

@@ -7,6 +7,8 @@ pens.py      how each filter's lines are drawn
 bands.py     panels of errors and of innovations, with ±2σ
 judged.py    panels of NIS and NEES, with the bounds of χ²
 marks.py     events, readings that were not used, where a filter was lost
+panels.py    which panels a run has, and their axis of steps
+strip.py     the panels small beneath a picture, with a cursor
 plot.py      all of it on one figure, with the verdicts, as a file
 errors.py    the same in a notebook: `ekfsim.plot_errors`
 """

@@ -1,4 +1,4 @@
-"""Panels of what should lie within ±2σ: errors, and innovations."""
+"""Panels of what should lie in a band, ±2σ if nothing else is asked for: errors, innovations."""
 
 import math
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from ekfsim.views.curves.series import Series
 from ekfsim.views.curves.thinning import peaks
 from ekfsim.views.playback.zoom import one_two_five
 
-SIGMAS = 2.0
+REACH = 2.0
 DEGREE = math.degrees(1.0)
 HEADING, HALF = 2, 180.0  # the entry of a pose; half a turn, in degrees
 FAR = 5.0  # times the widest band: an error that is larger would leave nothing to be seen of it
@@ -24,9 +24,10 @@ NAMES = (("x", "x error (m)", 1.0), ("y", "y error (m)", 1.0), ("theta", "θ err
 
 @dataclass(frozen=True)
 class ErrorPanel:
-    """The error of x, y or θ with its ±2σ, of each filter."""
+    """The error of x, y or θ in the band that a filter believes it to lie in, of each filter."""
 
     entry: int  # of the pose
+    reach: float = REACH  # of the band, in standard deviations to each side
     height: float = 1.0  # beside that of the other panels
 
     def draw(self, axes: Axes, runs: Sequence[Series]) -> None:
@@ -38,7 +39,7 @@ class ErrorPanel:
             σ = np.where(np.isnan(e), np.nan, σ)
             kept = peaks(np.column_stack([e, σ]))
             x, e, σ = run.abscissa[kept], e[kept], σ[kept]
-            _band(axes, x, σ, pen(number), f"{name}-{number}", len(runs) > 1)
+            _band(axes, x, self.reach * σ, pen(number), f"{name}-{number}", len(runs) > 1)
             if self.entry == HEADING:
                 x, e = _broken(x, e, HALF)
             axes.plot(
@@ -49,15 +50,16 @@ class ErrorPanel:
             np.concatenate([unit * values[:, self.entry] for values in each])
             for each in ([run.error for run in runs], [run.sigma for run in runs])
         )
-        linear = _scale(axes, errors, SIGMAS * sigmas)
+        linear = _scale(axes, errors, self.reach * sigmas)
         _about_zero(axes, quantity if linear is None else f"{quantity}\nlog beyond {linear:g}")
 
 
 @dataclass(frozen=True)
 class InnovationPanel:
-    """The innovations of one quantity with ±2√S, of each filter; used or not."""
+    """The innovations of one quantity in their band, of each filter; used or not."""
 
     quantity: Quantity
+    reach: float = REACH
     height: float = 1.0
 
     def draw(self, axes: Axes, runs: Sequence[Series]) -> None:
@@ -71,7 +73,7 @@ class InnovationPanel:
             ν, σ = size * found.ν, size * found.σ
             kept = peaks(np.column_stack([ν, σ]))
             x = run.abscissa[found.rows[kept]]
-            _band(axes, x, σ[kept], pen(number), f"{name}-{number}", len(runs) > 1)
+            _band(axes, x, self.reach * σ[kept], pen(number), f"{name}-{number}", len(runs) > 1)
             axes.plot(
                 x, ν[kept], color=pen(number).colour, ls="", marker=pen(number).marker, ms=2.5,
                 gid=f"innovation-{name}-{number}",
@@ -80,13 +82,11 @@ class InnovationPanel:
         _about_zero(axes, f"{name}: ν ({unit})" if unit else f"{name}: ν")
 
 
-def _band(axes: Axes, x: Array, σ: Array, pen: Pen, name: str, edged: bool) -> None:
-    """Where 19 of 20 should lie. Several have edges, too, by which they are told apart."""
-    axes.fill_between(
-        x, -SIGMAS * σ, SIGMAS * σ, color=pen.colour, alpha=0.18, lw=0, gid=f"band-{name}"
-    )
+def _band(axes: Axes, x: Array, half: Array, pen: Pen, name: str, edged: bool) -> None:
+    """A band about zero. Several have edges, too, by which they are told apart."""
+    axes.fill_between(x, -half, half, color=pen.colour, alpha=0.18, lw=0, gid=f"band-{name}")
     if edged:
-        edge = np.concatenate([SIGMAS * σ, [np.nan], -SIGMAS * σ])
+        edge = np.concatenate([half, [np.nan], -half])
         axes.plot(
             np.concatenate([x, [np.nan], x]), edge, color=pen.colour, ls=pen.dashes, lw=0.7,
             gid=f"edge-{name}",

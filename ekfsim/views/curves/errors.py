@@ -14,7 +14,9 @@ from matplotlib.figure import Figure
 
 from ekfsim.errors import UsageError
 from ekfsim.records import Step
-from ekfsim.views.curves.plot import Panel, draw_panels, figure_of, panels_of
+from ekfsim.views.curves.marks import tell_lost
+from ekfsim.views.curves.panels import Panel, draw_panels, panels_of
+from ekfsim.views.curves.plot import figure_of
 from ekfsim.views.curves.series import Series
 
 GAP = 0.2  # of the height of a panel of errors, between two that share the place of one Axes
@@ -58,6 +60,7 @@ def plot_errors(
     if len(axes) != len(panels):
         raise UsageError(f"there are {len(panels)} panels for {len(axes)} Axes; give one, or each")
     draw_panels(panels, axes, runs)
+    tell_lost(axes[0], runs)
     theirs = axes[0].get_figure(root=True)
     assert theirs is not None
     return Curves(theirs, tuple(axes), runs, own=False)

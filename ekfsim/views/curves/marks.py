@@ -13,9 +13,11 @@ from ekfsim.views.curves.judged import lifted
 from ekfsim.views.curves.pens import pen
 from ekfsim.views.curves.series import Series
 from ekfsim.views.picture.artists import PURPLE, VERMILLION
+from ekfsim.views.picture.lettering import drawable, families
 
 BASE = 0.03  # of an Axes' height: where a reading is marked that has no NIS
 SAID = "#777777"
+LATE = 0.6  # of the run: from there on words stand to the left of their line
 
 
 class Mark(NamedTuple):
@@ -96,29 +98,43 @@ def mark_impossible(axes: Axes, runs: Sequence[Series]) -> None:
             )  # fmt: skip
 
 
-def mark_lost(panels: Sequence[Axes], runs: Sequence[Series], names: Sequence[str]) -> None:
-    """A line through all panels where each filter was lost for good, and what it says."""
-    told = 0
-    for number, (run, name) in enumerate(zip(runs, names, strict=True)):
+def mark_lost(panels: Sequence[Axes], runs: Sequence[Series]) -> None:
+    """A line through all panels where each filter was lost for good; a tint from there on where
+    there is one filter.
+    """
+    for number, run in enumerate(runs):
         if run.lost_from is None:
             continue
-        row = int(np.searchsorted(run.index, run.lost_from))
-        x, colour = float(run.abscissa[row]), pen(number).colour
+        x, colour = _lost_at(run), pen(number).colour
         for axes in panels:
             axes.axvline(x, color=colour, lw=1.6, ls=(0, (5, 2)), zorder=2, gid=f"lost-{number}")
             if len(runs) == 1:
                 end = float(run.abscissa[-1])
                 axes.axvspan(x, end, color=VERMILLION, alpha=0.07, lw=0, zorder=0, gid="lost-span")
+
+
+def tell_lost(top: Axes, runs: Sequence[Series]) -> None:
+    """Say it over the line, of several filters one above the other."""
+    lines = 0
+    for number, run in enumerate(runs):
+        if run.lost_from is None:
+            continue
+        x, name = _lost_at(run), f"{run.name}: " if len(runs) > 1 else ""
         at = f" (t = {x:.6g} s)" if run.clocked else ""
-        words = f"{f'{name}: ' if len(runs) > 1 else ''}lost since step {run.lost_from}{at}"
-        right = row > 0.6 * len(run)
-        panels[0].annotate(
-            words, (x, 1), (-4 if right else 4, 5 + 12 * told),
-            xycoords=panels[0].get_xaxis_transform(), textcoords="offset points",
-            ha="right" if right else "left", fontsize=9, color=colour, fontweight="bold",
-            parse_math=False, gid=f"lost-words-{number}",
+        right = x > LATE * run.abscissa[-1]
+        top.annotate(
+            drawable(f"{name}lost since step {run.lost_from}{at}"), (x, 1),
+            (-4 if right else 4, 5 + 12 * lines), xycoords=top.get_xaxis_transform(),
+            textcoords="offset points", ha="right" if right else "left", fontsize=9,
+            color=pen(number).colour, fontweight="bold", family=families(), parse_math=False,
+            gid=f"lost-words-{number}",
         )  # fmt: skip
-        told += 1
+        lines += 1
+
+
+def _lost_at(run: Series) -> float:
+    """Where on the axis that is."""
+    return float(run.abscissa[np.searchsorted(run.index, run.lost_from or 0)])
 
 
 def occurring(runs: Sequence[Series]) -> Iterator[tuple[Line2D, str]]:

@@ -2,7 +2,7 @@
 Memory does not grow with their number.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 from ekfsim.commands import expanded_length
@@ -11,6 +11,8 @@ from ekfsim.files.looking import is_folder
 from ekfsim.files.results.writing import refuse_existing, told, whole_file, whole_folder
 from ekfsim.provenance import metadata, told_in_a_line
 from ekfsim.scene import Scene
+from ekfsim.views.curves.series import Series
+from ekfsim.views.curves.strip import Stripped, framed
 from ekfsim.views.film import gif, still, video
 from ekfsim.views.film.png import Pixels
 from ekfsim.views.picture.frames import Frame
@@ -36,11 +38,13 @@ def render(
     *,
     look: Look = STANDARD,
     paper: Paper = SCREEN,
+    strip: Sequence[Series] = (),
     every: int = 1,
     force: bool = False,
     progress: Progress = lambda made: None,
 ) -> None:
-    """Make a picture of every `every`-th view, and of the last.
+    """Make a picture of every `every`-th view, and of the last; with a strip of the curves of each
+    filter beneath it, where they are given.
 
     A target that ends in .gif or .mp4 is an animation, one without a suffix a folder of PNG
     files. Raises UsageError if the target is of another kind, exists (without `force`), or
@@ -62,7 +66,7 @@ def render(
     write_video = video.writer() if suffix == ".mp4" else None
     if suffix:
         refuse_existing(target, force)
-    frame = Frame(scene, scope, look, paper)
+    frame = framed(scene, scope, look, paper, strip)
     shown = _reported(thinned(views, every), progress)
     if suffix == "":
         with whole_folder(target, *PATTERNS, force=force) as folder:
@@ -93,7 +97,7 @@ def thinned(views: Iterable[View], every: int) -> Iterator[View]:
             yield view
 
 
-def _number(folder: Path, frame: Frame, views: Iterable[View], scene: Scene) -> None:
+def _number(folder: Path, frame: Frame | Stripped, views: Iterable[View], scene: Scene) -> None:
     """step-0000.png, … by the views' steps, with digits enough for them to sort."""
     most = expanded_length(scene.commands)
     digits = max(DIGITS, len(str(most))) if scene.commands else UNKNOWN_DIGITS

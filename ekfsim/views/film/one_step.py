@@ -1,14 +1,16 @@
 """The picture of one step in a file."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ekfsim.errors import UsageError
 from ekfsim.files.results.writing import whole_file
 from ekfsim.provenance import metadata, told_in_a_line
 from ekfsim.scene import Scene
+from ekfsim.views.curves.series import Series
+from ekfsim.views.curves.strip import framed
 from ekfsim.views.film import still
-from ekfsim.views.picture.frames import Frame, Picture
+from ekfsim.views.picture.frames import Picture
 from ekfsim.views.picture.look import SCREEN, STANDARD, Look, Paper
 from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
@@ -22,21 +24,25 @@ def render(
     *,
     look: Look = STANDARD,
     paper: Paper = SCREEN,
+    strip: Sequence[Series] = (),
     force: bool = False,
 ) -> None:
     """Draw a view into a .png, the same as in a folder of all, or into an .svg or a .pdf, whose
-    letters are outlines in the one and text in the other.
+    letters are outlines in the one and text in the other. With a strip of the curves of each filter
+    beneath it, where they are given, in a .png alone.
 
     Raises UsageError where the file is of another kind, or exists and `force` is False.
     """
     still.refuse(target, force)
     if target.suffix.lower() == ".png":
-        picture = Frame(scene, scope, look, paper).png(
+        picture = framed(scene, scope, look, paper, strip).png(
             view, {**metadata(scene), "View": str(view.number)}
         )
         with whole_file(target, force) as path:
             path.write_bytes(picture)
         return
+    if strip:
+        raise UsageError(f"{target}: --strip is made of pixels; name a .png, or see `ekfsim plot`")
     drawn = Picture.on(paper, scene, scope, look)
     drawn.show(view)
     still.save(drawn.figure, target, drawn.title.get_text(), told_in_a_line(scene), force)

@@ -18,7 +18,8 @@ from ekfsim.views.curves.bands import NAMES, ErrorPanel
 from ekfsim.views.curves.events import Happened
 from ekfsim.views.curves.judged import LEAST
 from ekfsim.views.curves.marks import MARKS
-from ekfsim.views.curves.plot import figure_of, panels_of, remarks, verdict
+from ekfsim.views.curves.panels import panels_of, remarks
+from ekfsim.views.curves.plot import figure_of, verdict
 from ekfsim.views.curves.series import Series, bound
 from ekfsim.views.curves.thinning import peaks
 
