@@ -53,6 +53,7 @@ class Typed:
 
     def take(self, name: str) -> bool:
         """Whether a key belongs to the number."""
+        name = "." if name == "," else name
         if name == "backspace" and self.text:
             self.text = self.text[:-1]
         elif name == "escape" and self.text:

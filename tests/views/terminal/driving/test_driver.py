@@ -83,7 +83,7 @@ def commands(keys, place=ROOM):
         ("90bb", [Sense(math.pi / 2), Sense(math.pi / 2)]),
         ("-45.5b", [Sense(math.radians(-45.5))]),
         ("90-b-30-b", [Sense(-math.pi / 2), Sense(math.radians(30))]),
-        ("1.5f.5x", [Move(1.5, 0.0), Move(-0.5, 0.0)]),
+        ("1.5f,5x", [Move(1.5, 0.0), Move(-0.5, 0.0)]),
         ("90<-30<", [Move(0.0, math.pi / 2), Move(0.0, math.radians(-30))]),
         ("-f.x", [FORWARD, BACKWARD]),  # no number
         ("9 0 backspace 1 b", [Sense(math.radians(91))]),
@@ -134,6 +134,7 @@ def test_the_line_below_tells_what_the_keys_do():
     assert Driven("-4").last.place.split(" · ")[1] == "-4"
     assert Driven("fw").last.place == "step 1 · move 0.25 m, turn 15°, beam 0°"
     assert Driven("ffwu").last.place.endswith("not saved: 1 command undone")
+    assert Driven("").last.hints[:2] == ("arrows drive", "? keys")
 
 
 def test_a_bump_is_told():
