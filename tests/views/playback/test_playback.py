@@ -10,11 +10,11 @@ from scenes import rich, scene, unbounded
 from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
 from ekfsim.diagnostics.nees import nees
 from ekfsim.diagnostics.verdict import Evidence
-from ekfsim.files.results.outputs import kept
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.belief import posed
 from ekfsim.localization import play
 from ekfsim.records import Control, Reading
+from ekfsim.views.playback.kept import kept
 from ekfsim.views.playback.playback import GATHERED, Playback, Tally, views
 
 COURSE = (

@@ -169,7 +169,7 @@ def test_the_beam_is_drawn_until_the_estimate_is_revised() -> None:
     aimed = scene(Sense(math.pi / 2))
     beam, revised = picture(aimed, 1), picture(aimed, 2)
     assert beam[0].startswith("1 of 1: sense at 90 deg, measured 4.000 m, predicted 4.000 m")
-    assert revised[0].startswith("1 of 1: sense at 90 deg, the estimate stays where it is; ")
+    assert revised[0].startswith("1 of 1: sense at 90 deg, nothing was uncertain")
     assert [at(beam, 2.0, y) for y in (5.0, 6.0, 7.0)] == ["-"] * 3
     assert [at(revised, 2.0, y) for y in (5.0, 6.0, 7.0)] == [" "] * 3
     assert "beam" in beam[-1]
