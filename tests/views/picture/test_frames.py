@@ -6,6 +6,7 @@ from io import BytesIO
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from PIL import Image
@@ -16,6 +17,7 @@ from ekfsim.geometry.ellipse import conditioned, radius_factor
 from ekfsim.localization import play
 from ekfsim.views.picture import frames, panels
 from ekfsim.views.picture import scope as scopes
+from ekfsim.views.picture.artists import VERMILLION
 from ekfsim.views.picture.frames import Frame, Picture, draw
 from ekfsim.views.picture.look import Look
 from ekfsim.views.picture.panels import close_width
@@ -360,3 +362,13 @@ def test_the_frame_of_the_close_up_is_what_the_spines_would_be():
         drawn.append(np.asarray(canvas.buffer_rgba()))
     assert np.array_equal(*drawn)
     assert drawn[0].min() == 0
+
+
+def test_a_judgement_that_warns_has_a_sign_and_a_colour():
+    right, _ = shown(scene(Move(1.0, 0.5), sigma=SIGMA))
+    assert right.judgement.get_text().startswith("Verdict: no evidence")
+    assert right.judgement.get_facecolor()[:3] == (0, 0, 0)
+    wrong, _ = shown(told(scene(Move(1.0, 0.5), sigma=SIGMA), start=np.array([5.0, 5.0, 0.0])))
+    assert wrong.judgement.get_text().startswith("⚠ Verdict: lost since step 0 · NEES ")
+    assert wrong.judgement.get_facecolor() == to_rgba(VERMILLION)
+    assert wrong.judgement in set(wrong.moving())

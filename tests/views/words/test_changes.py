@@ -135,14 +135,16 @@ def test_an_estimate_that_is_no_number_is_said_to_be_none():
     assert revised(view, 0.954) == "the estimate is no number"
 
 
-def test_the_other_walls_of_an_ambiguous_beam_are_named():
-    run = scene(Sense(0), start=(1, 3.1, 0), sigma=(0.01, 0.1, 0.01), obstacles=(DESK,))
+def test_the_other_walls_of_an_ambiguous_beam_are_named_and_told_from_corner_to_corner():
+    run = scene(Sense(0), start=(4.1, 6, -math.pi / 2), sigma=(0.1, 0.01, 0.01), obstacles=(DESK,))
     range_told, doubt = captions(run, 1)
-    assert range_told.startswith("measured 3")
+    assert range_told.startswith("measured 2")
     assert doubt == (
-        "ambiguous: from 30 cm to the right it would meet edge 2 of the room's wall, "
-        "not edge 4 of desk"
+        "ambiguous: from 30 cm to the right it would meet edge 1 of the room's wall, "
+        "not edge 3 of desk"
     )
+    view = list(views(play(run)))[1]
+    assert reading(view, run).walls == pytest.approx(np.array([[[0, 0], [10, 0]]]))
 
 
 def test_of_several_filters_each_that_a_reading_loses_is_named():
