@@ -8,7 +8,7 @@ from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Refused
 from ekfsim.views.playback.view import View
 
-MOST = 900  # views that are held at even distances
+MOST = 800  # views that are held at even distances
 NOTED = 200  # more of them, where something happens
 
 
@@ -20,16 +20,16 @@ class Holding:
     least: int = 1  # of how many one is held, at least
 
     @property
-    def every(self) -> int:
+    def every(self) -> float:
         """Of how many views one is held."""
-        return max(self.least, -(-self.views // MOST))
+        return max(self.least, self.views / MOST)
 
     def choose(self, views: Iterable[View]) -> Iterator[View]:
         """Every so many views, the first, the last, and where something happens. A beam and what
         it makes of the estimate stay together.
         """
         beam: View | None = None  # waits for its revised estimate
-        due, noted, troubled = 0, 0, False
+        due, noted, troubled = 0.0, 0, False
         for view in views:
             if view.beam:
                 beam = view
@@ -40,7 +40,7 @@ class Holding:
             if view.number >= due or news or view.judged.closing is not None:
                 both = (view,) if beam is None else (beam, view)
                 if view.number >= due:
-                    due = both[0].number + self.every * len(both)
+                    due = max(due + self.every * len(both), view.number)
                 else:
                     noted += 1
                 yield from both

@@ -95,8 +95,8 @@ def page(scene: Scene, runs: Sequence[Iterable[Step]], look: Look = STANDARD) ->
 def left_out(views: int, held: int) -> str:
     """That a page does not hold all of the run's views; empty where it does.
 
-    >>> left_out(1424, 900)
-    "900 of the run's 1424 views are held: at even distances, and wherever something happens"
+    >>> left_out(1424, 801)
+    "801 of the run's 1424 views are held: at even distances, and wherever something happens"
     >>> left_out(46, 46)
     ''
     """

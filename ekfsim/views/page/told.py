@@ -22,8 +22,7 @@ from ekfsim.views.picture.sights import sight
 from ekfsim.views.playback.trail import Way
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.beams.beam import beam
-from ekfsim.views.words.captions import notes, spread, title
-from ekfsim.views.words.closing import sentence
+from ekfsim.views.words.captions import away, notes, spread, title
 from ekfsim.views.words.judgement import judgement, standing
 from ekfsim.views.words.narrative import narrate
 
@@ -78,6 +77,8 @@ class Teller:
             "true": view.true.n,
             "reckoned": view.reckoned.n,
         }
+        if (hidden := self._away(view)) is not None:
+            told["away"] = hidden
         if view.beam:
             told["beam"] = 1
         if view.number != self.following:
@@ -120,8 +121,6 @@ class Teller:
             told["nees"] = [None if nees.impossible else short(float(nees.value)), bound]
         if c is not None and not np.isnan(c.nis):
             told["nis"] = [short(float(c.nis)), short(quantile(LOST, len(c.innovation)))]
-        if view.judged.closing is not None:
-            told["verdict"] = sentence(view.judged.closing)
         if isinstance(view.belief, Particles):
             states = view.layout.pose(view.belief.states)[:, :2]
             told["crowd"] = points(states[:: max(1, len(states) // CROWD)][:CROWD], self.origin)
@@ -144,11 +143,16 @@ class Teller:
             "ν": row(c.innovation.tolist()),
             "K": rows(c.K),
         }
-        if int(c.refused):
-            told["refused"] = 1
         if view.beam:
             told["seen"] = seen(step, self.scene, self.origin, FAR * self.size)
         return told
+
+    def _away(self, view: View) -> str | None:
+        """Where the truth is, while the close-up does not show it."""
+        truth = view.step.entry.truth
+        wide = close_width(view, self.look.probability, CERTAIN * self.size)
+        hidden = truth is not None and abs(truth[:2] - view.pose.mean[:2]).max() > wide / 2
+        return away(view.step, view) if hidden else None
 
     def _pose(self, pose: Array) -> list[Any]:
         x, y, θ = pose.tolist()

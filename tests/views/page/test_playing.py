@@ -79,9 +79,9 @@ def test_a_link_leads_to_a_step_and_follows(opened, pages):
         assert title(page).startswith("4 of 8: sense")
         assert page.locator("#map .beam").is_visible()
         page.keyboard.press("n")
-        page.wait_for_function("location.hash === '#4b'")
+        page.wait_for_url("**#4b")
         page.evaluate("location.hash = '#6b'")
-        page.wait_for_function("document.getElementById('title').textContent.startsWith('6 of 8')")
+        page.locator("#title", has_text="6 of 8").wait_for()
         assert not page.locator("#map .beam").is_visible()
         assert page.evaluate("history.length") == 3  # what was stepped through is not in it
 

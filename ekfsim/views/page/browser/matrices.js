@@ -17,13 +17,15 @@ function ask(part, symbol) {
   for (const event of ["mouseenter", "focus", "click"]) part.addEventListener(event, () => choose(symbol));
 }
 
-function table(symbol, belief) {
+// inputs : how many a view of a driven robot gathers
+function table(symbol, belief, inputs = 1) {
   const state = lesson.state, read = belief.z ?? [], given = belief.u ?? [];
   const [across, down] = { P: [state, state], F: [state, state], G: [given, state], H: [state, read], R: [read, read], S: [read, read], ν: [[""], read], K: [read, state] }[symbol];
   const value = belief[symbol];
   const cells = symbol === "P" ? symmetric(value) : symbol === "ν" ? value.map(one => [one]) : value;
   const made = document.createElement("table");
-  made.createCaption().textContent = `${symbol}  ${MEANT[symbol]}`;
+  const last = inputs > 1 && "FG".includes(symbol) ? `, of the last of ${inputs} motion inputs` : "";
+  made.createCaption().textContent = `${symbol}  ${MEANT[symbol]}${last}`;
   const head = made.createTHead().insertRow();
   for (const name of ["", ...across]) head.appendChild(heading(name, "col"));
   const body = made.createTBody();
@@ -43,9 +45,9 @@ function heading(name, scope) {
 }
 
 // The tables of one symbol, or of the covariance where this view has no such matrix.
-function tables(symbol, belief) {
+function tables(symbol, belief, inputs) {
   const of = belief[symbol] ? symbol : "P";
-  return TOGETHER[of].filter(one => belief[one]).map(one => table(one, belief));
+  return TOGETHER[of].filter(one => belief[one]).map(one => table(one, belief, inputs));
 }
 
 function symbols(belief) {

@@ -54,12 +54,12 @@ function show() {
   at("slider").setAttribute("aria-valuetext", spoken);
   at("count").textContent = `step ${view.step} of ${lesson.last}`;
   at("map-told").textContent = `${spoken}. ${where(belief.pose)}; ${belief.spread}. ${view.judged}.`;
-  at("close-told").textContent = belief.spread;
+  at("close-told").textContent = [belief.spread, view.away].filter(Boolean).join("; ");
   map.show(view, before, 0.022 * size, told, shown);
   const [x, y] = belief.pose, w = view.wide / 2;
   close.fit([x - w, y - w, x + w, y + w], 300, 300, { left: 0, bottom: 0, top: 0, right: 0 });
   close.show(view, before, 0.07 * view.wide, told, shown);
-  bar(view.wide);
+  frame(view);
   for (const strip of strips) strip.show(current);
   for (const [id, off] of [["first", current === 0], ["back", current === 0], ["next", current === views.length - 1], ["last", current === views.length - 1]]) at(id).disabled = off;
   choose(symbol);
@@ -88,7 +88,7 @@ function say() {
 function choose(asked) {
   symbol = asked;
   const belief = views[current].by[told];
-  at("matrix").replaceChildren(...tables(asked, belief));
+  at("matrix").replaceChildren(...tables(asked, belief, views[current].inputs));
   const buttons = symbols(belief).map(one => {
     const made = [...at("symbols").children].find(each => each.dataset.symbol === one) ?? document.createElement("button");
     if (!made.type || made.type !== "button") made.type = "button";
@@ -105,9 +105,10 @@ function list(place, texts) {
   place.replaceChildren(...texts.map(text => Object.assign(document.createElement("li"), { textContent: text })));
 }
 
-function bar(width) {
-  const length = oneTwoFive(width / 6), pixels = 300 * length / width;
-  close.words.replaceChildren(element("path", { class: "bar", d: `M14 286h${pixels}` }), element("text", { x: 14, y: 279 }, metres(length)), element("rect", { class: "frame", x: .5, y: .5, width: 299, height: 299 }));
+// The close-up's frame, its scale, and where the truth is when that lies beyond it.
+function frame({ wide, away }) {
+  const length = oneTwoFive(wide / 6), pixels = 300 * length / wide;
+  close.words.replaceChildren(element("path", { class: "bar", d: `M14 286h${pixels}` }), element("text", { x: 14, y: 279 }, metres(length)), element("text", { x: 14, y: 22 }, away ?? ""), element("rect", { class: "frame", x: .5, y: .5, width: 299, height: 299 }));
 }
 
 // Everything that depends on the width of the page.

@@ -177,9 +177,12 @@ class Picture {
     const each = (from, to, put) => { for (let i = Math.ceil(from / step); i * step <= to; i++) put(i * step); };
     each((x - east) / scale + ox, (x + width - east) / scale + ox, m => write([scale * (m - ox) + east, y + height + 14], m.toFixed(digits) + " m", { class: "tick", "text-anchor": "middle" }));
     each((south - y - height) / scale + oy, (south - y) / scale + oy, m => write([x - 4, south - scale * (m - oy) + 4], m.toFixed(digits), { class: "tick", "text-anchor": "end" }));
-    if (lesson.landmarks.length <= 60) for (const [east, north, number] of lesson.landmarks) {
-      const [a, b] = this.pixel([east, north]);
-      write([a + 6, b + 9], number, { class: "tick" });
+    const taken = lesson.landmarks.map(mark => this.pixel(mark)); // no number stands on another
+    for (const [east, north, number] of lesson.landmarks) {
+      const [a, b] = this.pixel([east, north]), place = [a + 7 + 3 * number.length, b + 6];
+      if (taken.some(([c, d]) => Math.abs(c - place[0]) < 6 + 4 * number.length && Math.abs(d - place[1]) < 9 && (c !== a || d !== b))) continue;
+      taken.push(place);
+      write([a + 6, b + 10], number, { class: "tick" });
     }
     for (const { name, ring, at } of lesson.world.obstacles) {
       const half = 3.3 * name.length / scale, room = [-half, half].every(by => inside(ring, [at[0] + by, at[1]]));
