@@ -12,7 +12,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.legend import Legend
 
 from ekfsim.commands import expanded_length
 from ekfsim.geometry.ellipse import outline
@@ -32,7 +31,7 @@ from ekfsim.views.picture.layout import (
     arranged,
     fitting,
 )
-from ekfsim.views.picture.legend import HANDLERS, Legends, entries
+from ekfsim.views.picture.legend import HANDLERS, Key, entries
 from ekfsim.views.picture.lettering import drawable, families, shortened, wrapped
 from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import SCREEN, STANDARD, Look, Paper
@@ -90,14 +89,9 @@ class Picture:
         self.notes, self.spread = self._text(9.5, "notes"), self._text(8, "spread")
         self._source = figure.text(0, 0, drawable(source(scene)), fontsize=7, gid="source")
         self._source.set(family=families(), parse_math=False, ha="right", color="#555555")
-        self._legends = Legends(figure)
+        self.legend = Key(figure)  # what occurs in the view that is shown
         self.names = Names(self.main.axes, scene.world)
         self.arrange()
-
-    @property
-    def legend(self) -> Legend:
-        """What occurs in the view that is shown."""
-        return self._legends.shown
 
     @classmethod
     def on(cls, paper: Paper, scene: Scene, scope: Scope, look: Look = STANDARD) -> Self:
@@ -127,8 +121,8 @@ class Picture:
         self.notes.place(MARGIN, NOTES)
         self.spread.place(left, bottom - SPREAD + 0.05)
         self._source.set_position((1 - MARGIN / width, 0.08 / height))
-        self._legends.arrange(layout)
-        self._legends.show(self.main.handles())
+        self.legend.arrange(layout)
+        self.legend.show_entries(self.main.handles())
 
     def show(self, view: View) -> bool:
         """Move everything to a view; whether it shows another part of the plane."""
@@ -140,7 +134,7 @@ class Picture:
         self.main.show(view, read)
         self.names.show(self.main.moving)
         self.close.show(view, read, self._scope.base)
-        self._legends.show(self.main.handles())
+        self.legend.show_entries(self.main.handles())
         told = notes(view, self._scene, read, self._probability)
         x, P = view.pose
         if not self.main.limits.hold(outline(x, P[:2, :2], self._probability)):
@@ -185,8 +179,8 @@ class Frame:
     ) -> None:
         self.picture = Picture.on(paper, scene, scope, look)
         self._canvas: Any = self.picture.figure.canvas  # matplotlib leaves its methods untyped
-        self._legends: dict[Legend, Any] = {}  # their pixels
-        for artist in self.picture.moving():
+        self._legends: dict[object, Any] = {}  # their pixels
+        for artist in (*self.picture.moving(), self.picture.legend):
             artist.set_animated(True)
         self._draw_still()
         self._replay = Replay(self._canvas)
@@ -216,17 +210,15 @@ class Frame:
 
     def _draw_still(self) -> None:
         """Draw what does not move."""
-        self.picture.legend.set_animated(True)
         self._canvas.draw()
         self._still = self._canvas.copy_from_bbox(self.picture.figure.bbox)
 
     def _draw_legend(self) -> None:
         """Draw the legend, or put the pixels there with which it was drawn before."""
         legend = self.picture.legend
-        if legend in self._legends:
-            self._canvas.restore_region(self._legends[legend])
+        if legend.look in self._legends:
+            self._canvas.restore_region(self._legends[legend.look])
             return
-        legend.set_animated(True)
         legend.draw(self._canvas.get_renderer())
         box = legend.get_window_extent()
-        self._legends[legend] = self._canvas.copy_from_bbox(box.padded(2))
+        self._legends[legend.look] = self._canvas.copy_from_bbox(box.padded(4))  # a rim, too

@@ -2,22 +2,25 @@
 comes and goes with a reading stands last, so that nothing jumps.
 """
 
-from collections.abc import Iterable, Sized
+import math
+from collections.abc import Iterable, Iterator, Sized
+from functools import cache
 from typing import Any, cast
 
 from matplotlib.artist import Artist
 from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
-from matplotlib.legend import Legend
 from matplotlib.legend_handler import HandlerPathCollection, HandlerTuple
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
+from matplotlib.transforms import Bbox
 
 from ekfsim.views.picture.artists import empty
-from ekfsim.views.picture.layout import ROW, Layout
-from ekfsim.views.picture.lettering import drawable, families, wrapped
+from ekfsim.views.picture.layout import COLUMN, ROW, Layout
+from ekfsim.views.picture.lettering import drawable, wrapped
+from ekfsim.views.picture.outlined import OutlinedText
+from ekfsim.views.picture.samples import Handle, Sample, first, sample, style
 
-Handle = Artist | tuple[Artist, ...]  # those of a tuple are drawn on top of each other
 HANDLERS: dict[type, Any] = {
     tuple: HandlerTuple(ndivide=1),
     PathCollection: HandlerPathCollection(numpoints=5),
@@ -25,6 +28,7 @@ HANDLERS: dict[type, Any] = {
 LETTERS = 30  # in a line
 POINTS = 8.0  # the letters' size where there is room
 FEWEST = 6.0  # points; smaller ones cannot be read
+WIDE, APART = 2.4, 3.2  # heights of the letters: of a sample, and from its begin to its words
 
 
 def entries(handles: Iterable[Handle]) -> tuple[list[Any], list[str]]:
@@ -32,58 +36,102 @@ def entries(handles: Iterable[Handle]) -> tuple[list[Any], list[str]]:
     takes, with `handler_map=HANDLERS`.
     """
     shown = [handle for handle in handles if _seen(handle)]
-    labels = [str(_first(handle).get_label()) for handle in shown]
-    words = [drawable("\n".join(wrapped([label], LETTERS, 3))) for label in labels]
+    words = [_words(str(first(handle).get_label())) for handle in shown]
     # matplotlib leaves out what begins with _, as the name of a file may
     return shown, [f" {word}" if word.startswith("_") else word for word in words]
 
 
-class Legends:
-    """The legends of a figure, of which one is shown; each is made when it is first needed."""
+class Row:
+    """An entry: a sample, and words beside it."""
 
-    shown: Legend
+    def __init__(self, figure: Figure, handle: Handle, words: str, points: float) -> None:
+        self._em, self.lines = points / 72, 1 + words.count("\n")
+        self._sample: list[Sample] = sample(handle)
+        inches = figure.dpi_scale_trans
+        self.text = OutlinedText(0, 0, points, inches, inches, "legend-text")
+        self.text.set_text(words)
+        for artist in (*self._sample, self.text):
+            artist.set_figure(figure)
+        for artist in self._sample:
+            artist.set_transform(inches)
+
+    def place(self, left: float, top: float) -> None:
+        """Begin it at a corner, in inches."""
+        em, baseline = self._em, top - self._em
+        for artist in self._sample:
+            artist.fill(Bbox.from_bounds(left, baseline - 0.02 * em, WIDE * em, 0.7 * em))
+        self.text.place(left + APART * em, baseline)
+
+    def __iter__(self) -> Iterator[Artist]:
+        yield from self._sample
+        yield self.text
+
+
+class Key(Artist):
+    """The legend of a figure. Each of its rows is made when it is first needed."""
 
     def __init__(self, figure: Figure) -> None:
-        self._figure = figure
+        super().__init__()
+        self.set(zorder=5, gid="legend")
         self._layout: Layout | None = None
-        self._made: dict[object, Legend] = {}
+        self._made: dict[object, Row] = {}
+        self._rows: list[Row] = []
+        self.look: object = ()  # what tells it from others
+        figure.add_artist(self)
+        self._figure = figure
 
     def arrange(self, layout: Layout) -> None:
-        """Where they stand from now on."""
-        for legend in self._made.values():
-            legend.remove()
-        self._made, self._layout = {}, layout
+        """Where it stands from now on."""
+        self._layout, self.look = layout, ()
 
-    def show(self, handles: Iterable[Handle]) -> None:
+    def show_entries(self, handles: Iterable[Handle]) -> None:
         """Show what is seen now."""
         handles, words = entries(handles)
-        look = tuple(zip(words, map(_style, handles), strict=True))
-        for legend in self._made.values():
-            legend.set_visible(False)
-        if look not in self._made:
-            self._made[look] = self._make(handles, words)
-        self.shown = self._made[look]
-        self.shown.set_visible(True)
-
-    def _make(self, handles: list[Any], words: list[str]) -> Legend:
+        look = tuple(zip(words, map(style, handles), strict=True))
+        if look == self.look:
+            return
         layout = self._layout
         assert layout is not None
-        left, top = layout.legend
         room = layout.room / ROW * layout.columns  # rows of letters of the usual size
         points = max(POINTS * min(1.0, room / max(len(words), 1)), FEWEST)
-        legend = self._figure.legend(
-            handles, words, loc="upper left", ncols=layout.columns,
-            bbox_to_anchor=(left / layout.width, top / layout.height), borderaxespad=0.0,
-            borderpad=0.0, fontsize=points, labelspacing=0.4, handlelength=2.4, frameon=False,
-            handler_map=HANDLERS,
-        )  # fmt: skip
-        for text in legend.get_texts():
-            text.set(family=families(), parse_math=False)
-        return legend
+        self.look, self._rows = look, []
+        for entry, handle in zip(look, handles, strict=True):
+            if (entry, points) not in self._made:
+                self._made[entry, points] = Row(self._figure, handle, entry[0], points)
+            self._rows.append(self._made[entry, points])
+        self._place(layout, ROW * points / POINTS)
+
+    def draw(self, renderer: Any) -> None:
+        """Draw all of it."""
+        if self.get_visible():
+            for row in self._rows:
+                for artist in row:
+                    artist.draw(renderer)
+        self.stale = False
+
+    def get_window_extent(self, renderer: Any = None) -> Bbox:
+        """Where it is, in pixels."""
+        parts = [artist.get_window_extent(renderer) for row in self._rows for artist in row]
+        return Bbox.union(parts) if parts else Bbox.null()
+
+    def get_texts(self) -> list[OutlinedText]:
+        """The words of its entries."""
+        return [row.text for row in self._rows]
+
+    def _place(self, layout: Layout, pitch: float) -> None:
+        left, top = layout.legend
+        tall = math.ceil(len(self._rows) / layout.columns)
+        for number, row in enumerate(self._rows):
+            column, place = divmod(number, tall)
+            if place == 0:
+                below = top
+            row.place(left + column * COLUMN, below)
+            below -= row.lines * pitch
 
 
-def _first(handle: Handle) -> Artist:
-    return handle[0] if isinstance(handle, tuple) else handle
+@cache
+def _words(label: str) -> str:
+    return drawable("\n".join(wrapped([label], LETTERS, 3)))
 
 
 def _seen(handle: Handle) -> bool:
@@ -95,22 +143,3 @@ def _seen(handle: Handle) -> bool:
     if isinstance(handle, Line2D) and handle.get_linestyle() != "None":
         return len(cast(Sized, handle.get_xdata(orig=True))) > 1
     return isinstance(handle, Polygon) or not empty(handle)
-
-
-def _style(handle: Handle) -> object:
-    """What of an artist's style differs from view to view, and in the legend."""
-    first = _first(handle)
-    return (
-        tuple(map(_style, handle))
-        if isinstance(handle, tuple)
-        else (
-            (
-                first.get_linestyle(),
-                first.get_linewidth(),
-                first.get_marker(),
-                first.get_markersize(),
-            )
-            if isinstance(first, Line2D)
-            else ()
-        )
-    )
