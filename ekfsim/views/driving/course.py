@@ -77,7 +77,9 @@ class Course:
         return taken
 
     def redo(self, count: int = 1) -> Sequence[Expanded]:
-        """Obey again what was last taken back: that; none where nothing was."""
+        """Obey again what was last taken back: that; none where nothing was, or the run failed."""
+        if self.failure is not None:
+            return []
         again = self._undone[: -count - 1 : -1]
         del self._undone[len(self._undone) - len(again) :]
         self._obey(again)

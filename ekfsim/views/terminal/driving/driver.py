@@ -47,6 +47,8 @@ class Driver(Player):
         if left := self.course.undone:
             comes = "command comes" if left == 1 else "commands come"
             self.greeting = f"{left} more {comes} here: U does them, what is driven leaves them out"
+        if self.course.failure is not None:
+            self.greeting = self._come_of_it()
 
     def _take(self, name: str) -> bool:
         if self._typed.take(name):

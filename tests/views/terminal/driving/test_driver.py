@@ -213,7 +213,11 @@ def test_a_filter_that_fails_is_told_and_undone(place):
     assert driven.last.note == (
         "The filter failed: mine.py:4: step 2 (sense 0°): ValueError: no; u undoes the command"
     )
+    assert Driven("fbU", place=own).last.note == "There is nothing to redo"
     assert Driven("fbuf", place=own).course.commands == [FORWARD, FORWARD]
+    given = replace(own, commands=(FORWARD, Sense(0.0), FORWARD))
+    assert Driven("", place=given).last.note == driven.last.note
+    assert Driven("ud", place=given).course.commands == [FORWARD]
 
 
 def test_commands_of_a_file_are_driven_on():
