@@ -194,7 +194,7 @@ def plot(
     Several filters share one picture. Events and readings that were not used are marked, and where
     a filter is lost for good. Of a log without a truth there are innovations and NIS alone.
     """
-    from ekfsim.views.picture.look import get_ready
+    from ekfsim.views.picture.look import Paper, get_ready
 
     get_ready()
     from ekfsim.localization import play as steps_of
@@ -214,7 +214,7 @@ def plot(
         for step in steps_of(one):
             heed()
             runs[-1].take(step)
-    write(runs, scene, out, size, dpi, confidence, force)
+    write(runs, scene, out, Paper(size, dpi), confidence, force)
     for remark in remarks(runs):
         say(remark)
     click.echo(f"{in_a_line(out)}: {', '.join(map(in_a_line, scene.watching))} over {runs[0].span}")

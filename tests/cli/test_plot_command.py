@@ -47,7 +47,7 @@ def test_a_picture_has_the_pixels_that_are_asked_for(place):
     assert ekfsim("plot", "short.yaml", "-o", "a.png", "--size", "1280x720").status == 0
     assert size(place / "a.png") == (1280, 720)
     assert ekfsim("plot", "short.yaml", "-o", "a.png", "--dpi", "50", "--force").status == 0
-    assert size(place / "a.png") == (500, 450)
+    assert size(place / "a.png") == (500, 447)
 
 
 @pytest.mark.parametrize(

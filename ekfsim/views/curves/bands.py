@@ -84,7 +84,9 @@ class InnovationPanel:
 
 def _band(axes: Axes, x: Array, half: Array, pen: Pen, name: str, edged: bool) -> None:
     """A band about zero. Several have edges, too, by which they are told apart."""
-    axes.fill_between(x, -half, half, color=pen.colour, alpha=0.18, lw=0, gid=f"band-{name}")
+    axes.fill_between(
+        x, -half, half, color=pen.colour, alpha=0.09 if edged else 0.18, lw=0, gid=f"band-{name}"
+    )
     if edged:
         edge = np.concatenate([half, [np.nan], -half])
         axes.plot(

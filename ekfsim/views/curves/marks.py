@@ -114,22 +114,23 @@ def mark_lost(panels: Sequence[Axes], runs: Sequence[Series]) -> None:
 
 
 def tell_lost(top: Axes, runs: Sequence[Series]) -> None:
-    """Say it over the line, of several filters one above the other."""
-    lines = 0
+    """Say it over the line; of filters that are lost at different steps one above the other."""
+    steps: dict[int, list[int]] = {}
     for number, run in enumerate(runs):
-        if run.lost_from is None:
-            continue
-        x, name = _lost_at(run), f"{run.name}: " if len(runs) > 1 else ""
-        at = f" (t = {x:.6g} s)" if run.clocked else ""
-        right = x > LATE * run.abscissa[-1]
+        if run.lost_from is not None:
+            steps.setdefault(run.lost_from, []).append(number)
+    for lines, (step, numbers) in enumerate(steps.items()):
+        x = _lost_at(runs[numbers[0]])
+        names = f"{', '.join(runs[n].name for n in numbers)}: " if len(runs) > 1 else ""
+        at = f" (t = {x:.6g} s)" if runs[0].clocked else ""
+        right = x > LATE * runs[0].abscissa[-1]
         top.annotate(
-            drawable(f"{name}lost since step {run.lost_from}{at}"), (x, 1),
-            (-4 if right else 4, 5 + 12 * lines), xycoords=top.get_xaxis_transform(),
+            drawable(f"{names}lost since step {step}{at}"), (x, 1),
+            (-6 if right else 6, 5 + 12 * lines), xycoords=top.get_xaxis_transform(),
             textcoords="offset points", ha="right" if right else "left", fontsize=9,
-            color=pen(number).colour, fontweight="bold", family=families(), parse_math=False,
-            gid=f"lost-words-{number}",
+            color=pen(numbers[0]).colour if len(numbers) == 1 else "black", fontweight="bold",
+            family=families(), parse_math=False, gid=f"lost-words-{step}",
         )  # fmt: skip
-        lines += 1
 
 
 def _lost_at(run: Series) -> float:

@@ -20,18 +20,22 @@ from ekfsim.provenance import told_in_a_line
 from ekfsim.scene import Scene
 from ekfsim.views.curves.judged import BOUND, DRAWN
 from ekfsim.views.curves.marks import occurring, tell_lost
-from ekfsim.views.curves.panels import draw_panels, panels_of, remarks
+from ekfsim.views.curves.panels import Panel, draw_panels, panels_of, remarks
 from ekfsim.views.curves.pens import pen
 from ekfsim.views.curves.series import Series
 from ekfsim.views.film.still import save
 from ekfsim.views.picture.lettering import drawable, families, shortened, wrapped
-from ekfsim.views.picture.look import STANDARD
+from ekfsim.views.picture.look import SCREEN, STANDARD, Paper
 from ekfsim.views.words.captions import percent, source
 from ekfsim.views.words.closing import sentence
 
-INCHES, DPI = (10.0, 9.0), 100
+WIDTH = 10.0  # in
+AROUND, VERDICT, UNIT = 1.5, 0.3, 1.3  # in: above and below, for each filter, for a panel of 1
 LETTERS, TITLE_LETTERS, FOOT_LETTERS = 13, 10, 21  # to an inch
-VERDICT_LINES, FOOT_LINES, FOOT = 2, 2, 0.24  # the last in inches
+VERDICT_LINES, FOOT_LINES = 2, 2
+FOOT_LINE, EDGE = 0.11, 0.03  # in
+POINTS = 72  # to an inch
+ROUNDING = 1e-6  # px: a canvas has no part of a pixel, and a quotient may fall short of one
 WORD = 1.9  # in, of an entry of the legend
 GREY = "#666666"
 Place = Literal["outside upper left", "outside lower left"]
@@ -54,18 +58,19 @@ def marked(runs: Sequence[Series], probability: float) -> tuple[list[Artist], li
 
 def figure_of(
     runs: Sequence[Series], title: str = "", made_by: str = "",
-    inches: tuple[float, float] = INCHES, dpi: float = DPI,
-    probability: float = STANDARD.probability,
+    paper: Paper = SCREEN, probability: float = STANDARD.probability,
 ) -> Figure:  # fmt: skip
     """The whole plot: title and verdicts, panels, legend, what made it."""
-    panels, (width, height) = panels_of(runs, probability), inches
-    figure = Figure(figsize=inches, dpi=dpi, layout="constrained", facecolor="white")
+    panels = panels_of(runs, probability)
+    width, height = inches = _inches(paper, panels, len(runs))
+    figure = Figure(figsize=inches, dpi=paper.dpi, layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
     told = "; ".join(filter(None, [*remarks(runs), made_by]))
     foot = wrapped([drawable(told)], int(FOOT_LETTERS * width), FOOT_LINES)
     engine = figure.get_layout_engine()
     assert isinstance(engine, ConstrainedLayoutEngine)
-    engine.set(rect=(0, FOOT / height, 1, 1 - FOOT / height), h_pad=0.03)
+    away = (0.5 + len(foot)) * FOOT_LINE
+    engine.set(rect=(0, away / height, 1, 1 - away / height), h_pad=0.03)
     figure.text(
         0.995, 0.004, "\n".join(foot), fontsize=5.5, ha="right", va="bottom", color=GREY,
         parse_math=False, family=families(), gid="source",
@@ -84,11 +89,15 @@ def figure_of(
         Line2D([], [], color=pen(n).colour, ls=pen(n).dashes, lw=pen(n).width)
         for n in range(len(runs))
     ]
-    head = _legend(figure, "outside upper left", lines, verdicts, 9, 1)
+    head = _legend(figure, "outside upper left", EDGE, lines, verdicts, 9)
     if title:
-        head.set_title(shortened(title, int(TITLE_LETTERS * width)), FontProperties(size=12))
+        head.set_title(
+            drawable(shortened(title, int(TITLE_LETTERS * width))),
+            FontProperties(family=families(), size=12),
+        )
     head.set_alignment("left")
-    _legend(figure, "outside lower left", *marked(runs, probability), 8, max(int(width / WORD), 1))
+    columns = max(int(width / WORD), 1)
+    _legend(figure, "outside lower left", away, *marked(runs, probability), 8, columns)
     return figure
 
 
@@ -96,28 +105,34 @@ def write(
     runs: Sequence[Series],
     scene: Scene,
     target: Path,
-    size: tuple[int, int] | None = None,
-    dpi: int = DPI,
+    paper: Paper = SCREEN,
     probability: float = STANDARD.probability,
     force: bool = False,
 ) -> None:
-    """Write the plot of a scene's filters into a file. size : its pixels, at so many to an inch;
-    probability : of the bands
+    """Write the plot of a scene's filters into a file. probability : of the bands
 
-    Raises UsageError where it is no place for a picture, or the size leaves no room.
+    Raises UsageError where it is no place for a picture, or the paper leaves no room.
     """
-    inches = INCHES if size is None else (size[0] / dpi, size[1] / dpi)
     title, made_by = _title(scene), told_in_a_line(scene)
-    figure = figure_of(runs, title, made_by, inches, dpi, probability)
+    figure = figure_of(runs, title, made_by, paper, probability)
     with warnings.catch_warnings():
         warnings.filterwarnings("error", message="constrained_layout not applied")
         try:
             save(figure, target, title, made_by, force)
         except UserWarning:
+            width, height = figure.get_size_inches()
             raise UsageError(
-                f"there is no room for {len(figure.axes)} panels in {inches[0]:.3g} by "
-                f"{inches[1]:.3g} inches; choose a larger --size, or a smaller --dpi"
+                f"there is no room for {len(figure.axes)} panels in {width:.3g} by "
+                f"{height:.3g} inches; choose a larger --size, or a smaller --dpi"
             ) from None
+
+
+def _inches(paper: Paper, panels: Sequence[Panel], filters: int) -> tuple[float, float]:
+    """Width and height: those of the paper, or as high as what is drawn asks for."""
+    if paper.size is None:
+        return WIDTH, AROUND + VERDICT * filters + UNIT * sum(panel.height for panel in panels)
+    width, height = paper.size
+    return (width + ROUNDING) / paper.dpi, (height + ROUNDING) / paper.dpi
 
 
 def _title(scene: Scene) -> str:
@@ -133,11 +148,13 @@ def verdict(run: Series) -> str:
 def _legend(
     figure: Figure,
     place: Place,
+    away: float,
     handles: list[Artist],
     words: list[str],
     points: float,
-    columns: int,
+    columns: int = 1,
 ) -> Legend:
+    """A legend so many inches away from an edge of the figure."""
     # matplotlib leaves out what begins with _, as the name of a file may
     told = [f" {word}" if word.startswith("_") else word for word in map(drawable, words)]
     made = figure.legend(
@@ -148,7 +165,7 @@ def _legend(
         fontsize=points,
         frameon=False,
         borderpad=0.1,
-        borderaxespad=0.2,
+        borderaxespad=POINTS * away / points,
     )
     for word in (*made.get_texts(), made.get_title()):
         word.set(family=families(), parse_math=False)

@@ -124,7 +124,7 @@ def test_where_a_filter_is_lost_is_a_line_through_all_panels():
     run = Series.of(play(WRONG_WALL), "ekf")
     figure, artists = drawn(run)
     assert [set(line.get_xdata()) for line in artists["lost-0"]] == [{13.0}] * 5
-    assert artists["lost-words-0"].get_text() == "lost since step 13"
+    assert artists["lost-words-13"].get_text() == "lost since step 13"
     assert words(figure.legends[0]) == [verdict(run)]
     assert verdict(run).startswith("ekf: lost from step 13 on")
     _, artists = drawn(Series.of(play(load_scene("commands/tour.yaml")), "ekf"))
@@ -247,8 +247,10 @@ def test_labels_of_panels_lie_beside_each_other():
     boxes = [axes.get_window_extent() for axes in figure.axes]
     for above, below in pairwise(boxes):
         assert above.y0 > below.y1
+    (foot,) = (text for text in figure.texts if text.get_gid() == "source")
     for legend in figure.legends:
         extent = legend.get_window_extent()
+        assert not extent.overlaps(foot.get_window_extent())
         assert not any(extent.overlaps(box) for box in boxes)
         assert extent.x1 <= figure.bbox.x1
     heads = [legend.get_window_extent() for legend in figure.legends]
@@ -263,3 +265,15 @@ def test_only_the_pose_has_errors():
         for panel in panels_of([Series.of(play(mower()))])
         if isinstance(panel, ErrorPanel)
     ] == [0, 1, 2]
+
+
+def test_filters_that_are_lost_at_one_step_are_told_together():
+    runs = [Series.of(play(WRONG_WALL), name) for name in ("ekf", "mine.py")]
+    for run, lost in zip(runs, (13, 13), strict=True):
+        run.evidence.lost_from = lost
+    _, artists = drawn(*runs)
+    assert artists["lost-words-13"].get_text() == "ekf, mine.py: lost since step 13"
+    runs[1].evidence.lost_from = 20
+    _, artists = drawn(*runs)
+    told = [artists[f"lost-words-{step}"].get_text() for step in (13, 20)]
+    assert told == ["ekf: lost since step 13", "mine.py: lost since step 20"]
