@@ -8,7 +8,7 @@ import math
 import os
 import re
 import shlex
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import fields
 from pathlib import Path
 
@@ -37,16 +37,20 @@ FEWEST, MOST = 6, 17  # digits of a float that are tried
 TURNS = (0, 360, -360)  # degrees that a heading may have had, too, before it was wrapped
 
 
-def scene_text(scene: Scene, path: Path) -> str:
-    """The text of a commands file at a path that plays a scene of commands.
+def scene_text(scene: Scene, path: Path, options: Sequence[str] = ()) -> str:
+    """The text of a commands file at a path that plays a scene of commands; what stands in its
+    first lines is `replay`.
 
     Raises UsageError where its world stands in no file.
     """
-    return "".join(f"{line}\n" for line in _lines(scene, path))
+    return "".join(f"{line}\n" for line in _lines(scene, path, options))
 
 
-def replay(scene: Scene, path: Path) -> str:
-    """The command line that plays the file again, with all that no commands file holds."""
+def replay(scene: Scene, path: Path, options: Sequence[str] = ()) -> str:
+    """The command line that plays the file again, with all that no commands file holds.
+
+    options : what else is to stand in it
+    """
     words = ["ekfsim", "play", str(path)]
     if scene.run:
         words += ["--run", str(scene.run)]
@@ -59,12 +63,12 @@ def replay(scene: Scene, path: Path) -> str:
         words += ["--reading", scene.reading]
     if taken() == "plain":
         words.append("--plain")
-    return in_a_line(shlex.join(words))
+    return in_a_line(shlex.join([*words, *options]))
 
 
-def _lines(scene: Scene, path: Path) -> Iterator[str]:
+def _lines(scene: Scene, path: Path, options: Sequence[str]) -> Iterator[str]:
     yield f"# Driven by hand with ekfsim {VERSION}; this shows the same run:"
-    yield f"#   {UNPRINTABLE.sub('?', replay(scene, Path(path.name)))}"
+    yield f"#   {UNPRINTABLE.sub('?', replay(scene, Path(path.name), options))}"
     yield f"world: {_text(_world(scene, path))}"
     yield f"seed: {scene.seed}"
     yield f"filter: {_text(_filter(scene.filter, path))}"

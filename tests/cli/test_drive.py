@@ -39,7 +39,7 @@ def story(text):
         ("furnished-room", "--seed", "11", "--filter", "ukf", "--gate", "0.9"),
         ("room-with-desk", "--filter", "pf", "--particles", "50", "--guard", "skip"),
         ("range-bias", "--run", "3", "--set", "noise.rangeSigmaRatio=0.1"),
-        ("hall", "--filter", "ekf,iekf"),
+        ("hall", "--filter", "ekf,iekf", "--confidence", "0.5"),
         ("short.yaml", "--world", "unsure-start", "--set", "filter.rangeVariance=reading"),
     ],
 )

@@ -19,6 +19,7 @@ class Saving:
 
     out: Path
     force: bool = False  # whether what lies in its place may be replaced
+    options: tuple[str, ...] = ()  # of the command line that shows it as it was seen
     _ours: str | None = None  # what we have written there
 
     def __post_init__(self) -> None:
@@ -35,13 +36,13 @@ class Saving:
         """
         scene = course.scene_so_far
         path = self._place()
-        text = scene_text(scene, path)
+        text = scene_text(scene, path, self.options)
         with whole_text(path, self.force or self._is_ours(path)) as file:
             file.write(text)
         self.out, self._ours = path, text
         course.mark_as_saved()
         n = len(course.commands)
-        return f"Saved {n} command{'' if n == 1 else 's'}: {replay(scene, path)}"
+        return f"Saved {n} command{'' if n == 1 else 's'}: {replay(scene, path, self.options)}"
 
     def _place(self) -> Path:
         if self.force or special(self.out) or not os.path.lexists(self.out):

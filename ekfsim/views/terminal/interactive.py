@@ -11,7 +11,7 @@ from ekfsim.localization import play
 from ekfsim.printable import in_a_line
 from ekfsim.scene import Scene
 from ekfsim.views.picture import scope as scopes
-from ekfsim.views.picture.look import Look
+from ekfsim.views.picture.look import STANDARD, Look
 from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.playback import UntilFailure
 from ekfsim.views.terminal.pace import Pace
@@ -69,6 +69,8 @@ def drive_interactively(
     """
     from ekfsim.views.terminal.driving.driver import Driver
 
+    if look.probability != STANDARD.probability:
+        saving.options = "--confidence", repr(look.probability)
     # what was driven may be undone: each view finds out by itself how far the run has gone
     extent = Scope(scopes.of_all(course.scene, course.steps, look.probability).base, last=-1.0)
     stage = Stage.of(course.scene, extent, show, out, look)
