@@ -100,10 +100,10 @@ if TYPE_CHECKING:
     from ekfsim.simulation import simulate as simulate
     from ekfsim.student.own.bring import bring as bring
     from ekfsim.views.curves.errors import plot_errors as plot_errors
+    from ekfsim.views.notebook.drawing import draw as draw
     from ekfsim.views.notebook.studies import compare as compare
     from ekfsim.views.notebook.studies import study as study
     from ekfsim.views.notebook.table import table as table
-    from ekfsim.views.picture.frames import draw as draw
     from ekfsim.views.picture.look import Look as Look
     from ekfsim.views.playback.playback import Playback as Playback
     from ekfsim.views.words.closing import conclude as conclude
@@ -134,9 +134,9 @@ _HOMES = {
     "student.own.bring": ("bring",),
     "views.words.closing": ("conclude",),
     "views.curves.errors": ("plot_errors",),
+    "views.notebook.drawing": ("draw",),
     "views.notebook.studies": ("compare",),
     "views.notebook.table": ("table",),
-    "views.picture.frames": ("draw",),
     "views.picture.look": ("Look",),
     "views.words.narrative": ("narrate",),
     "views.playback.playback": ("Playback",),

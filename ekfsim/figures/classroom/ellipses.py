@@ -19,15 +19,15 @@ from ekfsim.figures.album import (
     square,
 )
 from ekfsim.figures.classroom.proofs import RUNS, shipped
-from ekfsim.figures.classroom.room import room, without_legend
+from ekfsim.figures.classroom.room import room
 from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import outline, radius_factor
 from ekfsim.localization import play
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Step
+from ekfsim.views.notebook.drawing import draw
 from ekfsim.views.picture import limits
-from ekfsim.views.picture.frames import draw
 from ekfsim.views.picture.legend import HANDLERS
 from ekfsim.views.picture.look import Look
 from ekfsim.views.playback.playback import views
@@ -50,8 +50,7 @@ def theta_question(album: Album) -> None:
     whole, close = figure.subplots(1, 2)
     handles, words = room(whole, beam, scene, Look(conditional=True))
     whole.set_title(f"before the beam: {_told(beam)}", fontsize=10)
-    draw(after, scene, close, Look(conditional=True), _about(after))
-    without_legend(close)
+    draw(after, scene, close, Look(conditional=True), _about(after), legend=False)
     close.set_title(f"after it, enlarged: {_told(after)}", fontsize=10)
     figure.legend(
         handles,

@@ -5,8 +5,9 @@ from typing import Any
 from matplotlib.axes import Axes
 
 from ekfsim.scene import Scene
-from ekfsim.views.picture.frames import draw
+from ekfsim.views.notebook.drawing import draw
 from ekfsim.views.picture.look import Look
+from ekfsim.views.picture.panels import Main
 from ekfsim.views.playback.view import View
 
 MARGIN = 0.4  # m around a room
@@ -17,8 +18,8 @@ def room(axes: Axes, view: View, scene: Scene, look: Look) -> tuple[list[Any], l
     """Draw a view no wider than its room,
     and the legend's handles and words of what can be in it.
     """
-    picture = draw(view, scene, axes, look)
-    without_legend(axes)
+    picture = draw(view, scene, axes, look, legend=False)
+    assert isinstance(picture, Main)
     assert scene.world.map.boundary is not None
     (left, bottom), (right, top) = (
         scene.world.map.boundary.min(axis=0),
@@ -32,10 +33,3 @@ def room(axes: Axes, view: View, scene: Scene, look: Look) -> tuple[list[Any], l
     }
     kept = {word: handle for word, handle in named.items() if word not in NEVER_IN_THESE}
     return list(kept.values()), list(kept)
-
-
-def without_legend(axes: Axes) -> None:
-    """Take away the legend that the view itself has drawn."""
-    legend = axes.get_legend()
-    assert legend is not None
-    legend.remove()

@@ -1,7 +1,8 @@
-"""The picture of a view: on Axes of your own, or as a frame with legend, close-up and captions.
+"""The picture of a view as a frame with legend, close-up and captions.
 
-draw(view, scene, ax)                                      # in a notebook
 Frame(scene, scope.of(scene, play(scene))).png(view)      # 900 pixels wide
+
+On Axes of your own: views/notebook/drawing.py.
 """
 
 from collections.abc import Iterator, Mapping
@@ -9,16 +10,13 @@ from typing import Any, Self
 
 import numpy as np
 from matplotlib.artist import Artist
-from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ekfsim.commands import expanded_length
 from ekfsim.geometry.ellipse import outline
-from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.views.film.png import Encoder, Pixels
-from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.artists import VERMILLION, empty
 from ekfsim.views.picture.layout import (
     HIGHEST,
@@ -31,9 +29,8 @@ from ekfsim.views.picture.layout import (
     arranged,
     fitting,
 )
-from ekfsim.views.picture.legend import HANDLERS, Key, entries
+from ekfsim.views.picture.legend import Key
 from ekfsim.views.picture.lettering import drawable, families, shortened, wrapped
-from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.look import SCREEN, STANDARD, Look, Paper
 from ekfsim.views.picture.names import Names
 from ekfsim.views.picture.outlined import OutlinedText
@@ -49,29 +46,6 @@ ROOMY = 14  # entries of the legend that stand in its place at ease
 LETTERS, LINES = 13.7, 3  # of the notes: characters to an inch, and lines
 TITLE_LETTERS = 9.5  # to an inch
 WARNING, BLACK = "⚠ ", "#000000"  # before a judgement that warns; the colour of one that does not
-
-
-def draw(
-    view: View | Step, scene: Scene, ax: Axes, look: Look = STANDARD, limits: Limits | None = None
-) -> Main:
-    """Draw world, belief, truth and beam on Axes of your own, with a legend.
-
-    A Step is drawn as it ended. Without limits the picture fits this view alone. What comes back
-    moves the same artists: `picture = draw(view, scene, ax)`, then `picture.show(other, None)`.
-    """
-    if isinstance(view, Step):
-        view = View(0, view)
-    main = Main(
-        ax,
-        scene,
-        limits or scopes.of(scene, [view.step], look.probability).at(view),
-        look.probability,
-        look.conditional,
-    )
-    main.show(view, reading(view, scene))
-    handles, words = entries(main.handles())
-    ax.legend(handles, words, fontsize=8, handler_map=HANDLERS)
-    return main
 
 
 class Picture:
