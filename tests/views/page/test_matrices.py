@@ -36,7 +36,7 @@ def views():
 
 def test_the_mouse_asks_the_shapes(opened, pages, views):
     correction = views[2].step.correction
-    with opened(pages("square"), "#2") as page:
+    with opened(pages("square"), "#2b") as page:
         assert captions(page) == ["P"]
         assert np.allclose(numbers(page, "P"), views[2].belief.covariance, rtol=1e-5)
         page.locator("#map .hit[data-symbol=H]").dispatch_event("mouseenter")
@@ -59,7 +59,7 @@ def test_the_mouse_asks_the_shapes(opened, pages, views):
 
 
 def test_the_keyboard_reaches_every_shape(opened, pages):
-    with opened(pages("square"), "#2") as page:
+    with opened(pages("square"), "#2b") as page:
         reached = set()
         for _ in range(30):
             page.keyboard.press("Tab")

@@ -75,12 +75,12 @@ def test_the_slider_is_spoken_and_goes_to_any_view(opened, pages):
 
 
 def test_a_link_leads_to_a_step_and_follows(opened, pages):
-    with opened(pages("square"), "#4") as page:
+    with opened(pages("square"), "#4b") as page:
         assert title(page).startswith("4 of 8: sense")
         assert page.locator("#map .beam").is_visible()
         page.keyboard.press("n")
-        page.wait_for_url("**#4b")
-        page.evaluate("location.hash = '#6b'")
+        page.wait_for_url("**#4")
+        page.evaluate("location.hash = '#6'")
         page.locator("#title", has_text="6 of 8").wait_for()
         assert not page.locator("#map .beam").is_visible()
         assert page.evaluate("history.length") == 3  # what was stepped through is not in it
@@ -105,7 +105,7 @@ def test_a_click_on_a_curve_goes_there_and_its_cursor_follows(opened, pages):
 
 
 def test_the_truth_outside_is_shown_in_a_style_of_its_own(opened, pages):
-    with opened(pages("diverge-01-wrong-wall"), "#13b") as page:
+    with opened(pages("diverge-01-wrong-wall"), "#13") as page:
         judged = page.locator("#judgement")
         assert "lost since step 13" in judged.inner_text()
         assert judged.get_attribute("class") == "warns"
@@ -119,7 +119,7 @@ def test_the_truth_outside_is_shown_in_a_style_of_its_own(opened, pages):
 
 
 def test_an_ambiguous_beam_shows_the_other_wall(opened, pages):
-    with opened(pages("diverge-01-wrong-wall"), "#13") as page:
+    with opened(pages("diverge-01-wrong-wall"), "#13b") as page:
         assert path_of(page, "other-wall") == [(0, 6), (0, 0)]
         assert "of the room's wall, not edge 3 of desk" in page.locator("#notes").inner_text()
 
@@ -139,7 +139,7 @@ def test_what_a_lecture_says_is_there_until_it_says_something_else(opened, pages
 
 
 def test_filters_are_toggled_and_each_tells_its_numbers(opened, pages):
-    with opened(pages("square", "ekf", "ukf"), "#2b") as page:
+    with opened(pages("square", "ekf", "ukf"), "#2") as page:
         other = page.locator("#map .second.reference")
         assert other.count() == 1
         page.get_by_role("checkbox", name="ukf").uncheck()

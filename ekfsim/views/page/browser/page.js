@@ -24,9 +24,9 @@ function link() {
   if (location.hash !== to) try { history.replaceState(null, "", to); } catch { /* a sandbox has no history */ }
 }
 
-// A step's link: of two views, the revised estimate's ends in b.
+// A step's link, as `render --step` has it: 13 is the step as it ended, 13b its beam.
 function name(view) {
-  return view.step + (!view.beam && view.by.some(belief => belief.z) ? "b" : "");
+  return view.step + (view.beam ? "b" : "");
 }
 
 // The view that a link names; where it is not held, the last one before it.
@@ -34,8 +34,7 @@ function linked() {
   const found = /^#(\d+)(b?)$/.exec(location.hash);
   if (!found) return 0;
   const exact = views.findIndex(view => name(view) === found[1] + found[2]), step = Number(found[1]);
-  const first = views.findIndex(view => view.step === step);
-  return exact >= 0 ? exact : first >= 0 ? first : Math.max(0, views.findLastIndex(view => view.step <= step));
+  return exact >= 0 ? exact : Math.max(0, views.findLastIndex(view => view.step <= step));
 }
 
 function show() {
