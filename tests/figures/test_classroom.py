@@ -67,24 +67,25 @@ def test_every_proof_gives_what_was_expected(album):
     assert not any("|" in cell for row in rows for cell in row)
 
 
+def line(axes, gid):
+    return next(one for one in axes.get_lines() if one.get_gid() == gid)
+
+
 def test_the_divergence_begins_with_the_beam_that_is_shown(album):
-    room, error, nees = (album.drawn["divergence"].axes[i] for i in range(3))
+    room, error, nis, nees = album.drawn["divergence"].axes
     step = int(re.search(r"step (\d+)", room.get_title()).group(1))
-    lines = {line.get_label(): line for line in error.get_lines()}
-    wrong, cured = (lines[name].get_ydata() for name in ("wrong wall", "the same, --guard skip"))
+    told = [text.get_text() for text in nees.get_legend().get_texts()]
+    assert told[:2] == ["wrong wall", "the same, --guard skip"]
+    assert "tour" not in told  # another world's run is no third setting of this one
+    wrong, cured = (np.abs(line(error, f"error-x-{n}").get_ydata()) for n in (0, 1))
     assert wrong[-1] > 1 > 0.2 > cured[-1]
-    assert "tour" not in lines  # another world's run is no third setting of this one
-    first, *_ = nees.get_lines()
-    over = np.flatnonzero(np.nan_to_num(first.get_ydata()) > 16.27)
-    assert over[0] == step
-    assert over[-1] == len(first.get_ydata()) - 1
-    assert len(over) == over[-1] - over[0] + 1
-    bounds = {
-        line.get_label(): line.get_ydata()[0]
-        for line in nees.get_lines()
-        if "χ²" in str(line.get_label())
-    }
-    assert bounds == pytest.approx({"χ² 95 %": 7.815, "χ² 99.9 %": 16.266}, abs=1e-3)
+    over = np.flatnonzero(np.nan_to_num(line(nees, "nees-0").get_ydata()) > 16.27)
+    assert over.tolist() == list(range(step, len(wrong)))
+    assert line(nis, "nis-0").get_ydata()[line(nis, "nis-0").get_xdata() == step] > 10.83
+    assert not (line(nees, "nees-1").get_ydata() > 16.27).any()
+    assert line(nees, "lost-0").get_xdata()[0] == step
+    bounds = [line(nees, f"bound-{p}-0").get_ydata()[-1] for p in (0.95, 0.999)]
+    assert bounds == pytest.approx([7.815, 16.266], abs=1e-3)
     assert re.search(r"1000 runs 3\d\.\d % end lost", album.captions["divergence"])
 
 

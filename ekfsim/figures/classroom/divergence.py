@@ -4,16 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ekfsim.diagnostics.nees import error
 from ekfsim.diagnostics.verdict import LOST
-from ekfsim.figures.album import (
-    BLACK,
-    GREEN,
-    GREY,
-    VERMILLION,
-    Album,
-    labelled,
-)
+from ekfsim.figures.album import Album
 from ekfsim.figures.classroom.proofs import RUNS, shipped
 from ekfsim.figures.classroom.room import room
 from ekfsim.filters.arithmetic.chi_square import quantile
@@ -21,28 +13,39 @@ from ekfsim.localization import play
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
+from ekfsim.views.curves.bands import ErrorPanel
+from ekfsim.views.curves.judged import NeesPanel, NisPanel
+from ekfsim.views.curves.marks import tell_lost
+from ekfsim.views.curves.panels import Panel, draw_panels
+from ekfsim.views.curves.plot import lines, marked
+from ekfsim.views.curves.series import Series
 from ekfsim.views.picture.legend import HANDLERS
-from ekfsim.views.picture.look import Look
+from ekfsim.views.picture.look import STANDARD, Look
 from ekfsim.views.playback.playback import views
 
 WRONG_WALL = "diverge-01-wrong-wall"
+PANELS: dict[str, Panel] = {"x": ErrorPanel(0), "nis": NisPanel(), "nees": NeesPanel()}
 
 
 def divergence(tour: Scene, album: Album) -> None:
     """A run that diverges, the same without the beam that did it, and that beam."""
     wrong = shipped(WRONG_WALL)
     cured = replace(wrong, guard="skip")
-    lines = (("wrong wall", wrong, VERMILLION, "-"), ("the same, --guard skip", cured, GREEN, "--"))
-    figure = album.figure(12.5, 6.2)
-    boxes = figure.subplot_mosaic([["room", "error"], ["room", "nees"]], width_ratios=(1, 1.1))
     played = list(play(wrong))
-    guilty = next(step for step in played if _nis(step) > quantile(LOST, 1))
+    runs = (
+        Series.of(played, "wrong wall"),
+        Series.of(play(cured), "the same, --guard skip"),
+    )
+    guilty = played[int(np.flatnonzero(np.nan_to_num(runs[0].nis) > quantile(LOST, 1))[0])]
     beam = next(
         view
         for view in views(play(wrong))
         if view.beam and view.step.entry.index == guilty.entry.index
     )
-    boxes["nees"].sharex(boxes["error"])
+    figure = album.figure(12.5, 6.2)
+    boxes = figure.subplot_mosaic(
+        [["room", "x"], ["room", "nis"], ["room", "nees"]], width_ratios=(1, 1.1)
+    )
     handles, words = room(boxes["room"], beam, wrong, Look())
     boxes["room"].legend(handles, words, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3,
     frameon=False,
@@ -50,23 +53,13 @@ def divergence(tour: Scene, album: Album) -> None:
     boxes["room"].set_title(
         f"step {guilty.entry.index}: the beam that is taken for another", fontsize=10
     )
-    for label, scene, color, style in lines:
-        steps = played if scene is wrong else list(play(scene))
-        index = [step.entry.index for step in steps]
-        boxes["error"].plot(
-            index, [_position_error(step) for step in steps], color=color, ls=style, label=label
-        )
-        boxes["nees"].plot(index, [_nees(step) for step in steps], color=color, ls=style)
-    labelled(boxes["error"], "", "position error (m)").set_yscale("log")
-    labelled(boxes["nees"], "step", "NEES (3 degrees of freedom)").set_yscale("log")
-    for probability, style in ((0.95, ":"), (LOST, "-.")):
-        boxes["nees"].axhline(quantile(probability, 3), color=BLACK, lw=0.9, ls=style,
-                              label=f"χ² {100 * probability:g} %")  # fmt: skip
-    for axes in (boxes["error"], boxes["nees"]):
-        axes.axvline(guilty.entry.index, color=GREY, lw=0.9, ls=(0, (1, 1)))
-        axes.legend(fontsize=8, loc="upper right", ncols=3)
-    boxes["error"].set_ylim(top=200)
-    boxes["nees"].set_ylim(top=3e6)
+    axes = [boxes[name] for name in PANELS]
+    draw_panels(list(PANELS.values()), axes, runs)
+    tell_lost(axes[0], runs)
+    others, meanings = marked(runs, STANDARD.probability)
+    boxes["nees"].legend([*lines(runs), *others], [*(run.name for run in runs), *meanings],
+                         loc="upper center", bbox_to_anchor=(0.5, -0.3), ncols=3, frameon=False,
+                         fontsize=8)  # fmt: skip
     album.add(figure, "divergence", "An input that makes the filter diverge, with the reason",
               _told_of_divergence(guilty, wrong, cured, tour), told_in_a_line(wrong))  # fmt: skip
 
@@ -86,30 +79,6 @@ def _told_of_divergence(guilty: Step, wrong: Scene, cured: Scene, tour: Scene) -
         f"on NEES stays beyond its 99.9 % bound. Of {RUNS} runs {_lost(wrong):.1f} % end lost; "
         f"with ambiguous beams left out (`--guard skip`) {_lost(cured):.1f} %; of the tour, whose "
         f"beams go to broad walls, {_lost(tour):.1f} %."
-    )
-
-
-def _nis(step: Step) -> float:
-    """−1 where there is none"""
-    return (
-        -1.0
-        if step.correction is None or np.isnan(step.correction.nis)
-        else float(step.correction.nis)
-    )
-
-
-def _position_error(step: Step) -> float:
-    """m, nan where there is none to draw on a logarithmic scale"""
-    assert step.entry.truth is not None
-    return float(np.hypot(*error(step.posterior, step.entry.truth)[:2])) or float("nan")
-
-
-def _nees(step: Step) -> float:
-    """nan where P is not of full rank"""
-    return (
-        float(step.nees.value)
-        if step.nees is not None and int(step.nees.dof) == 3
-        else float("nan")
     )
 
 

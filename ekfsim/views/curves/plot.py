@@ -41,6 +41,12 @@ GREY = "#666666"
 Place = Literal["outside upper left", "outside lower left"]
 
 
+def lines(runs: Sequence[Series]) -> list[Artist]:
+    """A line as each filter's lines are drawn."""
+    pens = map(pen, range(len(runs)))
+    return [Line2D([], [], color=own.colour, ls=own.dashes, lw=own.width) for own in pens]
+
+
 def marked(runs: Sequence[Series], probability: float) -> tuple[list[Artist], list[str]]:
     """What else is drawn, and what it is."""
     truth = any(run.has_truth for run in runs)
@@ -85,11 +91,7 @@ def figure_of(
     figure.align_ylabels(axes)
     letters = int(LETTERS * width)
     verdicts = ["\n".join(wrapped([verdict(run)], letters, VERDICT_LINES)) for run in runs]
-    lines: list[Artist] = [
-        Line2D([], [], color=pen(n).colour, ls=pen(n).dashes, lw=pen(n).width)
-        for n in range(len(runs))
-    ]
-    head = _legend(figure, "outside upper left", EDGE, lines, verdicts, 9)
+    head = _legend(figure, "outside upper left", EDGE, lines(runs), verdicts, 9)
     if title:
         head.set_title(
             drawable(shortened(title, int(TITLE_LETTERS * width))),
