@@ -108,7 +108,7 @@ def worth(correction: Correction) -> Iterator[str]:
         if nis <= quantile(LOST, numbers)
         else "very surprising"
     )
-    off = f"{math.sqrt(nis):.2g}σ off" if numbers == 1 else f"NIS {figure(nis)} of {numbers}"
+    off = f"{math.sqrt(nis):.2g}σ" if numbers == 1 else f"NIS {figure(nis)} of {numbers}"
     yield f"the reading was {word} ({off})"
 
 

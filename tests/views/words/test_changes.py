@@ -75,7 +75,7 @@ def test_what_a_reading_was_worth_is_told_in_standard_deviations(off, word):
     )
     view = list(views(play(run)))[2]
     σ = math.sqrt(float(view.step.correction.nis))
-    assert f"the reading was {word} ({σ:.2g}σ off)" in revised(view, 0.954)
+    assert f"the reading was {word} ({σ:.2g}σ)" in revised(view, 0.954)
 
 
 def test_a_reading_of_several_numbers_is_worth_its_nis():
@@ -110,7 +110,7 @@ def test_the_reading_that_loses_the_run_says_so():
         "lost with this reading: the estimate is off by 28.4 cm and 11.3°, "
         "before it was by 11 cm and 3.78°"
     )
-    assert "the reading was very surprising (9.1σ off)" in said[23][1]
+    assert "the reading was very surprising (9.1σ)" in said[23][1]
 
 
 def test_a_start_and_a_step_that_lose_the_run_say_so():
