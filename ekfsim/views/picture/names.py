@@ -3,7 +3,7 @@ on nothing that moves. A name that finds no such place in a view is left out of 
 """
 
 from collections.abc import Iterable, Iterator
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -16,6 +16,7 @@ from matplotlib.path import Path
 from shapely.geometry.base import BaseGeometry
 
 from ekfsim.geometry import Array
+from ekfsim.views.picture.artists import empty
 from ekfsim.views.picture.crossed import Crossed
 from ekfsim.views.picture.lettering import drawable, shortened
 from ekfsim.views.picture.outlined import PER_POINT, lettered
@@ -28,6 +29,7 @@ MOST_NUMBERS = 200  # of landmarks
 GAP = 3.0  # pixels between a name and what stands beside it
 CLEAR = 4.0  # pixels between a name and what moves
 ALONG = (0.5, 0.1, 0.9)  # of a side: where a name may stand beside it
+APART = np.full((1, 2), np.nan)  # between two lines
 MARK = 9.0  # pixels that a landmark's triangle is wide and high
 
 
@@ -134,15 +136,14 @@ class Names:
         blocked = np.zeros(len(self._boxes), bool)
         grown = self._boxes + CLEAR * np.array([-1, -1, 1, 1])
         corners = grown[:, [[0, 1], [2, 1], [2, 3], [0, 3]]].reshape(-1, 2)
+        to_pixels, lines = self._axes.transData.transform, [APART]
         for artist in moving:
-            if artist is self.artist:
-                continue
             for points, is_area in _drawn(artist):
-                placed = self._axes.transData.transform(points)
-                crossed.add(placed)
-                if is_area and len(placed) > 2:
-                    inside = Path(placed).contains_points(corners).reshape(-1, 4)
+                lines += [points, points[-1:], APART]  # a single point becomes a line, too
+                if is_area:
+                    inside = Path(to_pixels(points)).contains_points(corners).reshape(-1, 4)
                     blocked |= inside.any(axis=1)
+        crossed.add(to_pixels(np.concatenate(lines)))
         return blocked | crossed.inside(grown)
 
     def _chosen(self, blocked: Any) -> Iterator[Name]:
@@ -177,6 +178,8 @@ class Names:
 
 def _drawn(artist: Artist) -> Iterator[tuple[Array, bool]]:
     """What is to be seen of an artist : (n, 2) m; and whether it is an area."""
+    if empty(artist):
+        return
     match artist:
         case Line2D():
             yield np.column_stack(artist.get_data(orig=True)), False
@@ -186,8 +189,8 @@ def _drawn(artist: Artist) -> Iterator[tuple[Array, bool]]:
             for segment in artist.get_segments():
                 yield np.asarray(segment), False
         case PathCollection():
-            for dot in cast(Array, np.asarray(artist.get_offsets())):
-                yield dot[None], False
+            dots = np.asarray(artist.get_offsets())
+            yield np.stack([dots, dots, np.full_like(dots, np.nan)], axis=1).reshape(-1, 2), False
 
 
 def _inside(shape: BaseGeometry, taken: shapely.STRtree, own: int, size: Array) -> Iterator[Array]:
