@@ -4,8 +4,9 @@ import shutil
 from collections.abc import Callable
 
 from ekfsim.scene import Scene
+from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.scope import Scope
-from ekfsim.views.terminal.braille import shorten
+from ekfsim.views.terminal.braille import Bounds, shorten
 from ekfsim.views.terminal.keys.bindings import Action
 from ekfsim.views.terminal.screens.layout import Layout, Look, Panes, ample
 from ekfsim.views.terminal.screens.moment import Moment
@@ -92,12 +93,13 @@ class Console:
 
     def _draw(self) -> None:
         assert self._moment is not None
-        size = columns, rows = self._now()
+        size = self._now()
         if not self._inside:
             return
-        e = self._extent.at(self._moment.view)
-        layout = Layout(self._scene, self._probability, (e.left, e.right, e.bottom, e.top),
-                        columns, rows, self._look)  # fmt: skip
+        shown, first = self._extent.at(self._moment.view), self._extent.base
+        layout = Layout(
+            self._scene, self._probability, _bounds(shown), _bounds(first), *size, self._look
+        )
         lines, scroll = layout.lines(self._moment, self._what(size), self._scroll)
         self._scrolled = scroll
         fresh = self._drawn_for != size
@@ -118,3 +120,7 @@ class Console:
         """Columns and rows that may be written on; the last column is left free."""
         columns, rows = self._size()
         return max(min(columns - 1, WIDEST), 1), max(min(rows, HIGHEST), 1)
+
+
+def _bounds(limits: Limits) -> Bounds:
+    return limits.left, limits.right, limits.bottom, limits.top

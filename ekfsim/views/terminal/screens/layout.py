@@ -76,6 +76,7 @@ class Layout:
     scene: Scene
     probability: float
     limits: Bounds  # what the picture shows, m
+    shape: Bounds  # what the first picture shows, by which the screen is divided for the whole run
     columns: int
     rows: int
     look: Look
@@ -215,7 +216,7 @@ class Layout:
 
     def _flat(self, left: int, room: int) -> bool:
         """Whether a picture over the whole width, with numbers below, is much the larger."""
-        left_x, right, bottom, top = self.limits
+        left_x, right, bottom, top = self.shape
         width, height = max(right - left_x, 1e-9), max(top - bottom, 1e-9)
         beside = min(left / width, 2 * room / height)
         above = min(self.columns / width, room / height)  # half of the rows
@@ -223,7 +224,7 @@ class Layout:
 
     def _needed(self, columns: int) -> int:
         """The rows that a picture of so many columns fills, with its legend."""
-        left, right, bottom, top = self.limits
+        left, right, bottom, top = self.shape
         shape = max(top - bottom, 1e-9) / max(right - left, 1e-9)
         return min(math.ceil(columns * shape / 2) + 2, self.rows)
 

@@ -34,7 +34,7 @@ def moment(number, **more):
 
 
 def screen(number, size, panes=Panes.BOTH, look=PLAIN, scroll=None, **more):
-    layout = Layout(PLACE, 0.954, BOUNDS, *size, look)
+    layout = Layout(PLACE, 0.954, BOUNDS, BOUNDS, *size, look)
     return layout.lines(moment(number, **more), panes, scroll)[0]
 
 
@@ -79,6 +79,13 @@ def test_one_above_the_other_where_it_is_high():
     )
 
 
+def test_a_long_room_stands_above_its_numbers_however_wide_the_screen_is():
+    corridor = (0.0, 40.0, 0.0, 3.0)
+    for shape, above in ((BOUNDS, False), (corridor, True)):
+        layout = Layout(PLACE, 0.954, BOUNDS, shape, 119, 40, PLAIN)
+        assert ("─" * 119 in layout.lines(moment(3), Panes.BOTH, None)[0]) == above
+
+
 def test_the_picture_stays_where_it_is():
     def walls(number, size):
         return [i for i, line in enumerate(screen(number, size, Panes.PICTURE)) if "⡇" in line]
@@ -88,7 +95,7 @@ def test_the_picture_stays_where_it_is():
 
 def test_numbers_are_never_cut_and_all_can_be_scrolled_to():
     size = (39, 15)
-    seen, scroll, layout = [], 0, Layout(PLACE, 0.954, BOUNDS, *size, PLAIN)
+    seen, scroll, layout = [], 0, Layout(PLACE, 0.954, BOUNDS, BOUNDS, *size, PLAIN)
     for _ in range(40):
         lines, at = layout.lines(moment(3), Panes.NUMBERS, scroll)
         seen += [line for line in lines if not re.match("[▲▼]", line)]
@@ -98,8 +105,8 @@ def test_numbers_are_never_cut_and_all_can_be_scrolled_to():
 
 
 def test_signs_tell_how_much_more_there_is():
-    size, layout = (39, 15), Layout(PLACE, 0.954, BOUNDS, 39, 15, PLAIN)
-    every = Layout(PLACE, 0.954, BOUNDS, 39, 200, PLAIN)
+    size, layout = (39, 15), Layout(PLACE, 0.954, BOUNDS, BOUNDS, 39, 15, PLAIN)
+    every = Layout(PLACE, 0.954, BOUNDS, BOUNDS, 39, 200, PLAIN)
     whole = [line for line in every.lines(moment(3), Panes.NUMBERS, 0)[0][5:-1] if line]
     top = layout.lines(moment(3), Panes.NUMBERS, 0)[0]
     below = int(re.search(r"▼ (\d+) more", "".join(top))[1])
