@@ -90,17 +90,18 @@ if TYPE_CHECKING:
     from ekfsim.geometry.ellipse import ellipse as ellipse
     from ekfsim.localization import filter_of as filter_of
     from ekfsim.localization import first_belief as first_belief
-    from ekfsim.localization import localize as localize
-    from ekfsim.localization import play as play
     from ekfsim.models.motions.move_turn import MoveTurn as MoveTurn
     from ekfsim.models.sensors.laser import Laser as Laser
     from ekfsim.records import Entry as Entry
     from ekfsim.records import Step as Step
     from ekfsim.scene import Scene as Scene
-    from ekfsim.simulation import simulate as simulate
     from ekfsim.student.own.bring import bring as bring
     from ekfsim.views.curves.errors import plot_errors as plot_errors
+    from ekfsim.views.notebook.animation import animate as animate
     from ekfsim.views.notebook.drawing import draw as draw
+    from ekfsim.views.notebook.playing import localize as localize
+    from ekfsim.views.notebook.playing import play as play
+    from ekfsim.views.notebook.playing import simulate as simulate
     from ekfsim.views.notebook.studies import compare as compare
     from ekfsim.views.notebook.studies import study as study
     from ekfsim.views.notebook.table import table as table
@@ -125,16 +126,17 @@ _HOMES = {
     "filters.stretch": ("stretch",),
     "filters.tuning": ("Tuning",),
     "geometry.ellipse": ("ellipse",),
-    "localization": ("filter_of", "first_belief", "localize", "play"),
+    "localization": ("filter_of", "first_belief"),
     "models.sensors.laser": ("Laser",),
     "models.motions.move_turn": ("MoveTurn",),
     "records": ("Entry", "Step"),
     "scene": ("Scene",),
-    "simulation": ("simulate",),
     "student.own.bring": ("bring",),
     "views.words.closing": ("conclude",),
     "views.curves.errors": ("plot_errors",),
+    "views.notebook.animation": ("animate",),
     "views.notebook.drawing": ("draw",),
+    "views.notebook.playing": ("localize", "play", "simulate"),
     "views.notebook.studies": ("compare",),
     "views.notebook.table": ("table",),
     "views.picture.look": ("Look",),

@@ -14,6 +14,7 @@ from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.protocols import Motion, Sensor
+from ekfsim.shown import Shown
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +105,8 @@ class Remark(Protocol):
         """(…) from poses that the filter holds possible, something else would be read."""
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+@dataclass(frozen=True, slots=True, repr=False)
+class Step(Shown):
     """What the filter made of one entry. Every number of every output is read from here."""
 
     entry: Entry
@@ -116,3 +117,12 @@ class Step:
     remark: Remark | None = None  # where there is more to say of the reading
     nees: Nees | None = None  # where the truth is known
     layout: Layout = POSE  # what the entries of its states are
+    # the Scene that it was played in, where a notebook is to show it
+    scene: object = field(default=None, compare=False)
+
+    def __repr__(self) -> str:
+        x = self.posterior.mean
+        if x.ndim > 1:
+            return f"Step({called(self.entry)}, {len(x)} runs)"
+        states = zip(self.layout.names, x.tolist(), strict=True)
+        return f"Step({called(self.entry)}: {', '.join(f'{n} {v:.6g}' for n, v in states)})"

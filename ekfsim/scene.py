@@ -10,10 +10,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal
 
-from ekfsim.commands import Command
+from ekfsim.commands import Command, expanded_length
 from ekfsim.filters.place import label
 from ekfsim.filters.tuning import UNTUNED, Tuning
+from ekfsim.printable import in_a_line
 from ekfsim.records import Log
+from ekfsim.shown import Shown
 from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.drives import Drive
 from ekfsim.world import World
@@ -37,8 +39,8 @@ class Expect:
     runs: int = 300
 
 
-@dataclass(frozen=True)
-class Scene:
+@dataclass(frozen=True, repr=False)
+class Scene(Shown):
     """All that fixes a run but its number. `dataclasses.replace` makes another of it, and `with_`
     one with other numbers.
     """
@@ -63,6 +65,16 @@ class Scene:
     settings: tuple[str, ...] = ()  # KEY=VALUE each: what overrules numbers of the two files
     # more filters that watch the same run, to be shown beside the first
     beside: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        done = f"{expanded_length(self.commands)} commands" if self.commands else "a drive"
+        if self.log is not None:
+            done = f"{len(self.log.entries)} entries of {self.log_source}"
+        told = [done, ",".join(self.watching), f"seed {self.seed}", f"run {self.run}"]
+        told += [] if self.gate is None else [f"gate {self.gate:g}"]
+        told += [f"guard {self.guard}"] if self.guard != "warn" else []
+        where = f"{self.commands_source} in {self.world_source}"
+        return f"Scene({in_a_line(', '.join([where, *told, *self.settings]))})"
 
     @property
     def watching(self) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ import numpy as np
 from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array
 from ekfsim.models.layout import POSE, Layout
+from ekfsim.printable import in_a_line
 from ekfsim.raycast.walls import BOUNDARY as BOUNDARY
 from ekfsim.raycast.walls import Walls
 from ekfsim.systems.document import DocumentReading
@@ -92,7 +93,7 @@ class Told:
     instruments: tuple[Instrument, ...] | None = None  # None: as they are
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class World:
     """A world file: the truth, and beside it what the filter is told.
 
@@ -119,6 +120,12 @@ class World:
     expected_path: Array | None = None
     # what it was read from; what `replace` makes of it was not, and has none
     given: object = field(default=None, init=False, compare=False, repr=False)
+
+    def __repr__(self) -> str:
+        n, (x, y, theta) = len(self.map.obstacles), self.start.tolist()
+        things = [f"{n} obstacles" if n != 1 else "1 obstacle", f"{len(self.landmarks)} landmarks"]
+        start = f"start {x:.6g}, {y:.6g}, {np.degrees(theta):.6g}°"
+        return f"World({in_a_line(self.name)}: {', '.join([self.system, *things, start])})"
 
     @classmethod
     def of(

@@ -17,7 +17,7 @@ MODULES = {
     if "_packaged" not in path.parts
 }
 ROOMS = (  # each imports only from those above it, and from its own
-    {"errors", "printable", "seeds", "version", "twins"},
+    {"errors", "printable", "seeds", "version", "twins", "shown"},
     {"geometry"},
     {"raycast"},
     {"models"},
@@ -46,6 +46,7 @@ DOORS = {  # the imports from below, each made when it is called for
     ("ekfsim.world", "ekfsim.files.given.worlds"),
     ("ekfsim.world", "ekfsim.files.given.changes"),
     ("ekfsim.scene", "ekfsim.files.given.changes"),
+    ("ekfsim.shown", "ekfsim.views.notebook.showing"),  # records show themselves in a notebook
     ("ekfsim.study", "ekfsim.views.notebook.studies"),  # as is `ekfsim.study(…)`
     ("ekfsim.scene", "ekfsim.files.scenes.load"),  # the module itself is `ekfsim.scene(…)`
 }

@@ -15,6 +15,7 @@ from ekfsim.geometry.outline import path_error
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Control, Entry, Step
 from ekfsim.scene import Scene
+from ekfsim.shown import Shown
 from ekfsim.twins import twinned
 
 
@@ -92,8 +93,8 @@ class Instants:
         return entry.t == self._judged
 
 
-@dataclass
-class Summary:
+@dataclass(repr=False)
+class Summary(Shown):
     """What is left of a run when it is over, gathered one step at a time.
 
     Errors are taken at every instant (`Instants`), after its last reading: position as a distance
@@ -117,6 +118,12 @@ class Summary:
     last_t: float | None = None
     _reckoned: Array | None = None  # (n,), the whole state
     _instants: Instants = field(default_factory=Instants)
+
+    def __repr__(self) -> str:
+        done = f"{self.steps} steps, {self.updates} of {self.readings} readings used"
+        since = self.evidence.lost_from
+        lost = "" if since is None else f" from step {since} on"
+        return f"Summary({done}: {self.evidence.verdict.value}{lost})"
 
     @classmethod
     def of(cls, scene: Scene) -> Self:

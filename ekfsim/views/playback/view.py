@@ -9,6 +9,7 @@ from ekfsim.filters.belief import Belief, Gaussian, posed
 from ekfsim.geometry import Array
 from ekfsim.models.layout import Layout
 from ekfsim.records import Nees, Step
+from ekfsim.shown import Shown
 from ekfsim.views.playback.parting import Apart
 from ekfsim.views.playback.trail import Way
 
@@ -23,8 +24,8 @@ class Judged:
     closing: Evidence | None = None  # of the whole run, in its last view alone
 
 
-@dataclass(frozen=True, slots=True)
-class View:
+@dataclass(frozen=True, slots=True, repr=False)
+class View(Shown):
     """What is on the screen after so many presses of `n`.
     View 0 is the world before anything happens.
 
@@ -49,6 +50,10 @@ class View:
     across: float | None = None
     others: tuple["View", ...] = ()  # the same view as other filters have it, that watch beside
     apart: tuple[Apart, ...] = ()  # of each of them: whether it believes something else
+
+    def __repr__(self) -> str:
+        what = "the beam" if self.beam else "as it ended"
+        return f"View({self.number}: {what}, of {self.step!r})"
 
     @property
     def belief(self) -> Belief:
