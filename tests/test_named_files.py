@@ -71,3 +71,9 @@ def test_readme_says_what_every_room_is_for():
     assert {place for place in told if not (ROOT / place).exists()} == set()
     rooms = {f"ekfsim/{path.parent.name}/" for path in (ROOT / "ekfsim").glob("*/__init__.py")}
     assert rooms <= told
+
+
+def test_no_two_files_of_tests_have_one_name():
+    """They are collected together, and known by that alone."""
+    names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
+    assert sorted(names) == sorted(set(names))
