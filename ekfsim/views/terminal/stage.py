@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, redirect_stderr
 from dataclasses import dataclass
 from functools import partial
-from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -109,16 +108,16 @@ def _typed(console: Console | None) -> Iterator[Keyboard]:
         with keys() as keyboard:
             yield keyboard
         return
-    printed, over = StringIO(), False  # by a filter: nothing comes between the lines of the screen
+    over = False
     try:
-        with redirect_stderr(printed), keys(drawn=console) as keyboard:
+        with redirect_stderr(console.printed), keys(drawn=console) as keyboard:
             yield keyboard
         over = True
     except (KeyboardInterrupt, StepError):
         over = True
         raise
     finally:
-        sys.stderr.write(printed.getvalue())
+        sys.stderr.write(console.printed.getvalue())
         if over:
             sys.stdout.write(console.farewell())
 

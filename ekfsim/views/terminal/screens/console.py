@@ -2,6 +2,8 @@
 
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
+from io import StringIO
 
 from ekfsim.scene import Scene
 from ekfsim.views.picture.limits import Limits
@@ -13,6 +15,7 @@ from ekfsim.views.terminal.screens.moment import Moment
 
 WIDEST, HIGHEST = 1000, 300  # columns and rows of a screen, whatever COLUMNS and LINES say
 OTHER_SCREEN, OWN_SCREEN = "\x1b[?1049h\x1b[?25l", "\x1b[?25h\x1b[?1049l"
+PRINTED = 20  # lines of what a filter prints that are shown, the last of them
 LEFT = 20  # views whose narrative stays on the terminal when the run is left
 
 
@@ -43,6 +46,9 @@ class Console:
         self._drawn: list[str] = []  # the lines that stand there
         self._drawn_for = (0, 0)
         self._inside = False
+        # what a filter of one's own prints meanwhile: nothing comes between the lines of the screen
+        self.printed = StringIO()
+        self._printed = 0  # how much of it has been shown
 
     def enter(self) -> None:
         """Take the terminal, at the start or again after Ctrl-Z."""
@@ -66,6 +72,11 @@ class Console:
         if last is None or (last.view.number, last.page) != (moment.view.number, moment.page):
             self._scroll = None
         self._read[moment.view.number] = moment.narrative
+        if said := self.printed.getvalue()[self._printed :]:
+            self._printed += len(said)
+            lines = ["The filter has printed:", *said.splitlines()[-PRINTED:]]
+            narrative = moment.narrative + "".join(f"{line}\n" for line in lines)
+            self._moment = replace(moment, narrative=narrative)
         self._draw()
 
     def refresh(self) -> None:

@@ -98,6 +98,27 @@ def test_the_terminal_is_given_back_and_taken_again():
     assert "view 1 of 4" in terminal.lines[-1]
 
 
+def test_what_a_filter_prints_stands_below_the_numbers_of_the_view_that_it_came_with():
+    terminal = Terminal()
+    console = Console(
+        PLACE, EXTENT, 0.954, Look(False, False), terminal.write, size=lambda: terminal.size
+    )
+    console.enter()
+    player = Player(PLACE, play(PLACE), console, lambda view: "saved", 0.954)
+    waiting = iter("nnq")
+
+    def next_key(timeout):
+        seen.append(" ".join(terminal.lines))
+        print("gain" if len(seen) == 1 else "", end="", file=console.printed)
+        return next(waiting)
+
+    seen = []
+    player.play(next_key)
+    assert ["The filter has printed:" in shown for shown in seen] == [False, True, False]
+    assert "gain" in seen[1]
+    assert "gain" not in console.farewell()  # it is told by itself
+
+
 def test_what_was_read_stays_once_and_in_the_order_of_the_run():
     console = playing(Terminal(), *"nnpnnn")
     left = console.farewell()
