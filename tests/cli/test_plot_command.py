@@ -96,6 +96,11 @@ def test_that_a_log_holds_no_truth_is_said(place):
     drawn = ekfsim("plot", "read.yaml", "-o", "a.png")
     assert (drawn.status, drawn.out) == (0, "a.png: ekf over 2 steps\n")
     assert drawn.err == "ekfsim: no truth is known: innovations and NIS alone\n"
+    header, move = (place / "log/entries.csv").read_text().splitlines()[:2]
+    (place / "log/entries.csv").write_text(f"{header}\n{move}\n")
+    refused = ekfsim("plot", "read.yaml", "-o", "b.png")
+    told = "ekfsim: there is nothing to plot: no truth is known, and nothing was read\n"
+    assert (refused.status, refused.err) == (2, told)
 
 
 ROOT = Path(__file__).parents[2]

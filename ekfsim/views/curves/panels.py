@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from ekfsim.errors import UsageError
 from ekfsim.geometry.ellipse import cone_factor
 from ekfsim.models.protocols import Quantity
 from ekfsim.views.curves.bands import ErrorPanel, InnovationPanel
@@ -21,11 +22,15 @@ Panel = ErrorPanel | InnovationPanel | NisPanel | NeesPanel
 def panels_of(runs: Sequence[Series], probability: float = STANDARD.probability) -> list[Panel]:
     """What there is to draw: errors, NIS and NEES; without a truth innovations and NIS.
     probability : of the bands
+
+    Raises UsageError where there is nothing.
     """
     reach = cone_factor(probability)
     if any(run.has_truth for run in runs):
         nis = [NisPanel()] if any(run.read.any() for run in runs) else []
         return [*(ErrorPanel(entry, reach) for entry in range(3)), *nis, NeesPanel()]
+    if not any(run.read.any() for run in runs):
+        raise UsageError("there is nothing to plot: no truth is known, and nothing was read")
     return [*(InnovationPanel(q, reach) for q in quantities(runs)[:MOST]), NisPanel()]
 
 
