@@ -153,7 +153,7 @@ class Frame:
     ) -> None:
         self.picture = Picture.on(paper, scene, scope, look)
         self._canvas: Any = self.picture.figure.canvas  # matplotlib leaves its methods untyped
-        self._legends: dict[object, Any] = {}  # their pixels
+        self._rows: dict[object, Any] = {}  # of the legend: their pixels
         for artist in (*self.picture.moving(), self.picture.legend):
             artist.set_animated(True)
         self._draw_still()
@@ -188,11 +188,10 @@ class Frame:
         self._still = self._canvas.copy_from_bbox(self.picture.figure.bbox)
 
     def _draw_legend(self) -> None:
-        """Draw the legend, or put the pixels there with which it was drawn before."""
-        legend = self.picture.legend
-        if legend.look in self._legends:
-            self._canvas.restore_region(self._legends[legend.look])
-            return
-        legend.draw(self._canvas.get_renderer())
-        box = legend.get_window_extent()
-        self._legends[legend.look] = self._canvas.copy_from_bbox(box.padded(4))  # a rim, too
+        """Draw each row of the legend, or put the pixels there with which it was drawn before."""
+        for look, row, box in self.picture.legend.placed():
+            if look in self._rows:
+                self._canvas.restore_region(self._rows[look])
+            else:
+                row.draw(self._canvas.get_renderer())
+                self._rows[look] = self._canvas.copy_from_bbox(box)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sized
 from functools import cache
 from typing import Any, cast
 
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
@@ -18,7 +19,7 @@ from matplotlib.transforms import Bbox
 from ekfsim.views.picture.artists import empty
 from ekfsim.views.picture.layout import COLUMN, ROW, Layout
 from ekfsim.views.picture.lettering import drawable, wrapped
-from ekfsim.views.picture.outlined import OutlinedText
+from ekfsim.views.picture.outlined import PER_POINT, OutlinedText
 from ekfsim.views.picture.samples import Handle, Sample, first, sample, style
 
 HANDLERS: dict[type, Any] = {
@@ -28,6 +29,8 @@ HANDLERS: dict[type, Any] = {
 LETTERS = 30  # in a line
 POINTS = 8.0  # the letters' size where there is room
 FEWEST = 6.0  # points; smaller ones cannot be read
+RIM = 3.0  # pixels about a row, which its lines are wide
+UP = 0.1  # rows: by as much a row's ink begins above it
 WIDE, APART = 2.4, 3.2  # heights of the letters: of a sample, and from its begin to its words
 
 
@@ -47,9 +50,12 @@ class Row:
     def __init__(self, figure: Figure, handle: Handle, words: str, points: float) -> None:
         self._em, self.lines = points / 72, 1 + words.count("\n")
         self._sample: list[Sample] = sample(handle)
+        self.left = self.top = 0.0
         inches = figure.dpi_scale_trans
         self.text = OutlinedText(0, 0, points, inches, inches, "legend-text")
         self.text.set_text(words)
+        longest = np.asarray(self.text.get_path().vertices)[:, 0].max(initial=0.0)
+        self.width = APART * self._em + points * PER_POINT * float(longest)
         for artist in (*self._sample, self.text):
             artist.set_figure(figure)
         for artist in self._sample:
@@ -57,14 +63,23 @@ class Row:
 
     def place(self, left: float, top: float) -> None:
         """Begin it at a corner, in inches."""
+        if (left, top) == (self.left, self.top):
+            return
+        self.left, self.top = left, top
         em, baseline = self._em, top - self._em
         for artist in self._sample:
             artist.fill(Bbox.from_bounds(left, baseline - 0.02 * em, WIDE * em, 0.7 * em))
         self.text.place(left + APART * em, baseline)
 
-    def __iter__(self) -> Iterator[Artist]:
+    def artists(self) -> Iterator[Artist]:
+        """All of it."""
         yield from self._sample
         yield self.text
+
+    def draw(self, renderer: Any) -> None:
+        """Draw all of it."""
+        for artist in self.artists():
+            artist.draw(renderer)
 
 
 class Key(Artist):
@@ -76,7 +91,8 @@ class Key(Artist):
         self._layout: Layout | None = None
         self._made: dict[object, Row] = {}
         self._rows: list[Row] = []
-        self.look: object = ()  # what tells it from others
+        self.look: tuple[object, ...] = ()  # what tells each row from others
+        self._pitch = ROW
         figure.add_artist(self)
         self._figure = figure
 
@@ -99,26 +115,41 @@ class Key(Artist):
             if (entry, points) not in self._made:
                 self._made[entry, points] = Row(self._figure, handle, entry[0], points)
             self._rows.append(self._made[entry, points])
-        self._place(layout, ROW * points / POINTS)
+        self._pitch = ROW * points / POINTS
+        self._place(layout)
 
     def draw(self, renderer: Any) -> None:
         """Draw all of it."""
         if self.get_visible():
             for row in self._rows:
-                for artist in row:
-                    artist.draw(renderer)
+                row.draw(renderer)
         self.stale = False
+
+    def placed(self) -> Iterator[tuple[object, Row, Bbox]]:
+        """Its rows, with what tells each from all others at any place, and the box, in pixels, that
+        nothing else of it is drawn in.
+        """
+        dpi = self._figure.dpi
+        for row, look in zip(self._rows, self.look, strict=True):
+            top = row.top + UP * self._pitch
+            below, above = (top - row.lines * self._pitch) * dpi, top * dpi
+            box = Bbox.from_extents(
+                row.left * dpi - RIM, below, (row.left + row.width) * dpi + RIM, above
+            )
+            yield (look, self._pitch, row.left, row.top), row, box
 
     def get_window_extent(self, renderer: Any = None) -> Bbox:
         """Where it is, in pixels."""
-        parts = [artist.get_window_extent(renderer) for row in self._rows for artist in row]
+        parts = [
+            artist.get_window_extent(renderer) for row in self._rows for artist in row.artists()
+        ]
         return Bbox.union(parts) if parts else Bbox.null()
 
     def get_texts(self) -> list[OutlinedText]:
         """The words of its entries."""
         return [row.text for row in self._rows]
 
-    def _place(self, layout: Layout, pitch: float) -> None:
+    def _place(self, layout: Layout) -> None:
         left, top = layout.legend
         tall = math.ceil(len(self._rows) / layout.columns)
         for number, row in enumerate(self._rows):
@@ -126,7 +157,7 @@ class Key(Artist):
             if place == 0:
                 below = top
             row.place(left + column * COLUMN, below)
-            below -= row.lines * pitch
+            below -= row.lines * self._pitch
 
 
 @cache
