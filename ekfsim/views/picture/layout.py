@@ -19,7 +19,8 @@ GAP = 0.25  # between the map and what explains it
 COLUMN = 2.25  # the legend's, as wide as its longest words
 ROW = 0.168  # of the legend
 CLOSE_TITLE, SPREAD = 0.3, 0.22  # above the close-up and below it
-LEAST_CLOSE, MOST_CLOSE = 1.7, 2.8  # the close-up's sides
+SPREAD_WIDE = 2.35  # how long the line below the close-up may be
+LEAST_CLOSE, BENEATH, MOST_CLOSE, WIDEST_CLOSE = 1.5, 1.8, 2.8, 4.5  # the close-up's sides
 LEAST = 0.1  # of anything, however small the figure
 
 
@@ -46,14 +47,20 @@ def arranged(width: float, height: float, shape: float, rows: int) -> Layout:
     """How a figure of this size is divided. shape : the map's width by its height;
     rows : of the legend
     """
-    both = _beside(width, height, shape, rows), _beneath(width, height, shape, rows)
-    return max(both, key=lambda layout: min(layout.close[2], LEAST_CLOSE) ** 4 * layout.main[2])
+    ways = (_beside, _beneath, _in_a_row)
+    return max((way(width, height, shape, rows) for way in ways), key=_worth)
 
 
 def fitting(shape: float, rows: int) -> Layout:
     """The same for a figure as high as the map asks for, to two pixels in a hundred an inch."""
     slack = arranged(WIDTH, HIGHEST, shape, rows).slack
     return arranged(WIDTH, math.ceil(50 * (HIGHEST - slack) - 1e-6) / 50, shape, rows)
+
+
+def _worth(layout: Layout) -> float:
+    """The map's area; of less worth where the close-up is too small to be read."""
+    _, _, across, high = layout.main
+    return across * high * min(layout.close[2] / LEAST_CLOSE, 1.0) ** 2
 
 
 def _beside(width: float, height: float, shape: float, rows: int) -> Layout:
@@ -76,15 +83,33 @@ def _beneath(width: float, height: float, shape: float, rows: int) -> Layout:
     """The map across the figure, close-up and legend in a row below it."""
     (left, below), top, lowest = TICKS, height - HEADER, NOTES + CAPTION
     widest = width - left - MARGIN
-    tallest = top - lowest - below - CLOSE_TITLE - SPREAD - LEAST_CLOSE
+    tallest = top - lowest - below - CLOSE_TITLE - SPREAD - BENEATH
     across = max(min(widest, tallest * shape), LEAST)
     high = across / shape
     ceiling = top - high - below - CLOSE_TITLE
     side = max(min(ceiling - lowest - SPREAD, MOST_CLOSE, widest / 3), LEAST)
-    start = left + side + GAP
+    start = left + max(side, SPREAD_WIDE) + GAP
     columns = max(int((width - start) / COLUMN), 1)
     taken = max(side, math.ceil(rows / columns) * ROW)
     return Layout(
         width, height, (left, top - high, across, high), (left, ceiling - side, side, side),
         (start, ceiling), ceiling - lowest, columns, max(ceiling - taken - SPREAD - lowest, 0.0),
+    )  # fmt: skip
+
+
+def _in_a_row(width: float, height: float, shape: float, rows: int) -> Layout:
+    """The map left, the close-up right of it, and the legend right of that: for a flat figure."""
+    (left, below), top, lowest = TICKS, height - HEADER, NOTES + CAPTION
+    tallest = top - lowest - below
+    explained = 2 * GAP + COLUMN + MARGIN
+    across = max(min(width - left - explained - SPREAD_WIDE, tallest * shape), LEAST)
+    high, start = across / shape, left + across + GAP
+    ceiling = top - CLOSE_TITLE
+    most = width - left - across - explained
+    side = max(min(most, ceiling - lowest - SPREAD, WIDEST_CLOSE), LEAST)
+    after = start + max(side, SPREAD_WIDE) + GAP
+    needed = max(high + below, CLOSE_TITLE + side + SPREAD, rows * ROW)
+    return Layout(
+        width, height, (left, top - high, across, high), (start, ceiling - side, side, side),
+        (after, top), top - lowest, 1, max(top - needed - lowest, 0.0),
     )  # fmt: skip

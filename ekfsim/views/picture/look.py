@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ekfsim.errors import UsageError
 
-NARROWEST, LOWEST = 5.0, 4.2  # inches of a picture
+NARROWEST, LOWEST = 6.0, 4.5  # inches of a picture
 
 
 @dataclass(frozen=True, slots=True)
