@@ -130,8 +130,9 @@ def _stretched(belief: Belief, entries: list[Entry], layout: Layout) -> list[Ste
     judged = _judged(after, posteriors, entries, layout)
     priors = [belief, *posteriors]
     return records(
-        Step, n, entries, priors, posteriors, predictions, nothing, nothing, judged, repeat(layout)
-    )
+        Step, n, entries, priors, posteriors, predictions, nothing, nothing, judged,
+        repeat(layout), nothing,
+    )  # fmt: skip
 
 
 def is_planar(F: Array, way: Array) -> bool:
