@@ -65,10 +65,16 @@ def _scene_to_drive(place: str, out: Path, world: str | None, **chosen: Any) -> 
     """The scene of a commands file, or that of a world in which nothing has been done yet."""
     from ekfsim.files.given.given import Given
     from ekfsim.files.packaged import packaged, resolve
-    from ekfsim.files.scenes.one_file import kind_of
+    from ekfsim.files.scenes.one_file import kind_of_tree
+    from ekfsim.files.source import as_written
+    from ekfsim.files.yaml.parsing import parse
+    from ekfsim.views.driving.course import RECORDED, refusal
 
     path = resolve(place, "commands" if place in packaged("commands") else "worlds")
-    if kind_of(path) != "world":
+    root, _ = parse(as_written(path, str(path)), str(path))
+    if root.at(("recording",)) is not None:  # even where it names no log
+        raise refusal(place, RECORDED)
+    if kind_of_tree(root) != "world":
         return scene_of(str(path), world, **chosen)
     if world is not None:
         raise UsageError(f"--world: {place} is a world itself; leave this out")

@@ -126,6 +126,7 @@ def test_what_obeys_no_commands_is_not_driven(name):
         (("nowhere",), "'nowhere' is neither a file nor one of the packaged worlds"),
         (("furnished-rom",), "did you mean 'furnished-room'?"),
         (("nowhere.yaml",), "nowhere.yaml: no such file"),
+        (("mower_log",), "mower_log: cannot be driven: it is a recorded log"),
         (("world.yaml", "--world", "room"), "--world: world.yaml is a world itself"),
         (("world.yaml", "-o", "mine.py"), "mine.py: commands are no filter"),
         (("world.yaml", "-o", "."), "this is a folder; name a file"),

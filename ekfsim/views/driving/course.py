@@ -23,6 +23,7 @@ from ekfsim.views.playback.parting import Parting
 from ekfsim.views.playback.playback import Unrolling, side_by_side
 from ekfsim.views.playback.view import View
 
+RECORDED = "it is a recorded log, and what happened in it stays as it is"
 DRAWING = Move | Sense  # the commands that draw numbers
 
 
@@ -242,11 +243,12 @@ class Watch:
 def refuse_what_is_not_driven(scene: Scene) -> None:
     """Raise UsageError where the robot of a scene obeys no commands."""
     if scene.log is not None:
-        wrong = "it is a recorded log, and what happened in it stays as it is"
-    elif not scene.commanded:
+        raise refusal(scene.commands_source, RECORDED)
+    if not scene.commanded:
         wrong = f"the robot of the system {scene.world.system} follows its way and no commands"
-    else:
-        return
-    raise UsageError(
-        f"{scene.commands_source}: cannot be driven: {wrong}; drive a world of the classroom"
-    )
+        raise refusal(scene.commands_source, wrong)
+
+
+def refusal(source: str, wrong: str) -> UsageError:
+    """Why what was named cannot be driven, and what can."""
+    return UsageError(f"{source}: cannot be driven: {wrong}; drive a world of the classroom")
