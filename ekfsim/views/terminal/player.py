@@ -256,10 +256,14 @@ class Player:
         view = self._view(self.number)
         revised = self.number > 0 and not view.beam and self._view(self.number - 1).beam
         before = self._narrated(self._view(self.number - 1)) if revised else ""
+        told = self._told(view)  # looks ahead, whether the run is over
+        last = self.playback.over and self.number == len(self.playback) - 1
+        if last and not note and self.playback.failure is not None and not self.screen.keeps:
+            note = self._over()  # the picture alone does not say so
         self._page = page
         pace = "" if self.pace.seconds is None else f" · every {self.pace.seconds:g} s"
         moment = Moment(
-            view, self._told(view), self._place + pace, self.explain, before, passed, note, page,
+            view, told, self._place + pace, self.explain, before, passed, note, page,
             typed, self.hints,
         )  # fmt: skip
         self.screen.show(moment)

@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 
 POLL = 0.05  # s between two looks at the window while no key is pressed
 RESIZED = 0.2  # s between two looks at the size of the terminal
-MARGIN = 2  # rows of the terminal left free of the picture
+# rows of the terminal left free of the picture, and one more for the hint on the keys
+MARGIN = 2
 WIDEST, HIGHEST = 1000, 300  # columns and rows of a picture, whatever COLUMNS and LINES say
 NextKey = Callable[[float | None], str | None]
 
@@ -159,7 +160,7 @@ def _console(scene: Scene, extent: Scope, look: Look) -> Console:
 def _drawn(scene: Scene, extent: Scope, probability: float, view: View) -> str:
     """The picture of a view in characters, as large as the terminal allows."""
     columns, rows = shutil.get_terminal_size()
-    e, size = extent.at(view), (min(columns - 1, WIDEST), min(rows - MARGIN, HIGHEST))
+    e, size = extent.at(view), (min(columns - 1, WIDEST), min(rows - MARGIN - _somebody(), HIGHEST))
     coloured = sys.stdout.isatty() and not {"NO_COLOR"} & set(os.environ)
     coloured = coloured and os.environ.get("TERM") != "dumb"
     bounds = e.left, e.right, e.bottom, e.top

@@ -1,4 +1,5 @@
 import io
+import itertools
 from contextlib import contextmanager
 from itertools import groupby
 
@@ -8,6 +9,7 @@ from scenes import scene
 
 from ekfsim.commands import Kidnap, Move, Sense
 from ekfsim.diagnostics.summary import Summary
+from ekfsim.errors import StepError
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
 from ekfsim.views.playback.playback import views
@@ -322,3 +324,16 @@ def test_a_long_way_tells_how_far_it_has_come(monkeypatch):
     Player(PLACE, play(PLACE), screen, lambda view: "", 0.954).play(lambda timeout: next(waiting))
     assert said[0] == "to the end: step 0 of 3 · Ctrl-C stops"
     assert len(said) == 5
+
+
+def test_where_a_run_fails_its_last_view_says_so_without_a_key_more():
+    def failing():
+        yield from itertools.islice(play(PLACE), 2)
+        raise StepError("too far")
+
+    screen, waiting = Screen(), iter("nq")
+    player = Player(PLACE, failing(), screen, lambda view: "", 0.954)
+    with pytest.raises(StepError, match="too far"):
+        player.play(lambda timeout: next(waiting))
+    assert [moment.note[:15] for moment in screen.moments] == ["", "The run failed "]
+    assert "The run failed: too far" in screen.moments[-1].narrative
