@@ -39,6 +39,7 @@ ROWS = [
     Row("study tour, CPU per run", f"{STUDY} --runs {RUNS}", 0.48, 0.35, RUNS),
     Row("study tour --fast, CPU per run", f"{STUDY} --runs {RUNS} --fast", 0.28, 0.2, RUNS),
     Row("run mower", "run mower", 0.5, 0.3, rounds=5),
+    Row("render tour to a GIF", "render tour -o GIF --force", 0.7, 0.6),
     Row("100 runs of study mower", "study MOWER --expect --runs 100", 0.4, 0.25, rounds=2),
 ]
 WALL = Row("run tour, whole process", "run tour", 0.7, 0.5, rounds=15)
@@ -60,6 +61,7 @@ def main() -> None:
             name.upper(): promising(older.folder / "commands" / f"{name}.yaml", Path(folder))
             for name in ("tour", "mower")
         }
+        scenes["GIF"] = str(Path(folder) / "tour.gif")
         print(HEAD)
         for row in (*ROWS, WALL, *([MILLION] if given.million else [])):
             if given.only not in row.what:

@@ -30,6 +30,7 @@ from ekfsim.views.words.captions import away, watching
 from ekfsim.views.words.numbers import length
 
 BODY = 0.022  # of the picture's longer side: the robot's radius
+SLENDER = 4.0  # times the shorter side; that is what it is measured by where the longer is longer
 # of the close-up's width: what the cone and the true heading are measured by there
 CLOSE_BODY = 0.07
 CERTAIN = 0.1  # of the picture's longer side: the close-up's width where nothing is uncertain
@@ -87,9 +88,11 @@ class Main:
 
     def show(self, view: View, read: Beam | Sight | None) -> None:
         """Move the artists to a view. read : what is drawn of its reading"""
-        self.belief.show(view, BODY * self.limits.size)
+        shorter = min(self.limits.width, self.limits.height)
+        unit = BODY * min(self.limits.size, SLENDER * shorter)
+        self.belief.show(view, unit)
         for artists, other in zip(self.others, view.others, strict=False):
-            artists.show(other, BODY * self.limits.size)
+            artists.show(other, unit)
         self.beam.show(read if isinstance(read, Beam) else None, 2 * self.limits.size)
         self.sight.show(read if isinstance(read, Sight) else None)
         self.fixes.show(view.step.entry)

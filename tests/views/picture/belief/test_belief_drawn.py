@@ -17,6 +17,7 @@ from ekfsim.views.picture.artists import empty
 from ekfsim.views.picture.belief.belief import BeliefArtists
 from ekfsim.views.picture.belief.warned import ALARM_DASHES
 from ekfsim.views.picture.belief.ways import RECKONED_DASHES, TRUE_DASHES
+from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.panels import Main, reading
 from ekfsim.views.playback.playback import views
 
@@ -163,3 +164,16 @@ def test_the_robot_does_not_cover_its_ellipse(unit, hollow):
     assert (body.get_facecolor()[3] == 0) is hollow
     assert np.abs(body.get_xy()[:27] - view.pose.mean[:2]).max() == pytest.approx(unit, rel=0.01)
     assert (drawn.reference.get_markersize() < 5) is hollow
+
+
+@pytest.mark.parametrize(("height", "radius"), [(10.0, 0.22 * 2), (2.0, 0.022 * 8)])
+def test_a_robot_in_a_corridor_is_no_wider_than_it(height, radius):
+    run = scene(sigma=SIGMA)
+    drawn = main(run)
+    drawn.limits = Limits(0.0, 0.0, 20.0, height)
+    (view,) = views(play(run))
+    drawn.show(view, None)
+    gids = seen(drawn.axes)
+    body = artist(drawn.axes, "body" if "body" in gids else "hollow-body")
+    around = np.linalg.norm(body.get_xy()[:27] - view.pose.mean[:2], axis=1)
+    assert around == pytest.approx(radius)
