@@ -112,12 +112,13 @@ function frame({ wide, away }) {
 
 // Everything that depends on the width of the page.
 function lay() {
+  const widths = strips.map(strip => strip.svg.clientWidth); // asked for before anything is changed
   const width = Math.max(280, at("pictures").clientWidth), [left, bottom, right, top] = lesson.limits;
   const wide = width - MARGIN.left - MARGIN.right, most = Math.max(220, 0.42 * innerHeight);
   const height = Math.min(most, wide * (top - bottom) / (right - left)) + MARGIN.top + MARGIN.bottom;
   map.fit(lesson.limits, width, height, MARGIN);
   map.label();
-  for (const strip of strips) strip.draw(shown);
+  strips.forEach((strip, i) => strip.draw(widths[i], shown));
   show();
 }
 

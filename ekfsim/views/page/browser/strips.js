@@ -14,8 +14,8 @@ class Strip {
   get any() { return lesson.views.some(view => view.by.some(belief => belief[this.key])); }
 
   // Draw everything that stays; `show` moves the cursor alone.
-  draw(shown) {
-    const width = this.svg.clientWidth, height = 74, svg = this.svg, { key } = this, n = Math.max(1, lesson.views.length - 1);
+  draw(width, shown) {
+    const height = 74, svg = this.svg, { key } = this, n = Math.max(1, lesson.views.length - 1);
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     svg.replaceChildren();
     this.x = i => 38 + (width - 44) * i / n;
