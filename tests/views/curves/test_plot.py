@@ -223,7 +223,7 @@ def test_a_long_run_keeps_its_peaks_and_says_that_it_is_thinned():
 )
 def test_every_system_is_drawn_without_a_warning(name):
     """Each warning is an error here (pyproject.toml)."""
-    run = Series.of(islice(play(load_scene(f"commands/{name}.yaml")), 3000), "ekf")
+    run = Series.of(islice(play(load_scene(f"commands/{name}.yaml")), 800), "ekf")
     figure, _ = drawn(run)
     figure.canvas.draw()
     assert len(figure.axes) == 5 if run.read.any() else 4
@@ -232,7 +232,7 @@ def test_every_system_is_drawn_without_a_warning(name):
 def test_names_are_drawn_as_they_are():
     """A file's name is no mathematics, and one that begins with _ is not left out."""
     names = ["_$x^2$.py", "a\\frac{.py"]
-    figure, _ = drawn(*(Series.of(play(rich()), name) for name in names))
+    figure, _ = drawn(*(Series.of(play(scene(Move(1, 0), Sense(0.1))), name) for name in names))
     figure.canvas.draw()
     told = words(figure.legends[0])
     assert told[0].startswith(" _$x^2$.py: ")
