@@ -27,8 +27,8 @@ def render(
     strip: Sequence[Series] = (),
     force: bool = False,
 ) -> None:
-    """Draw a view into a .png, the same as in a folder of all, or into an .svg or a .pdf, whose
-    letters are outlines in the one and text in the other. With a strip of the curves of each filter
+    """Draw a view into a .png, the same as in a folder of all, or into an .svg or a .pdf, which
+    need no font where they are shown. With a strip of the curves of each filter
     beneath it, where they are given, in a .png alone.
 
     Raises UsageError where the file is of another kind, or exists and `force` is False.

@@ -4,7 +4,7 @@ import numpy as np
 
 from ekfsim.geometry import Array
 
-SQUARE = 3.0  # pixels
+SQUARE = 6.0  # pixels
 
 
 class Crossed:
@@ -37,8 +37,9 @@ class Crossed:
 
     def inside(self, boxes: Array) -> Array:
         """Whether a line crosses each of these. boxes : (n, 4) pixels"""
-        total = np.zeros(np.add(self._seen.shape, 1), int)
-        total[1:, 1:] = self._seen.cumsum(axis=0).cumsum(axis=1)
+        total = np.zeros(np.add(self._seen.shape, 1), np.int32)
+        np.cumsum(self._seen, axis=0, dtype=np.int32, out=total[1:, 1:])
+        np.cumsum(total, axis=1, out=total)
         rows, columns = self._seen.shape
         low = np.floor((boxes[:, :2] - self._low) / SQUARE).astype(int)
         high = np.floor((boxes[:, 2:] - self._low) / SQUARE).astype(int) + 1
