@@ -63,11 +63,9 @@ def test_a_map_of_a_room_leaves_no_file_out(path):
     assert len(named & own) < 2 or own <= named
 
 
-def test_readme_says_what_every_room_is_for():
-    block = (
-        (ROOT / "README.md").read_text(encoding="utf-8").partition("## What each file is for")[2]
-    )
-    told = {place for line in block.split("```")[1].splitlines() for place in line[:23].split()}
+def test_it_is_said_what_every_room_is_for():
+    *_, block, _ = (ROOT / "docs/architecture.md").read_text(encoding="utf-8").split("```")
+    told = {place for line in block.splitlines() for place in line[:23].split()}
     assert {place for place in told if not (ROOT / place).exists()} == set()
     rooms = {f"ekfsim/{path.parent.name}/" for path in (ROOT / "ekfsim").glob("*/__init__.py")}
     assert rooms <= told

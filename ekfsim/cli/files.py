@@ -81,16 +81,22 @@ def _check_filter(place: str) -> int:
 
 @click.command(short_help="Print the JSON Schema by which editors check a file.")
 @click.argument("kind", type=click.Choice(["world", "commands", "study", "homework"]))
-def schema(kind: str) -> None:
+@click.option("--markdown", is_flag=True, help="Tables of all keys, for people to read.")
+def schema(kind: str, markdown: bool) -> None:
     """Print the JSON Schema from which editors complete and check a world,
     commands, study or homework file.
     """
     import json
     from typing import cast
 
+    from ekfsim.files.yaml.reference import reference
     from ekfsim.files.yaml.schema import Kind, json_schema
 
-    click.echo(json.dumps(json_schema(cast("Kind", kind)), indent=2, ensure_ascii=False))
+    asked = cast("Kind", kind)
+    if markdown:
+        click.echo(reference(asked), nl=False)
+        return
+    click.echo(json.dumps(json_schema(asked), indent=2, ensure_ascii=False))
 
 
 @click.command("list", short_help="List what comes along, or all that is said of NAME.")

@@ -13,7 +13,7 @@ from ekfsim.errors import RunError, UsageError
 from ekfsim.printable import in_a_line
 
 
-@click.command(short_help="Grade SUBMISSIONS by HOMEWORK.yaml, each in a process of its own.")
+@click.command(short_help="Grade SUBMISSIONS by HOMEWORK.yaml, each in its own process.")
 @click.argument("homework", metavar="HOMEWORK.yaml", type=Source())
 @click.argument("submissions", metavar="SUBMISSION…", nargs=-1, required=True, type=Source())
 @click.option("--out", "-o", type=Result(), required=True, help="A folder for the results.")
