@@ -1,10 +1,25 @@
 // The matrices that a view's numbers come from, as tables with symbols.
 
 const MEANT = {
-  P: "covariance of the estimate", F: "∂f/∂x", G: "∂f/∂u", H: "∂h/∂x", R: "covariance of the reading's noise",
-  S: "S = H P⁻ Hᵀ + R, covariance of the innovation", ν: "ν = z − h(x⁻), the innovation", K: "K = P⁻ Hᵀ S⁻¹, the gain",
+  P: "covariance of the estimate",
+  F: "∂f/∂x",
+  G: "∂f/∂u",
+  H: "∂h/∂x",
+  R: "covariance of the reading's noise",
+  S: "S = H P⁻ Hᵀ + R, covariance of the innovation",
+  ν: "ν = z − h(x⁻), the innovation",
+  K: "K = P⁻ Hᵀ S⁻¹, the gain",
 };
-const TOGETHER = { P: ["P"], F: ["F", "G"], G: ["F", "G"], H: ["H", "S", "ν"], S: ["H", "S", "ν"], ν: ["H", "S", "ν"], R: ["R"], K: ["K"] };
+const TOGETHER = {
+  P: ["P"],
+  F: ["F", "G"],
+  G: ["F", "G"],
+  H: ["H", "S", "ν"],
+  S: ["H", "S", "ν"],
+  ν: ["H", "S", "ν"],
+  R: ["R"],
+  K: ["K"],
+};
 
 // Let a shape or a button tell its matrix: to the mouse, to the finger, to the keyboard.
 function ask(part, symbol) {
@@ -14,17 +29,31 @@ function ask(part, symbol) {
     part.setAttribute("role", "button");
     part.setAttribute("aria-label", `${symbol}: ${MEANT[symbol]}`);
   }
-  for (const event of ["mouseenter", "focus", "click"]) part.addEventListener(event, () => choose(symbol));
+  for (const event of ["mouseenter", "focus", "click"])
+    part.addEventListener(event, () => choose(symbol));
 }
 
 // inputs : how many a view of a driven robot gathers
 function table(symbol, belief, inputs = 1) {
-  const state = lesson.state, read = belief.z ?? [], given = belief.u ?? [];
-  const [across, down] = { P: [state, state], F: [state, state], G: [given, state], H: [state, read], R: [read, read], S: [read, read], ν: [[""], read], K: [read, state] }[symbol];
+  const state = lesson.state,
+    read = belief.z ?? [],
+    given = belief.u ?? [];
+  const [across, down] = {
+    P: [state, state],
+    F: [state, state],
+    G: [given, state],
+    H: [state, read],
+    R: [read, read],
+    S: [read, read],
+    ν: [[""], read],
+    K: [read, state],
+  }[symbol];
   const value = belief[symbol];
-  const cells = symbol === "P" ? symmetric(value) : symbol === "ν" ? value.map(one => [one]) : value;
+  const cells =
+    symbol === "P" ? symmetric(value) : symbol === "ν" ? value.map(one => [one]) : value;
   const made = document.createElement("table");
-  const last = inputs > 1 && "FG".includes(symbol) ? `, of the last of ${inputs} motion inputs` : "";
+  const last =
+    inputs > 1 && "FG".includes(symbol) ? `, of the last of ${inputs} motion inputs` : "";
   made.createCaption().textContent = `${symbol}  ${MEANT[symbol]}${last}`;
   const head = made.createTHead().insertRow();
   for (const name of ["", ...across]) head.appendChild(heading(name, "col"));
@@ -32,7 +61,8 @@ function table(symbol, belief, inputs = 1) {
   cells.forEach((row, i) => {
     const line = body.insertRow();
     line.appendChild(heading(down[i], "row"));
-    for (const number of row) line.insertCell().textContent = number === null ? "–" : String(number).replace("-", "−");
+    for (const number of row)
+      line.insertCell().textContent = number === null ? "–" : String(number).replace("-", "−");
   });
   return made;
 }

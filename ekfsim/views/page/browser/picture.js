@@ -11,9 +11,13 @@ function element(name, attributes = {}, text = "") {
 }
 
 function trace(points, close = false) {
-  let d = "", pen = "M";
+  let d = "",
+    pen = "M";
   for (let i = 0; i + 1 < points.length; i += 2) {
-    if (points[i] === null) { pen = "M"; continue; } // here a way breaks
+    if (points[i] === null) {
+      pen = "M";
+      continue;
+    } // here a way breaks
     d += pen + points[i] + " " + points[i + 1];
     pen = "L";
   }
@@ -22,7 +26,8 @@ function trace(points, close = false) {
 
 // The recorded positions up to a step that the filter is not given.
 function fixesUntil(step) {
-  const [steps, points] = lesson.fixes ?? [[], []], n = steps.findIndex(each => each > step);
+  const [steps, points] = lesson.fixes ?? [[], []],
+    n = steps.findIndex(each => each > step);
   return points.slice(0, 2 * (n < 0 ? steps.length : n));
 }
 
@@ -30,7 +35,9 @@ class Picture {
   // close : whether it is the close-up, which has no robot that could cover its ellipse
   constructor(svg, close) {
     Object.assign(this, { svg, close, parts: new Map(), marks: [] });
-    this.ground = svg.appendChild(element("rect", { class: lesson.world.boundary.length ? "ground" : "ground open" }));
+    this.ground = svg.appendChild(
+      element("rect", { class: lesson.world.boundary.length ? "ground" : "ground open" }),
+    );
     const clip = svg.appendChild(element("clipPath", { id: svg.id + "-clip" }));
     this.window = clip.appendChild(element("rect"));
     const inside = svg.appendChild(element("g", { "clip-path": `url(#${svg.id}-clip)` }));
@@ -77,17 +84,23 @@ class Picture {
     world.obstacles.forEach((each, i) => this.line("obstacle" + i, "obstacle", each.ring, true));
     if (meant) this.line("meant", "meant", meant, true);
     if (world.boundary.length) this.line("boundary", "boundary", world.boundary, true);
-    if (told) [told.boundary, ...told.obstacles.map(each => each.ring)].forEach((ring, i) => this.line("told" + i, "told", ring, true));
+    if (told)
+      [told.boundary, ...told.obstacles.map(each => each.ring)].forEach((ring, i) =>
+        this.line("told" + i, "told", ring, true),
+      );
     this.landmarks = landmarks.flatMap(([x, y]) => [x, y]);
   }
 
   // Fit a rectangle of the plane into so many pixels.
   fit([left, bottom, right, top], width, height, margin) {
-    const wide = width - margin.left - margin.right, high = height - margin.top - margin.bottom;
+    const wide = width - margin.left - margin.right,
+      high = height - margin.top - margin.bottom;
     const scale = Math.min(wide / (right - left), high / (top - bottom));
-    const east = margin.left + (wide - scale * (right - left)) / 2, south = margin.top + (high + scale * (top - bottom)) / 2;
+    const east = margin.left + (wide - scale * (right - left)) / 2,
+      south = margin.top + (high + scale * (top - bottom)) / 2;
     const box = { x: margin.left, y: margin.top, width: wide, height: high };
-    for (const rect of [this.ground, this.window]) for (const [key, value] of Object.entries(box)) rect.setAttribute(key, value);
+    for (const rect of [this.ground, this.window])
+      for (const [key, value] of Object.entries(box)) rect.setAttribute(key, value);
     this.matrix = [scale, 0, 0, -scale, east - scale * left, south + scale * bottom];
     this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     this.plane.setAttribute("transform", `matrix(${this.matrix.join(" ")})`);
@@ -105,87 +118,179 @@ class Picture {
     const ways = lesson.ways;
     this.line("true-path", "true-path", ways.true.slice(0, 2 * view.true));
     this.line("reckoned", "reckoned", ways.reckoned.slice(0, 2 * view.reckoned));
-    view.by.forEach((belief, i) => this.belief(belief, before?.by[i], unit, i, i === told, shown[i]));
+    view.by.forEach((belief, i) =>
+      this.belief(belief, before?.by[i], unit, i, i === told, shown[i]),
+    );
     this.reading(shown[told] ? view.by[told].seen : null);
     const truth = view.truth;
-    this.line("true-heading", "true-heading", truth ? [truth[0], truth[1], ...ahead(truth, TRUE_HEADING * unit)] : []);
+    this.line(
+      "true-heading",
+      "true-heading",
+      truth ? [truth[0], truth[1], ...ahead(truth, TRUE_HEADING * unit)] : [],
+    );
     this.mark("landmarks", "landmark", "triangle", this.landmarks);
     lesson.filters.forEach((filter, i) =>
-      this.mark("reference" + i, i ? "second reference" : "reference", filter.mark ?? "o", shown[i] ? view.by[i].pose.slice(0, 2) : []).style.setProperty("--own", filter.ink ?? ""));
+      this.mark(
+        "reference" + i,
+        i ? "second reference" : "reference",
+        filter.mark ?? "o",
+        shown[i] ? view.by[i].pose.slice(0, 2) : [],
+      ).style.setProperty("--own", filter.ink ?? ""),
+    );
     this.mark("fixes", "fix", "plus", view.fix ?? fixesUntil(view.step));
     this.mark("truth", "truth", "dot", truth ? truth.slice(0, 2) : []);
     this.arrange();
   }
 
   belief(belief, before, unit, i, told, shown) {
-    const { pose } = belief, P = poseBlock(symmetric(belief.P), lesson.places), k = lesson.k;
+    const { pose } = belief,
+      P = poseBlock(symmetric(belief.P), lesson.places),
+      k = lesson.k;
     const path = shown ? [...lesson.ways.paths[i].slice(0, 2 * belief.path), pose[0], pose[1]] : [];
     const oval = shown ? outline(pose, P, k) : [];
     const old = shown && before ? before.pose : null;
     if (i) {
       const { ink, dashes } = lesson.filters[i];
-      for (const part of [this.line("path" + i, "second", path), this.line("ellipse" + i, "second", oval, true, told ? "P" : ""),
-        this.line("heading" + i, "second", shown ? [pose[0], pose[1], ...ahead(pose, NOSE * unit)] : [])]) {
+      for (const part of [
+        this.line("path" + i, "second", path),
+        this.line("ellipse" + i, "second", oval, true, told ? "P" : ""),
+        this.line(
+          "heading" + i,
+          "second",
+          shown ? [pose[0], pose[1], ...ahead(pose, NOSE * unit)] : [],
+        ),
+      ]) {
         part.style.setProperty("--own", ink);
         part.style.strokeDasharray = dashes;
       }
       return;
     }
-    const half = lesson.cone * Math.sqrt(Math.max(P[2][2], 0)), [off, turned] = belief.outside ?? [0, 0];
-    this.line("cone", turned ? "cone wrong" : "cone", shown ? sector(pose, half, CONE * unit) : [], true, "P");
+    const half = lesson.cone * Math.sqrt(Math.max(P[2][2], 0)),
+      [off, turned] = belief.outside ?? [0, 0];
+    this.line(
+      "cone",
+      turned ? "cone wrong" : "cone",
+      shown ? sector(pose, half, CONE * unit) : [],
+      true,
+      "P",
+    );
     const was = old ? poseBlock(symmetric(before.P), lesson.places) : null;
-    this.line("ghost-cone", "ghost", old ? sector(old, lesson.cone * Math.sqrt(Math.max(was[2][2], 0)), CONE * unit) : [], true);
-    if (lesson.conditional) for (const [sign, name] of [[1, "plus"], [-1, "minus"]])
-      this.line("conditional" + name, "conditional " + name, shown ? outline(...conditioned(pose, P, sign * half), k) : [], true);
+    this.line(
+      "ghost-cone",
+      "ghost",
+      old ? sector(old, lesson.cone * Math.sqrt(Math.max(was[2][2], 0)), CONE * unit) : [],
+      true,
+    );
+    if (lesson.conditional)
+      for (const [sign, name] of [
+        [1, "plus"],
+        [-1, "minus"],
+      ])
+        this.line(
+          "conditional" + name,
+          "conditional " + name,
+          shown ? outline(...conditioned(pose, P, sign * half), k) : [],
+          true,
+        );
     this.line("path", "path", path);
     const covers = ellipse(P, k).major < lesson.covered * unit; // then it is hollow
-    if (!this.close) this.line("body", covers ? "body hollow" : "body", shown ? robot(pose, unit) : [], true);
+    if (!this.close)
+      this.line("body", covers ? "body hollow" : "body", shown ? robot(pose, unit) : [], true);
     const moved = old && belief.K ? [old[0], old[1], pose[0], pose[1]] : [];
     this.line("shift", "shift", moved);
     this.line("shift-hit", "hit", moved, false, "K");
     this.line("ellipse", off ? "ellipse wrong" : "ellipse", oval, true, "P");
     this.line("ghost", "ghost", old ? outline(old, was, k) : [], true);
-    this.mark("crowd", "particle", "dot", shown && belief.crowd || []);
+    this.mark("crowd", "particle", "dot", (shown && belief.crowd) || []);
   }
 
   reading(seen) {
-    const { line = [], style = "used", way = [], end = [], expected = [], place = [], probes = [], walls = [] } = seen ?? {};
-    this.line("walls", "other-wall", walls.flatMap(wall => [...wall, null, null]));
-    this.line("probes", "probe", probes.flatMap(probe => [...probe, null, null]));
+    const {
+      line = [],
+      style = "used",
+      way = [],
+      end = [],
+      expected = [],
+      place = [],
+      probes = [],
+      walls = [],
+    } = seen ?? {};
+    this.line(
+      "walls",
+      "other-wall",
+      walls.flatMap(wall => [...wall, null, null]),
+    );
+    this.line(
+      "probes",
+      "probe",
+      probes.flatMap(probe => [...probe, null, null]),
+    );
     this.line("way", "way", way);
     this.line("beam", "beam " + style, line);
     this.line("beam-hit", "hit", line, false, "H");
     this.mark("place", "place", "ring", place);
     this.mark("end", seen?.hollow ? "end hollow" : "end", seen?.in ?? "air", end);
     this.mark("expected", "expected", "diamond", expected);
-    this.mark("starts", "end", "dot", probes.flatMap(probe => probe.slice(0, 2)));
+    this.mark(
+      "starts",
+      "end",
+      "dot",
+      probes.flatMap(probe => probe.slice(0, 2)),
+    );
   }
 
   // Put the marks where the matrix puts their points.
   arrange() {
     for (const group of this.marks) {
-      for (const one of group.children) one.setAttribute("transform", `translate(${this.pixel(one.place).join(" ")})`);
+      for (const one of group.children)
+        one.setAttribute("transform", `translate(${this.pixel(one.place).join(" ")})`);
     }
   }
 
   // Numbers along two sides, and the obstacles' names where they have room.
   label() {
     this.words.replaceChildren();
-    const { x, y, width, height } = this.box, [scale, , , , east, south] = this.matrix, [ox, oy] = lesson.origin;
-    const step = oneTwoFive(60 / scale), digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-    const write = (place, text, more) => this.words.appendChild(element("text", { x: place[0], y: place[1], ...more }, text));
-    const each = (from, to, put) => { for (let i = Math.ceil(from / step); i * step <= to; i++) put(i * step); };
-    each((x - east) / scale + ox, (x + width - east) / scale + ox, m => write([scale * (m - ox) + east, y + height + 14], m.toFixed(digits) + " m", { class: "tick", "text-anchor": "middle" }));
-    each((south - y - height) / scale + oy, (south - y) / scale + oy, m => write([x - 4, south - scale * (m - oy) + 4], m.toFixed(digits), { class: "tick", "text-anchor": "end" }));
+    const { x, y, width, height } = this.box,
+      [scale, , , , east, south] = this.matrix,
+      [ox, oy] = lesson.origin;
+    const step = oneTwoFive(60 / scale),
+      digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    const write = (place, text, more) =>
+      this.words.appendChild(element("text", { x: place[0], y: place[1], ...more }, text));
+    const each = (from, to, put) => {
+      for (let i = Math.ceil(from / step); i * step <= to; i++) put(i * step);
+    };
+    each((x - east) / scale + ox, (x + width - east) / scale + ox, m =>
+      write([scale * (m - ox) + east, y + height + 14], m.toFixed(digits) + " m", {
+        class: "tick",
+        "text-anchor": "middle",
+      }),
+    );
+    each((south - y - height) / scale + oy, (south - y) / scale + oy, m =>
+      write([x - 4, south - scale * (m - oy) + 4], m.toFixed(digits), {
+        class: "tick",
+        "text-anchor": "end",
+      }),
+    );
     const taken = lesson.landmarks.map(mark => this.pixel(mark)); // no number stands on another
     for (const [east, north, number] of lesson.landmarks) {
-      const [a, b] = this.pixel([east, north]), place = [a + 7 + 3 * number.length, b + 6];
-      if (taken.some(([c, d]) => Math.abs(c - place[0]) < 6 + 4 * number.length && Math.abs(d - place[1]) < 9 && (c !== a || d !== b))) continue;
+      const [a, b] = this.pixel([east, north]),
+        place = [a + 7 + 3 * number.length, b + 6];
+      if (
+        taken.some(
+          ([c, d]) =>
+            Math.abs(c - place[0]) < 6 + 4 * number.length &&
+            Math.abs(d - place[1]) < 9 &&
+            (c !== a || d !== b),
+        )
+      )
+        continue;
       taken.push(place);
       write([a + 6, b + 10], number, { class: "tick" });
     }
     for (const { name, ring, at } of lesson.world.obstacles) {
-      const half = 3.3 * name.length / scale, room = [-half, half].every(by => inside(ring, [at[0] + by, at[1]]));
+      const half = (3.3 * name.length) / scale,
+        room = [-half, half].every(by => inside(ring, [at[0] + by, at[1]]));
       const place = this.pixel(at);
       if (room) write([place[0], place[1] + 4], name, { class: "name" });
     }
