@@ -11,7 +11,9 @@ A notebook needs no more than this module:
 
 and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes;
 `ekfsim.plot_errors(steps)` plots errors with their ±2σ, NIS and NEES over the steps;
-`ekfsim.table(steps)` has the columns of `run --csv`, a DataFrame where pandas is installed.
+`ekfsim.table(steps)` has the columns of `run --csv`, a DataFrame where pandas is installed;
+`ekfsim.animate(scene)` plays in the cell. Scenes, steps, views, summaries and studies show
+themselves there, and nobody can write into what is handed out. All of it: docs/notebook.ipynb.
 `scene.with_("noise.rangeSigmaRatio", 0.1)` is the same scene with another number, told to the truth
 and to the filter alike, as `--set` does it; so are `scene.with_(filter="ukf", gate=0.99, seed=3)`
 and `scene.with_("filter.particles", 20_000)`, a number that a filter alone has (see Tuning).

@@ -28,6 +28,7 @@ from ekfsim.files.scenes.settings import (
 )
 from ekfsim.files.yaml.marked import Node
 from ekfsim.files.yaml.telling import nearest, tell
+from ekfsim.filters.choice import brought
 from ekfsim.printable import quoted
 from ekfsim.scene import Scene
 from ekfsim.world import World
@@ -65,7 +66,7 @@ def scene_with(scene: Scene, asked: Mapping[str, object]) -> tuple[Scene, list[s
     """The same, and what is to be said of it."""
     settings = settings_of(asked)
     if OF_FILTERS in asked:
-        first, *others = filters_in(_names(asked[OF_FILTERS]), OF_FILTERS)
+        first, *others = filters_in(_names(asked[OF_FILTERS]), OF_FILTERS, brought())
         scene = replace(scene, filter=first, beside=tuple(others))
     if SEED in asked:
         scene = replace(scene, seed=_seed(asked[SEED]))

@@ -87,13 +87,14 @@ def repeated(settings: Sequence[Setting]) -> Setting | None:
     return None
 
 
-def filters_in(text: str, option: str = "--filter") -> tuple[str, ...]:
+def filters_in(text: str, option: str = "--filter", brought: Sequence[str] = ()) -> tuple[str, ...]:
     """The filters that NAME,… names, each a built-in name or the absolute place of one's own.
+    brought : names of those that were made of functions here
 
     Raises UsageError where one of them is none, or stands twice; FaultError where the code of one
     fails.
     """
-    names = tuple(filter_in(name.strip(), option) for name in text.split(","))
+    names = tuple(filter_in(name.strip(), option, brought) for name in text.split(","))
     for n, name in enumerate(names):
         if name in names[:n]:
             raise UsageError(f"{option} {text}: '{label(name)}' stands twice; delete one")
@@ -103,14 +104,14 @@ def filters_in(text: str, option: str = "--filter") -> tuple[str, ...]:
     return names
 
 
-def filter_in(name: str, option: str) -> str:
+def filter_in(name: str, option: str, brought: Sequence[str] = ()) -> str:
     """The filter that a name or a place means. Raises UsageError where it means none."""
     from ekfsim.filters import FILTERS
-    from ekfsim.filters.choice import brought, registered, verify
+    from ekfsim.filters.choice import registered, verify
 
     if name in FILTERS:
         return name
-    known = [*FILTERS, *registered(), *brought()]
+    known = [*FILTERS, *registered(), *brought]
     if is_place(name) or name in known:
         name = absolute(name)
         verify(name)

@@ -9,11 +9,12 @@ from io import StringIO
 from pathlib import Path
 
 from ekfsim.filters.protocol import Beginning, Filter
+from ekfsim.student.own import loading
 from ekfsim.student.own.calls import InProcess
 from ekfsim.student.own.filter import OwnFilter
 from ekfsim.student.own.forms import Whole
 from ekfsim.student.own.home import NOWHERE
-from ekfsim.student.own.loading import BROUGHT, Code, load
+from ekfsim.student.own.loading import Code, load
 from ekfsim.student.own.whole import WholeFilter
 
 
@@ -60,7 +61,7 @@ def quietly(name: str) -> Code:
 
 def brought() -> list[str]:
     """The names of the filters that `bring` made in this process."""
-    return list(BROUGHT)
+    return list(loading.BROUGHT)
 
 
 def contents(name: str) -> dict[str, bytes]:

@@ -28,8 +28,9 @@ PLACE = "/anywhere/ipykernel_4711/{}.py"
 @pytest.fixture(autouse=True)
 def brought(monkeypatch):
     """Nothing that one test brings is known to the next."""
-    monkeypatch.setattr(loading, "BROUGHT", known := {})
+    known = {}  # first where it is imported, which its import must find as it was
     monkeypatch.setattr("ekfsim.student.own.bring.BROUGHT", known)
+    monkeypatch.setattr(loading, "BROUGHT", known)
     return known
 
 
