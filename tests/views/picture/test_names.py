@@ -114,3 +114,17 @@ def test_lines_are_found_in_the_boxes_that_they_cross():
                 assert crosses
             if crosses:
                 assert any(line.distance(near) < 2 * SQUARE for line in whole)
+
+
+@pytest.mark.parametrize("name", ["proof-marker-behind", "diverge-06b-pillar-corridor", "mower"])
+def test_the_axes_are_labelled_within_the_figure(name):
+    run = load_scene(name)
+    steps = list(islice(play(run), LONGEST))
+    picture = Picture.on(SCREEN, run, scopes.of(run, steps))
+    *_, last = views(steps)
+    picture.show(last)
+    picture.figure.canvas.draw()
+    axes, figure = picture.main.axes, picture.figure.bbox
+    for text in (axes.xaxis.label, axes.yaxis.label, *axes.get_yticklabels()):
+        box = text.get_window_extent()
+        assert figure.x0 < box.x0 < box.x1 < figure.x1
