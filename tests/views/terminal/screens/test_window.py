@@ -4,10 +4,14 @@ import sys
 from pathlib import Path
 
 import pytest
+from matplotlib.backend_bases import ResizeEvent
 
 from ekfsim.errors import UsageError
 from ekfsim.files.scenes.load import load_scene
-from ekfsim.views.picture.look import STANDARD
+from ekfsim.localization import play
+from ekfsim.views.picture import scope as scopes
+from ekfsim.views.picture.look import SCREEN, STANDARD
+from ekfsim.views.playback.playback import views
 from ekfsim.views.terminal.interactive import play_interactively
 from ekfsim.views.terminal.screens import window
 
@@ -83,3 +87,29 @@ def test_a_toolkit_that_aborts_or_hangs_is_passed_over(monkeypatch, outcome):
 )
 def test_keys_go_by_the_terminals_names(name, key):
     assert window.key_of(name) == key
+
+
+def test_it_fits_a_small_laptop_with_its_title_and_tool_bar():
+    width, height = (side * SCREEN.dpi for side in window.SIZE)
+    assert width <= 1366
+    assert height + 50 + 40 <= 768 - 40  # tool bar, title, and the desktop's own bar
+
+
+def test_another_size_divides_it_anew(monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    run = load_scene("square")
+    every = list(views(play(run)))
+    shown = window.Window(run, scopes.of(run, play(run)))
+    figure = shown._figure
+    try:
+        shown._shown = every[-1]
+        before = figure.axes[0].get_position().bounds
+        figure.set_size_inches(13.0, 5.9)
+        figure.canvas.callbacks.process("resize_event", ResizeEvent("resize_event", figure.canvas))
+        after = figure.axes[0].get_position().bounds
+        assert after[2] < before[2]  # beside it stand the close-up, and the legend beside that
+        legend, close = shown._picture.legend, figure.axes[1]
+        assert legend.get_window_extent().x0 > close.get_window_extent().x1
+    finally:
+        shown.close()
