@@ -107,7 +107,7 @@ class Picture:
         read = reading(view, self._scene)
         self.main.show(view, read)
         self.names.show(self.main.moving)
-        self.close.show(view, read, self._scope.base)
+        self.close.show(self.main.shape, read, self._scope.base)
         self.legend.show_entries(self.main.handles())
         told = notes(view, self._scene, read, self._probability)
         x, P = view.pose

@@ -19,6 +19,7 @@ from ekfsim.scene import Scene
 from ekfsim.views.picture.artists import WorldArtists
 from ekfsim.views.picture.belief.belief import BeliefArtists
 from ekfsim.views.picture.belief.others import OtherArtists
+from ekfsim.views.picture.belief.shape import Shape
 from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.picture.sight_artists import BeamArtists, FixArtists, SightArtists
@@ -51,7 +52,7 @@ class Main:
     def __init__(
         self, axes: Axes, scene: Scene, limits: Limits, probability: float, conditional: bool
     ) -> None:
-        self._scene = scene
+        self._scene, self._probability = scene, probability
         self.axes = axes
         self.world = WorldArtists(axes, scene.world)
         static = set(axes.get_children())
@@ -90,7 +91,8 @@ class Main:
         """Move the artists to a view. read : what is drawn of its reading"""
         shorter = min(self.limits.width, self.limits.height)
         unit = BODY * min(self.limits.size, SLENDER * shorter)
-        self.belief.show(view, unit)
+        self.shape = Shape.of(view, self._probability)
+        self.belief.show(self.shape, unit)
         for artists, other in zip(self.others, view.others, strict=False):
             artists.show(other, unit)
         self.beam.show(read if isinstance(read, Beam) else None, 2 * self.limits.size)
@@ -150,13 +152,14 @@ class CloseUp:
         axes.add_collection(frame(axes), autolim=False)
         self.moving = [child for child in axes.get_children() if child.get_gid()]
 
-    def show(self, view: View, read: Beam | Sight | None, world: Limits) -> None:
+    def show(self, shape: Shape, read: Beam | Sight | None, world: Limits) -> None:
         """Move there, and show it."""
+        view = shape.view
         x, truth = view.pose.mean, view.step.entry.truth
         width = close_width(view, self._probability, CERTAIN * world.size)
         # set_xlim and set_ylim would do no more, and look for ticks, units and other Axes first
         self.axes.viewLim.set_points(x[:2] + width * CORNERS)
-        self.belief.show(view, CLOSE_BODY * width)
+        self.belief.show(shape, CLOSE_BODY * width)
         for artists, other in zip(self.others, view.others, strict=False):
             artists.show(other, CLOSE_BODY * width)
         self.beam.show(read if isinstance(read, Beam) else None, 2 * width)

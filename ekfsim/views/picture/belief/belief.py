@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 
 from ekfsim.filters.belief import Particles
 from ekfsim.geometry import Array
-from ekfsim.geometry.ellipse import conditioned, cone_halfwidth, ellipse, outline
+from ekfsim.geometry.ellipse import conditioned, outline
 from ekfsim.views.picture.artists import (
     BLUE,
     CONE,
@@ -33,11 +33,10 @@ from ekfsim.views.picture.artists import (
     sector,
 )
 from ekfsim.views.picture.belief.ghost import GhostArtists
+from ekfsim.views.picture.belief.shape import Shape
 from ekfsim.views.picture.belief.warned import EitherArea, alarm
 from ekfsim.views.picture.belief.ways import WayArtists
-from ekfsim.views.playback.view import View
 from ekfsim.views.words.captions import conditioned_label, cone_label, ellipse_label
-from ekfsim.views.words.judgement import standing
 
 COVERED = 1.4  # body radii: an ellipse with a smaller major radius is not seen beneath the body
 LARGE, SMALL = 7.0, 3.5  # points, of the mark at the reference point
@@ -63,7 +62,7 @@ class BeliefArtists:
         self._driven = driven
         self._probability, self._crowd, self._true = probability, crowd, true
         self.ways = WayArtists(axes)
-        self.ghost = GhostArtists(axes, probability)
+        self.ghost = GhostArtists(axes)
         self.cone = area(axes, SKY, 0.35, "--", 1.0, 2.0, "cone", cone_label(probability))
         label = ellipse_label(probability)
         self.ellipse = area(axes, GREEN, 0.18, "-", 1.6, 3.1, "ellipse", label)
@@ -86,27 +85,25 @@ class BeliefArtists:
         self.heading = line(axes, "true-heading", "truth", 5, TRUTH, 1.6)
         self.truth = marks(axes, "truth", "truth", 5.1, TRUTH, "o", 4)
 
-    def show(self, view: View, unit: float) -> None:
+    def show(self, shape: Shape, unit: float) -> None:
         """Move everything to a view. unit : m, what the robot's body measures in this Axes"""
+        view, stands, half = shape.view, shape.stands, shape.region.half
         x, P = view.pose
-        stands = standing(view, self._probability)
-        half = cone_halfwidth(float(P[2, 2]), self._probability)
         self._cone.show(sector(x, half, CONE * unit), stands.outside_cone)
-        self._ellipse.show(outline(x, P[:2, :2], self._probability), stands.outside_ellipse)
-        self.ghost.show(view, unit)
-        self.ways.show(view)
+        self._ellipse.show(shape.region.rim, stands.outside_ellipse)
+        self.ghost.show(shape.before, unit)
+        self.ways.show(shape)
         for sign, edge in self.conditioned.items():
             place(edge, outline(*conditioned(x, P, sign * half), self._probability))
         if isinstance(view.belief, Particles):
             scatter(self.particles, view.layout.pose(view.belief.states), view.belief.weights)
         elif not empty(self.particles):
             self.particles.set_offsets(NOWHERE)
-        path = view.path()
-        place(self.path, path)
-        dot = "" if self._driven or len(path) > DOTS else "."
+        place(self.path, shape.path)
+        dot = "" if self._driven or len(shape.path) > DOTS else "."
         if self.path.get_marker() != dot:
             self.path.set_marker(dot)
-        self._show_robot(x, unit, float(ellipse(P, self._probability).major))
+        self._show_robot(x, unit, shape.radius)
         true = view.step.entry.truth
         segment = NOWHERE if true is None else ray(true, TRUE_HEADING * unit)
         place(self.heading, segment)

@@ -5,9 +5,8 @@ from collections.abc import Iterator
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
-from ekfsim.geometry.ellipse import cone_halfwidth, outline
 from ekfsim.views.picture.artists import CONE, NOWHERE, closed, line, place, sector
-from ekfsim.views.playback.view import View
+from ekfsim.views.picture.belief.shape import Region
 
 GHOST = "#7A7A7A"
 
@@ -17,21 +16,18 @@ class GhostArtists:
     beside a predicted one.
     """
 
-    def __init__(self, axes: Axes, probability: float) -> None:
-        self._probability = probability
+    def __init__(self, axes: Axes) -> None:
         self.ellipse = line(axes, "ghost", "belief before", 3.15, GHOST, 0.9)
         self.cone = line(axes, "ghost-cone", "", 2.05, GHOST, 0.7)
 
-    def show(self, view: View, unit: float) -> None:
+    def show(self, before: Region | None, unit: float) -> None:
         """Move them. unit : m, what the robot's body measures in this Axes"""
-        if view.earlier is None:
+        if before is None:
             place(self.ellipse, NOWHERE)
             place(self.cone, NOWHERE)
             return
-        x, P = view.earlier
-        half = cone_halfwidth(float(P[2, 2]), self._probability)
-        place(self.ellipse, outline(x, P[:2, :2], self._probability))
-        place(self.cone, closed(sector(x, half, CONE * unit)))
+        place(self.ellipse, before.rim)
+        place(self.cone, closed(sector(before.pose, before.half, CONE * unit)))
 
     def handles(self) -> Iterator[Artist]:
         """What the legend shows of it."""

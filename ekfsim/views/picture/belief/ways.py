@@ -3,7 +3,7 @@
 from matplotlib.axes import Axes
 
 from ekfsim.views.picture.artists import PURPLE, TRUTH, Dashes, line, place
-from ekfsim.views.playback.view import View
+from ekfsim.views.picture.belief.shape import Shape
 
 FAINT = 0.6
 TRUE_DASHES: Dashes = (0, (1.2, 1.6))
@@ -21,7 +21,7 @@ class WayArtists:
         for way in (self.reckoned, self.true):
             way.set_alpha(FAINT)
 
-    def show(self, view: View) -> None:
+    def show(self, shape: Shape) -> None:
         """Move them to a view."""
-        place(self.reckoned, view.reckoned.points())
-        place(self.true, view.true.points())
+        place(self.reckoned, shape.reckoned)
+        place(self.true, shape.true)

@@ -15,6 +15,7 @@ from ekfsim.localization import play
 from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.artists import empty
 from ekfsim.views.picture.belief.belief import BeliefArtists
+from ekfsim.views.picture.belief.shape import Shape
 from ekfsim.views.picture.belief.warned import ALARM_DASHES
 from ekfsim.views.picture.belief.ways import RECKONED_DASHES, TRUE_DASHES
 from ekfsim.views.picture.limits import Limits
@@ -157,7 +158,7 @@ def test_the_robot_does_not_cover_its_ellipse(unit, hollow):
     (view,) = views(play(run))
     axes = Figure().add_subplot()
     drawn = BeliefArtists(axes, 0.954, False, driven=False)
-    drawn.show(view, unit)
+    drawn.show(Shape.of(view, 0.954), unit)
     gids = seen(axes)
     assert ("hollow-body" in gids, "body" in gids) == (hollow, not hollow)
     body = artist(axes, "hollow-body" if hollow else "body")
