@@ -125,9 +125,9 @@ def place(line: Line2D, points: Array) -> None:
 
 def empty(artist: Artist) -> bool:
     """Whether nothing is to be seen of an artist, which drawing it would only take time to find."""
+    if isinstance(artist, Line2D):  # most are one
+        return not len(cast(Sized, artist.get_xdata(orig=True)))
     match artist:
-        case Line2D():
-            return not len(cast(Sized, artist.get_xdata(orig=True)))
         case Polygon():
             return not len(cast(Sized, artist.get_path().vertices))
         case PathCollection():
