@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ekfsim.cli.asked import scene_of
-from ekfsim.cli.kinds import Result
+from ekfsim.cli.kinds import Result, Word
 from ekfsim.cli.options import EXPLAIN, drive_options
 from ekfsim.errors import UsageError
 from ekfsim.views.terminal.driving.help import HELP
@@ -35,7 +35,7 @@ PICTURES = Path("out")  # the folder for those of the key s, as in play
 @click.option("--force", is_flag=True, help="Replace the file that lies there.")
 @click.option(
     "--show",
-    type=click.Choice(["auto", "window", "text", "files"]),
+    type=Word(["auto", "window", "text", "files"]),
     default="auto",
     show_default=True,
     help="Draw in a window, as text in the terminal, or into one file rewritten in place.",

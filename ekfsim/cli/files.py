@@ -80,7 +80,7 @@ def _check_filter(place: str) -> int:
 
 
 @click.command(short_help="Print the JSON Schema by which editors check a file.")
-@click.argument("kind", type=click.Choice(["world", "commands", "study", "homework"]))
+@click.argument("kind", type=Word(["world", "commands", "study", "homework"]))
 @click.option("--markdown", is_flag=True, help="Tables of all keys, for people to read.")
 def schema(kind: str, markdown: bool) -> None:
     """Print the JSON Schema from which editors complete and check a world,
@@ -150,7 +150,7 @@ def show(name: str, world: bool, out: Path | None, force: bool) -> None:
 
 @click.command(short_help="Write a commented file to start from, or a copy of one.")
 @click.argument("file", type=Result())
-@click.option("--kind", type=click.Choice(KINDS), help="Where the name of FILE does not tell.")
+@click.option("--kind", type=Word(KINDS), help="Where the name of FILE does not tell.")
 @click.option(
     "--complete", is_flag=True, help="Of a filter: with its equations, in place of what is open."
 )
@@ -214,7 +214,7 @@ def kind_told(file: Path) -> str:
     required=True,
     help="A folder for the figures, tables and captions.md.",
 )
-@click.option("--format", "formats", type=click.Choice(["png", "svg", "pdf"]), multiple=True,
+@click.option("--format", "formats", type=Word(["png", "svg", "pdf"]), multiple=True,
     default=("png",),
               show_default=True, help="May be given several times.")  # fmt: skip
 @click.option(

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from ekfsim.cli.kinds import Gate, Probability, Result, Seed, Source, Whole
+from ekfsim.cli.kinds import Gate, Probability, Result, Seed, Source, Whole, Word
 from ekfsim.errors import UsageError
 from ekfsim.twins import taking
 
@@ -18,7 +18,7 @@ LEAST_SIDE, MOST_SIDE = 200, 10_000  # px, of a picture
 READINGS = ("printed", "coded", "corrected")
 READING = click.option(
     "--reading",
-    type=click.Choice(READINGS),
+    type=Word(READINGS),
     default="corrected",
     show_default=True,
     help="Which to follow where a document's print, its code and the truth differ.",
@@ -119,7 +119,7 @@ Documents, by the numbers under which captions cite them:
   004  pylon      King, Johnson: Lab 3: Extended Kalman Filter for Localization
 """
 GUARD = click.option(
-    "--guard", type=click.Choice(["off", "warn", "skip"]), help="What to do about ambiguous beams."
+    "--guard", type=Word(["off", "warn", "skip"]), help="What to do about ambiguous beams."
 )
 
 
@@ -150,7 +150,7 @@ SETTINGS = (  # what overrules the files in every run of a study
     GUARD,
     click.option(
         "--reading",
-        type=click.Choice(READINGS),
+        type=Word(READINGS),
         help="Which to follow where a document's print, its code and the truth differ.",
     ),
 )

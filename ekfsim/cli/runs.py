@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ekfsim.cli.asked import scene_of
-from ekfsim.cli.kinds import Area, Pace, Result, StepNumber, Whole
+from ekfsim.cli.kinds import Area, Pace, Result, StepNumber, Whole, Word
 from ekfsim.cli.options import DPI, EXPLAIN, FORCE, SIZE, scene_options
 from ekfsim.cli.process import heed, say, warn
 from ekfsim.errors import UsageError
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     short_help="Step through COMMANDS with single keys.",
 )
 @scene_options
-@click.option("--show", type=click.Choice(["auto", "window", "text", "files"]), default="auto",
+@click.option("--show", type=Word(["auto", "window", "text", "files"]), default="auto",
     show_default=True,
               help="Draw in a window, as text in the terminal, "
                    "or into one file rewritten in place.")  # fmt: skip

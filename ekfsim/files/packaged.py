@@ -53,7 +53,7 @@ def resolve(name_or_path: str | Path, kind: Folder) -> Path:
         if not there and is_bare:
             import difflib
 
-            near = difflib.get_close_matches(name, known, 3, 0.7)
+            near = difflib.get_close_matches(name.lower(), known, 3, 0.7)
             right = (
                 f"did you mean {' or '.join(map(repr, near))}?"
                 if near
