@@ -1,0 +1,151 @@
+"""Every command line of README.md and docs/ ends as its page says: it is run here, in the order of
+its page, or by a test of the page's own, or the reason why not stands below."""
+
+import re
+import shlex
+from pathlib import Path
+
+import click
+import pytest
+from command_lines import COMMAND, PAGES, File, Line, named_in, read_through
+from program import ekfsim
+from small_logs import LOGS
+
+from ekfsim import cli
+
+OWN_TESTS = {  # which run the blocks of kind `sh` of a page
+    "course.md": "test_course.py",
+    "grading.md": "test_grading_page.py",
+    "scenarios.md": "test_drive.py",
+}
+NOT_RUN = {  # these are understood, and no more
+    "figures": "takes minutes: tests/figures/ draws what it draws",
+    "compare mower": "drives for 549 s, and again: tests/study/ compares shorter drives",
+    "--through": "asks for another user: tests/student/sandbox/ begins processes by a command",
+    "docker": "asks for a container",
+    "--cluster": "asks for a scheduler: tests/study/running/test_cluster.py has its own",
+}
+PLACEHOLDER = re.compile(r"\b[A-Z]{2,}\b|…|\|")
+LOG = re.compile(r"(\w+)_log --log (?:DIR|FILE\.csv)")
+QUICKER = {  # what is typed in addition, so that it is soon done
+    "render": ["--every", "40"],
+    "study": ["--runs", "2"],
+    "compare": ["--runs", "2"],
+}
+KEYS = b"nnwq"
+FAILS = {  # the lines that end with status 1, each as it is said to
+    "play tour --filter filter.py": "eq. 6 is open",
+    "diff tour --filter filter.py": "eq. 6 is open",
+    "study diverge-01-wrong-wall --expect --guard skip": "not kept",
+}
+READERS = {  # what a reader has when the page comes to it: a file, or what a line writes
+    "mine.yaml": "ekfsim new mine.yaml --from diverge-00-control",
+    "mine.py": "ekfsim new mine.py --complete",
+    "filter.py": "ekfsim new filter.py",
+    "results.csv": "ekfsim run tour --log log --csv results.csv",
+    "printed.txt": "ekfsim run tour --log log > printed.txt",
+}
+
+
+def is_usage(words: list[str]) -> bool:
+    """Whether they tell how a command is used: by placeholders, or without what it has to have."""
+    return PLACEHOLDER.search(" ".join(words)) is not None or any(
+        len(words) == 1
+        if isinstance(parameter, click.Argument)
+        else not {*parameter.opts} & {*words}
+        for parameter in cli.ekfsim.commands[words[0]].params
+        if parameter.required
+    )
+
+
+def check_names(words: list[str]) -> None:
+    """A command has the options that are told of it."""
+    known = {name for parameter in cli.ekfsim.commands[words[0]].params for name in parameter.opts}
+    assert {word for word in words if re.match(r"--?[a-z]", word)} <= known | {"--help"}, words
+
+
+def typed(line: str) -> tuple[dict[str, str], bytes, list[str], str]:
+    """The environment, the keys, the words after `ekfsim` and the file for the output of a line."""
+    before, after = COMMAND.split(line, 1)
+    keys = re.search(r"printf '?(\S+?)'? \|", before)
+    command, _, file = after.partition(" > ")
+    environment = dict(re.findall(r"\b([A-Z_]+)=(\S+)", before))
+    return (
+        environment,
+        keys[1].encode() if keys else KEYS,
+        shlex.split(command, comments=True),
+        file,
+    )
+
+
+def run(line: str) -> None:
+    """Run a line, after what its reader has done before, and look at how it ends."""
+    environment, keys, words, file = typed(line)
+    if words[0] == "new":
+        Path(words[1]).unlink(missing_ok=True)  # of another line, for another try
+    elif line not in READERS.values():
+        for name in re.findall(r"[\w-]+\.\w+", line):
+            if name in READERS and not Path(name).exists():
+                run(READERS[name])
+    quicker = [] if "--expect" in words else QUICKER.get(words[0], [])
+    with pytest.MonkeyPatch.context() as patched:
+        for name, value in environment.items():
+            patched.setenv(name, value)
+        ended = ekfsim(*words, *quicker, keys=keys)
+    told = FAILS.get(" ".join(words))
+    assert ended.status == (told is not None), (line, ended)
+    assert told is None or told in ended.out + ended.err, (line, ended)
+    if file:
+        Path(file).write_text(ended.out, encoding="utf-8")
+
+
+def look_at(line: str) -> None:
+    """Run a line, or see whether it is understood where that is all that can be done."""
+    *_, words, _ = typed(line)
+    if is_usage(words):
+        check_names(words)
+    elif any(word in line for word in NOT_RUN):
+        cli.ekfsim.commands[words[0]].make_context(words[0], words[1:])
+    else:
+        run(line)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_every_command_line_of_a_page_is_run(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for format, files in LOGS.items():
+        (tmp_path / "logs" / format).mkdir(parents=True)
+        for name, text in files.items():
+            (tmp_path / "logs" / format / name).write_text(text)
+    found = read_through(page)
+    lines = [each for each in found if isinstance(each, Line)]
+    elsewhere = {line.text for line in lines if line.kind == "sh" and page.name in OWN_TESTS}
+    for each in found:
+        if isinstance(each, File):
+            Path(each.name).write_text(each.text, encoding="utf-8")
+        elif each.is_one and each.text not in elsewhere:
+            look_at(LOG.sub(lambda log: f"{log[1]}_log --log logs/{log[1]}", each.text))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_no_command_line_of_a_page_is_passed_over(page):
+    """Nor one that a page tells without the name of the program, such as `render --follow`."""
+    found = read_through(page)
+    assert sum(named_in(each.text) for each in found if isinstance(each, Line)) == named_in(
+        page.read_text(encoding="utf-8")
+    )
+    for each in found:
+        if isinstance(each, Line) and each.text.split()[0] in cli.ekfsim.commands:
+            check_names(re.split(r"[\s,=]+", each.text))
+
+
+def test_every_exception_is_one():
+    texts = [each.text for page in PAGES for each in read_through(page) if isinstance(each, Line)]
+    for exception in [*NOT_RUN, *FAILS]:
+        assert any(exception in text for text in texts), exception
+
+
+@pytest.mark.parametrize(("page", "test"), OWN_TESTS.items())
+def test_the_tests_of_pages_read_them(page, test):
+    text = (Path(__file__).parent / test).read_text(encoding="utf-8")
+    assert re.search(rf'"[\w/]*{page}"', text)
