@@ -123,7 +123,7 @@ def render(
     runs = map(kept, map(steps_of, scene.alone()), takers)
     with redirect_stderr(StringIO()):  # what a filter prints it prints again as it is drawn
         scope = scopes.of_all(scene, runs, confidence, follow)
-    scope = scope if zoom is None else scopes.Scope(Limits(*zoom))
+    scope = scope if zoom is None else scopes.showing(Limits(*zoom))
     views, look = (
         together(steps_of(first), map(steps_of, others), names),
         Look(confidence, conditional),
@@ -175,7 +175,7 @@ def write_page(scene: "Scene", out: Path, look: "Look", every: int, force: bool)
     made = write(scene, out, look, every, force, heed)
     if made.left_out:
         say(f"{in_a_line(out)}: {made.left_out}")
-    click.echo(f"{in_a_line(out)}: {made.held} views")
+    click.echo(f"{in_a_line(out)}: {made.held} {'view' if made.held == 1 else 'views'}")
 
 
 @click.command(short_help="Plot errors, NIS and NEES of COMMANDS over its steps.")

@@ -42,7 +42,7 @@ def cone_factor(probability: float) -> float:
     >>> cone_factor(0.954), round(cone_factor(0.99), 4)
     (2.0, 2.5758)
     """
-    return 2.0 if probability == 0.954 else NormalDist().inv_cdf((1 + probability) / 2)
+    return 2.0 if probability == 0.954 else -NormalDist().inv_cdf((1 - probability) / 2)
 
 
 @twinned

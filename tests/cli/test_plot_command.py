@@ -56,6 +56,7 @@ def test_a_picture_has_the_pixels_that_are_asked_for(place):
         (("-o", "a.gif"), "a.gif: '.gif' is no kind of picture; name a .png, an .svg or a .pdf"),
         (("-o", "old.png"), "old.png: exists already; "),
         (("-o", "a.png", "--size", "250x250"), "there is no room for 5 panels in 2.5 by 2.5 inch"),
+        (("-o", "a.png", "--size", "200x200", "--dpi", "1200"), "in 0.167 by 0.167 inches"),
         (
             ("-o", "a.png", "--size", "wide"),
             "'--size': 'wide' is no size; write pixels like 1280x720.",

@@ -40,6 +40,12 @@ def test_the_factors_are_quantiles(p):
     assert cone_factor(p) == pytest.approx(norm.ppf((1 + p) / 2))
 
 
+def test_the_factors_are_finite_up_to_the_largest_probability_below_one():
+    largest = math.nextafter(1.0, 0.0)
+    assert cone_factor(largest) == pytest.approx(norm.isf((1 - largest) / 2))
+    assert radius_factor(largest) ** 2 == pytest.approx(chi2.isf(1 - largest, 2))
+
+
 @given(spread, st.floats(0.01, 0.99), direction)
 def test_radii_and_orientation_are_those_it_was_made_with(major, ratio, angle):
     drawn = ellipse(turned(major, ratio * major, angle), 0.954)

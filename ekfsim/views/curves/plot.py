@@ -1,7 +1,7 @@
 """The plot of a run: all panels, what they mean, and the verdict on each filter."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Sequence, Sized
 from pathlib import Path
 from typing import Literal
 
@@ -76,6 +76,8 @@ def figure_of(
     engine = figure.get_layout_engine()
     assert isinstance(engine, ConstrainedLayoutEngine)
     away = (0.5 + len(foot)) * FOOT_LINE
+    if away >= height:
+        raise _no_room(panels, width, height)
     engine.set(rect=(0, away / height, 1, 1 - away / height), h_pad=0.03)
     figure.text(
         0.995, 0.004, "\n".join(foot), fontsize=5.5, ha="right", va="bottom", color=GREY,
@@ -122,11 +124,15 @@ def write(
         try:
             save(figure, target, title, made_by, force)
         except UserWarning:
-            width, height = figure.get_size_inches()
-            raise UsageError(
-                f"there is no room for {len(figure.axes)} panels in {width:.3g} by "
-                f"{height:.3g} inches; choose a larger --size, or a smaller --dpi"
-            ) from None
+            raise _no_room(figure.axes, *figure.get_size_inches()) from None
+
+
+def _no_room(panels: Sized, width: float, height: float) -> UsageError:
+    """What is to be raised where the letters leave none for the curves."""
+    return UsageError(
+        f"there is no room for {len(panels)} panels in {width:.3g} by "
+        f"{height:.3g} inches; choose a larger --size, or a smaller --dpi"
+    )
 
 
 def _inches(paper: Paper, panels: Sequence[Panel], filters: int) -> tuple[float, float]:

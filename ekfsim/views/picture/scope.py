@@ -122,6 +122,13 @@ def following(scene: Scene, steps: Iterable[Step], probability: float = 0.954) -
     return Scope(stages[0][1] if stages else base, tuple(stages))
 
 
+def showing(part: Limits) -> Scope:
+    """A part of the plane in every view; more of it beside a strip too narrow to be seen."""
+    longer = max(part.width, part.height)
+    narrow = min(part.width, part.height) < NARROWEST * longer
+    return Scope(_broad(part, longer) if narrow else part)
+
+
 def widened(base: Limits, reached: Limits) -> Limits:
     """The base, with each side that was passed moved out by STEP, or twice, four times … that."""
     step = STEP * base.size
@@ -151,10 +158,14 @@ def _base(world: World, reach: Reach) -> Limits:
         held = box.limits
         if held is not None and (core.size <= LEAST or held.meets(near)):
             core = core.joined(held if core.size <= LEAST else held.cut(near))
-    width, height = (max(side, NARROWEST * core.size) for side in (core.width, core.height))
-    x, y = (core.left + core.right) / 2, (core.bottom + core.top) / 2
-    whole = Limits(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
-    return _grown(whole, MARGIN)
+    return _grown(_broad(core, core.size), MARGIN)
+
+
+def _broad(limits: Limits, longer: float) -> Limits:
+    """With a shorter side that is still seen beside the longer one."""
+    width, height = (max(side, NARROWEST * longer) for side in (limits.width, limits.height))
+    x, y = (limits.left + limits.right) / 2, (limits.bottom + limits.top) / 2
+    return Limits(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
 
 
 def _grown(limits: Limits, share: float) -> Limits:

@@ -90,6 +90,21 @@ def test_a_corridor_is_not_lost_in_its_margins():
     assert 3 < base.height < 6
 
 
+@pytest.mark.parametrize(
+    ("part", "shown"),
+    [
+        (Limits(0.0, 0.0, 4.0, 3.0), (4.0, 3.0)),
+        (Limits(0.0, 0.0, 100.0, 1e-300), (100.0, 8.0)),
+        (Limits(5e6, 0.0, 5e6 + 1e-6, 1e9), (8e7, 1e9)),
+        (Limits(0.0, 0.0, 1e-6, 1e-9), (1e-6, 8e-8)),
+    ],
+)
+def test_a_strip_that_is_too_narrow_is_shown_with_what_lies_beside_it(part, shown):
+    base = scopes.showing(part).base
+    assert (base.width, base.height) == pytest.approx(shown)
+    assert base.joined(part) == base
+
+
 def test_have_the_shape_of_the_box_and_cut_nothing():
     wide = Limits(0.0, 0.0, 100.0, 1.0).shaped(0.5)
     assert wide.width / wide.height == pytest.approx(0.5)
