@@ -1,5 +1,6 @@
-"""What pages of docs/ repeat of the program is what the program says."""
+"""What pages of docs/ repeat of the program is what it says, and their links lead somewhere."""
 
+import json
 import re
 from pathlib import Path
 
@@ -11,6 +12,8 @@ from ekfsim.views.terminal.driving.help import HELP as DRIVEN
 from ekfsim.views.terminal.keys.help import HELP as PLAYED
 
 ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+PAGES += sorted((ROOT / "docs").rglob("*.ipynb"))
 COMMANDS = (ROOT / "docs/commands.md").read_text(encoding="utf-8")
 
 
@@ -41,3 +44,25 @@ def test_the_summary_of_every_command_fits_eighty_columns():
 
 def test_the_readme_is_short():
     assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 160
+
+
+def slug(title):
+    """The anchor that GitHub gives a heading."""
+    return re.sub(r"[^\w -]", "", title.strip().lower()).replace(" ", "-")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_every_link_of_a_page_leads_somewhere(page):
+    text = page.read_text(encoding="utf-8")
+    if page.suffix == ".ipynb":
+        text = "\n".join("".join(cell["source"]) for cell in json.loads(text)["cells"])
+    text = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
+    for link in re.findall(r"\]\(([^)\s]+)\)", text):
+        if re.match(r"https?://", link):
+            continue
+        path, _, anchor = link.partition("#")
+        place = page.parent / path if path else page
+        assert place.exists(), link
+        if anchor:
+            titles = re.findall(r"^#+ (.*)$", place.read_text(encoding="utf-8"), re.MULTILINE)
+            assert anchor in map(slug, titles), link
