@@ -17,7 +17,7 @@ from ekfsim.printable import in_a_line
 from ekfsim.records import Log
 from ekfsim.shown import Shown
 from ekfsim.systems.document import DocumentReading
-from ekfsim.systems.drives import Drive
+from ekfsim.systems.drive import Drive
 from ekfsim.world import World
 
 Guard = Literal["off", "warn", "skip"]

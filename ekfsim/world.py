@@ -17,7 +17,7 @@ from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.faults import NOTHING_WRONG, DriveFaults
 from ekfsim.systems.instrument import Instrument, Surroundings, Target
 from ekfsim.systems.instrument import Landmark as Landmark
-from ekfsim.systems.robots import PylonCart, Robot
+from ekfsim.systems.robot import Robot
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -254,7 +254,11 @@ class World:
     def _around(
         self, reading: DocumentReading, floor: Map, robot: Robot | None, start: Array
     ) -> Surroundings:
-        yaw_sigma = robot.yaw_sigma if isinstance(robot, PylonCart) else 0.0
+        yaw_sigma = 0.0
+        if robot is not None:
+            from ekfsim.systems.robots import PylonCart  # of no use to the classroom
+
+            yaw_sigma = robot.yaw_sigma if isinstance(robot, PylonCart) else 0.0
         return Surroundings(
             self.landmarks, floor.walls, self.layout, reading, yaw_sigma, float(start[2])
         )

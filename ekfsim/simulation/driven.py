@@ -16,10 +16,10 @@ from ekfsim.scene import Scene
 from ekfsim.simulation.draws import Draws, Stream, true_start
 from ekfsim.simulation.driver import Driver
 from ekfsim.simulation.past import Past
-from ekfsim.systems.drives import Drive
+from ekfsim.systems.drive import Drive
 from ekfsim.systems.faults import SOUND, SensorFaults
 from ekfsim.systems.instrument import Instrument, Seen, Target
-from ekfsim.systems.robots import Gps
+from ekfsim.systems.robot import Gps
 from ekfsim.twins import twinned
 
 SOON = 1e-9  # of a period: what rounding makes of an instant

@@ -6,8 +6,8 @@ from ekfsim.filters.arithmetic.square_root import square_root
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.simulation.draws import Stream
-from ekfsim.systems.drives import Course
-from ekfsim.systems.robots import Tick
+from ekfsim.systems.drive import Course
+from ekfsim.systems.robot import Tick
 from ekfsim.twins import twinned
 
 # 1/s, rad/s per m, 1/s: how hard the driver steers back to the way

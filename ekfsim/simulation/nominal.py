@@ -13,8 +13,8 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.scene import Scene
 from ekfsim.simulation.driver import ticks_of
-from ekfsim.systems.drives import Course
-from ekfsim.systems.robots import Robot
+from ekfsim.systems.drive import Course
+from ekfsim.systems.robot import Robot
 
 NO_PLAN = (
     "a recording does not tell the way that was planned, which it is linearised about; take "

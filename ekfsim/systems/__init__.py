@@ -36,37 +36,31 @@ Two more systems read published logs, with models that no document prints: landm
 ranges (Plaza).
 """
 
-from ekfsim.systems.instruments import INSTRUMENTS as INSTRUMENTS
-from ekfsim.systems.instruments import (
-    Gnss,
-    Infrared,
-    Markers,
-    Pylon,
-    RangeBearings,
-    Ranges,
-    Ultrasonic,
-)
-from ekfsim.systems.robots import (
-    GnssMower,
-    IRobotCreate,
-    Mower,
-    Pioneer,
-    PylonCart,
-    RangingMower,
-)
-from ekfsim.systems.watched import Documented, System
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-SYSTEMS: dict[str, Documented] = {
-    "mower": Documented(Mower(), (Markers(),), listed=True),
-    "pioneer": Documented(Pioneer(), (Ultrasonic(), Infrared())),
-    "gnss": Documented(GnssMower(), (Gnss(),), listed=True, fix_per_input=True),
-    "pylon": Documented(PylonCart(), (Pylon(),)),
-    "landmarks": Documented(IRobotCreate(), (RangeBearings(),)),
-    "ranges": Documented(RangingMower(), (Ranges(),)),
-}
+from ekfsim.systems.system import System
+
+if TYPE_CHECKING:
+    from ekfsim.systems.instruments import INSTRUMENTS as INSTRUMENTS
+    from ekfsim.systems.watched import SYSTEMS as SYSTEMS
+
+# Where the tables stand. They are imported when first asked for: the classroom must not wait for
+# the motions and instruments of all others.
+_HOMES = {"INSTRUMENTS": "ekfsim.systems.instruments", "SYSTEMS": "ekfsim.systems.watched"}
 CLASSROOM = System()
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'ekfsim.systems' has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)
 
 
 def system_of(name: str) -> System:
     """How the system of that name is watched."""
+    if name == "classroom":
+        return CLASSROOM
+    from ekfsim.systems.watched import SYSTEMS
+
     return SYSTEMS.get(name, CLASSROOM)

@@ -5,10 +5,9 @@ what its instruments would say of a true motion were they free of noise.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import ClassVar, Literal, NamedTuple, Protocol
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -22,57 +21,10 @@ from ekfsim.models.motions.wheel_speeds import WheelSpeeds, WheelSpeedsAsWritten
 from ekfsim.models.motions.wheels import GyroWheels, TwoWheels, WheelsBesideGyro
 from ekfsim.models.protocols import Motion
 from ekfsim.systems.document import DocumentReading
+from ekfsim.systems.robot import Entries, Gps, Tick
 
-
-class Tick(NamedTuple):
-    """A true motion between two readings of the wheels. Arrays carry leading axes (…)."""
-
-    before: Array  # (…, 3) true pose in m, m, rad
-    after: Array  # (…, 3)
-    distance: Array  # (…) m along the way
-    turn: Array  # (…) rad
-    velocity_before: Array  # (…, 2) m/s in the world's frame, during this tick
-    velocity_after: Array  # (…, 2) and in the next
-    dt: float  # s
-
-
-Entries = Mapping[str, int]
 WHEELS: Entries = MappingProxyType({"left_scale": 0, "right_scale": 1})
 WAY_AND_TURN: Entries = MappingProxyType({"distance_scale": 0, "turn_scale": 1})
-
-
-class Gps(NamedTuple):
-    """A receiver of satellites whose fixes are recorded, and which no filter is given."""
-
-    sigma: float  # m, on each axis
-    period: float  # s
-
-
-class Robot(Protocol):
-    """What a filter and a simulation need to know of a robot."""
-
-    # in which other equations than the corrected ones are followed
-    readings: ClassVar[tuple[DocumentReading, ...]]
-    # which of DriveFaults it may have, each with the entry of u that it is about
-    faults: ClassVar[Entries]
-    gps: ClassVar[Gps | None]
-
-    @property
-    def rate(self) -> float:
-        """Motion inputs per second."""
-
-    @property
-    def layout(self) -> Layout:
-        """What the entries of the filter's state are."""
-
-    def motion(self, reading: DocumentReading) -> Motion:
-        """The motion model of the filter."""
-
-    def first_covariance(self, reading: DocumentReading) -> Array:
-        """P₀ : (n, n), as the document has it."""
-
-    def ideal(self, tick: Tick) -> Array:
-        """The motion input u : (…, m) that a true motion gives, without noise."""
 
 
 def _wheel_ways(distance: Array, turn: Array, width: float) -> list[Array]:

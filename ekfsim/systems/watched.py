@@ -1,4 +1,4 @@
-"""How a system is watched: which filter a name stands for, and what of the log it is given."""
+"""The documents' systems, and how each is watched: by which filter, and what it is given."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -9,24 +9,26 @@ from ekfsim.filters.variants.listing import ListingEKF
 from ekfsim.records import Entry
 from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.instrument import Instrument
+from ekfsim.systems.instruments import (
+    Gnss,
+    Infrared,
+    Markers,
+    Pylon,
+    RangeBearings,
+    Ranges,
+    Ultrasonic,
+)
 from ekfsim.systems.interpolation import stretched
-from ekfsim.systems.robots import Robot
-
-
-class System:
-    """What is watched as it stands: the classroom's robot, of which there is no more to say."""
-
-    def filter(self, name: str, reading: DocumentReading, beginning: Beginning) -> Filter:
-        """The filter of that name, at the beginning of a run."""
-        return begun(name, beginning)
-
-    def entries(self, entries: Iterable[Entry], reading: DocumentReading) -> Iterable[Entry]:
-        """What the filter is given of what happened."""
-        return entries
-
-    def by_listing(self, name: str, reading: DocumentReading) -> bool:
-        """Whether the filter of that name holds readings against the state of before the motion."""
-        return False
+from ekfsim.systems.robot import Robot
+from ekfsim.systems.robots import (
+    GnssMower,
+    IRobotCreate,
+    Mower,
+    Pioneer,
+    PylonCart,
+    RangingMower,
+)
+from ekfsim.systems.system import System
 
 
 @dataclass(frozen=True)
@@ -53,3 +55,13 @@ class Documented(System):
     def by_listing(self, name: str, reading: DocumentReading) -> bool:
         """Whether the filter of that name is that of the authors' listing."""
         return self.listed and name == "ekf" and reading == "coded"
+
+
+SYSTEMS: dict[str, Documented] = {
+    "mower": Documented(Mower(), (Markers(),), listed=True),
+    "pioneer": Documented(Pioneer(), (Ultrasonic(), Infrared())),
+    "gnss": Documented(GnssMower(), (Gnss(),), listed=True, fix_per_input=True),
+    "pylon": Documented(PylonCart(), (Pylon(),)),
+    "landmarks": Documented(IRobotCreate(), (RangeBearings(),)),
+    "ranges": Documented(RangingMower(), (Ranges(),)),
+}

@@ -20,7 +20,7 @@ from ekfsim.filters.belief import Gaussian
 from ekfsim.records import Log, Reading
 from ekfsim.scene import Scene
 from ekfsim.simulation import simulate
-from ekfsim.systems.drives import Course
+from ekfsim.systems.drive import Course
 
 
 class Kept(Album):

@@ -15,7 +15,8 @@ from ekfsim.systems import INSTRUMENTS, SYSTEMS
 from ekfsim.systems.drives import Circle, Square, Stretch, Stretches
 from ekfsim.systems.instrument import Landmark
 from ekfsim.systems.instruments import Bearings, Gnss, Markers, RangeBearings, Ranges, Ultrasonic
-from ekfsim.systems.robots import Mower, Tick
+from ekfsim.systems.robot import Tick
+from ekfsim.systems.robots import Mower
 from ekfsim.world import Map, Noise, Told, World
 
 ROOM = Map(np.array([[-3, -3], [3, -3], [3, 3], [-3, 3.0]]))

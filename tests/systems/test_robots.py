@@ -10,7 +10,8 @@ from ekfsim.files.scenes.load import load_scene
 from ekfsim.geometry.angles import wrap
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.document import READINGS
-from ekfsim.systems.robots import GnssMower, Pioneer, Tick
+from ekfsim.systems.robot import Tick
+from ekfsim.systems.robots import GnssMower, Pioneer
 
 ROBOTS = {name: system.robot for name, system in SYSTEMS.items()} | {
     "mid-point": Pioneer(odometry="midpoint"),

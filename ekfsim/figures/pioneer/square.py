@@ -12,7 +12,7 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.ellipse import outline
 from ekfsim.localization import play
 from ekfsim.scene import Scene
-from ekfsim.systems.drives import Course
+from ekfsim.systems.drive import Course
 
 DRIVEN = """
 The square of 2 × 2 m in a room of {room}, driven once in {seconds:.0f} s (run {run} of seed

@@ -1,14 +1,15 @@
 """The keys of a commands file."""
 
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, field_validator
 from pydantic.config import JsonDict
 from pydantic_core import PydanticCustomError
 
-from ekfsim.files.keys.drive import SPIRAL, WayKeys
 from ekfsim.files.keys.fields import (
+    SPIRAL,
     Degrees,
+    Late,
     Metres,
     Name,
     Pose,
@@ -16,10 +17,15 @@ from ekfsim.files.keys.fields import (
     Seed,
     Share,
     Strict,
+    SystemName,
     Text,
 )
-from ekfsim.files.keys.system import SystemName
 from ekfsim.filters.tuning import MOST_PARTICLES, CrossCovariances, RangeVariance, Tuning
+
+if TYPE_CHECKING:
+    from ekfsim.files.keys.drive import WayKeys
+else:
+    WayKeys = Annotated[Any, Late("ekfsim.files.keys.drive:WayKeys")]
 
 MAX_COMMANDS = 1_000_000
 # of a filter, in a schema: FILE.py, FILE.py:Name or package.module:Name

@@ -11,7 +11,6 @@ from ekfsim.systems.drives import Circle, Spiral, Square
 
 MAX_STEPS = 1_000_000
 MAX_ROUNDS = 200  # of a spiral
-SPIRAL: JsonDict = {"path": "spiral", "width": 50, "length": 75, "spacing": 4, "duration": 549}
 STRETCH: JsonDict = {"v": 0.5, "omega": 45, "for": 2}
 
 

@@ -3,10 +3,21 @@ messages and editors read the same bounds.
 """
 
 import math
-from typing import Annotated, Any, ClassVar
+from functools import cached_property
+from importlib import import_module
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
-from pydantic_core import PydanticCustomError
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    TypeAdapter,
+)
+from pydantic.config import JsonDict
+from pydantic_core import CoreSchema, PydanticCustomError
+from pydantic_core.core_schema import no_info_plain_validator_function
 
 from ekfsim.seeds import MOST_SEED, REPEATS
 
@@ -15,6 +26,12 @@ FARTHEST = 1e8
 # m, degrees, or times: beyond it a millimetre is lost in rounding, and squares in covariances after
 # it
 FAR = 1e6
+
+
+SystemName = Literal["classroom", "mower", "pioneer", "gnss", "pylon", "landmarks", "ranges"]
+# examples of what is read by a Late
+MARKERS: JsonDict = {"rate": 0.5, "range": 10}
+SPIRAL: JsonDict = {"path": "spiral", "width": 50, "length": 75, "spacing": 4, "duration": 549}
 
 
 class Strict(BaseModel):
@@ -49,6 +66,51 @@ def _inside(value: Any, is_angle: bool) -> Any:
     if isinstance(value, list):
         return tuple(_inside(one, is_angle) for one in value)
     return math.radians(value) if is_angle else value
+
+
+class Late:
+    """The type of a key that few files have, imported where the first file has it, or a schema is
+    asked for: all that other robots are told of takes longer to import and build than a classroom
+    to read. Mistakes stand where they would without it.
+    """
+
+    waits: ClassVar[bool] = True
+
+    def __init__(self, place: str) -> None:
+        self.place = place  # "module:name"
+
+    @cached_property
+    def found(self) -> Any:
+        """The type itself."""
+        module, _, name = self.place.partition(":")
+        return getattr(import_module(module), name)
+
+    @cached_property
+    def reader(self) -> TypeAdapter[Any]:
+        """What a value of the key is read with."""
+        is_model = isinstance(self.found, type) and issubclass(self.found, BaseModel)
+        return TypeAdapter(self.found, config=None if is_model else Strict.model_config)
+
+    def __get_pydantic_core_schema__(self, of: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Read by what is imported then, or at once."""
+        if not Late.waits:
+            return handler.generate_schema(self.found)
+        return no_info_plain_validator_function(lambda value: self.reader.validate_python(value))
+
+
+def whole(model: type[BaseModel]) -> type[BaseModel]:
+    """The same model, built with all that else would be imported late, as its schema tells it; and
+    so are those parts of it that are built by themselves already.
+    """
+    parts = [one for one in Strict.__subclasses__() if one.__module__ == model.__module__]
+    Late.waits = False
+    try:
+        for one in parts:  # in the order of the module, so that the model itself comes last
+            if one is model or one.__pydantic_complete__:
+                one.model_rebuild(force=True)
+    finally:
+        Late.waits = True
+    return model
 
 
 def aliases(model: type[BaseModel]) -> dict[str, str]:

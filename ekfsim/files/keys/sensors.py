@@ -3,10 +3,7 @@
 from pydantic import ConfigDict, Field
 from pydantic.config import JsonDict
 
-from ekfsim.files.keys.fields import (
-    PartKeys,
-    Strict,
-)
+from ekfsim.files.keys.fields import MARKERS, PartKeys, Strict
 from ekfsim.files.keys.instruments import (
     BearingKeys,
     CompassKeys,
@@ -35,7 +32,6 @@ from ekfsim.systems.instruments import (
     Ultrasonic,
 )
 
-MARKERS: JsonDict = {"rate": 0.5, "range": 10}
 ONE_SENSOR: JsonDict = {"minProperties": 1, "maxProperties": 1, "examples": [{"markers": MARKERS}]}
 
 

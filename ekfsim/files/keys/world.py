@@ -1,37 +1,37 @@
 """The keys of a world file."""
 
-from collections.abc import Iterable
-from dataclasses import fields
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 from pydantic.config import JsonDict
 
-from ekfsim.files.keys.faults import FaultKeys
 from ekfsim.files.keys.fields import (
+    MARKERS,
     Coordinate,
     Degrees,
+    Late,
     Name,
     Polygon,
     Pose,
     Ratio,
     Spread,
     Strict,
+    SystemName,
     Text,
     Way,
-    aliases,
 )
-from ekfsim.files.keys.sensors import MARKERS, SensorKeys
-from ekfsim.files.keys.system import (
-    ODOMETRY,
-    RobotKeys,
-    SystemName,
-    ToldRobotKeys,
-    not_carried,
-    robot_fields,
-)
-from ekfsim.files.keys.told import ToldSensorsKeys
-from ekfsim.systems import SYSTEMS
-from ekfsim.world import Faults
+
+if TYPE_CHECKING:
+    from ekfsim.files.keys.faults import FaultKeys
+    from ekfsim.files.keys.sensors import SensorKeys
+    from ekfsim.files.keys.system import RobotKeys, ToldRobotKeys
+    from ekfsim.files.keys.told import ToldSensorsKeys
+else:
+    FaultKeys = Annotated[Any, Late("ekfsim.files.keys.faults:FaultKeys")]
+    SensorKeys = Annotated[Any, Late("ekfsim.files.keys.sensors:SensorKeys")]
+    RobotKeys = Annotated[Any, Late("ekfsim.files.keys.system:RobotKeys")]
+    ToldRobotKeys = Annotated[Any, Late("ekfsim.files.keys.system:ToldRobotKeys")]
+    ToldSensorsKeys = Annotated[Any, Late("ekfsim.files.keys.told:ToldSensorsKeys")]
 
 SEE = "See noise."
 POSE = {"x": 1.0, "y": 1.0, "theta": 90}
@@ -42,48 +42,11 @@ ROOM = [[0, 0], [10, 0], [10, 8], [0, 8]]
 SQUARE = [[0, 0], [10, 0], [10, -10], [0, -10]]
 
 
-def only(names: Iterable[str], keys: type[BaseModel]) -> JsonDict:
-    """A mapping with no other of a model's keys than these."""
-    known = aliases(keys)
-    return {"propertyNames": {"enum": [known[name] for name in names]}}
+def by_system(schema: dict[str, Any]) -> None:
+    """Let the schema say what a world of each system may hold."""
+    from ekfsim.files.keys.system import BY_SYSTEM
 
-
-def of_system(system: str) -> JsonDict:
-    """What a world of a driven robot may hold."""
-    robot = robot_fields(system)
-    turning: JsonDict = (
-        {"properties": {"odometry": {"enum": list(ODOMETRY[system])}}} if system in ODOMETRY else {}
-    )
-    believed = only((name for name in robot if name != "rate"), ToldRobotKeys)
-    told: JsonDict = {"noise": False, "robot": {**believed, **turning}}
-    return {
-        "noise": False,
-        "robot": {**only(robot, RobotKeys), **turning},
-        "faults": only((*SYSTEMS[system].robot.faults, "sensors"), FaultKeys),
-        "belief": {"properties": told},
-        "sensors": {"items": {"properties": dict.fromkeys(not_carried(system), False)}},
-    }
-
-
-IN_THE_CLASSROOM: JsonDict = {
-    "robot": False,
-    "sensors": False,
-    "faults": only((field.name for field in fields(Faults)), FaultKeys),
-    "belief": {"properties": {"robot": False, "sensors": False}},
-}
-CLASSROOM: JsonDict = {
-    "if": {"properties": {"system": {"const": "classroom"}}},
-    "then": {"required": ["noise"], "properties": IN_THE_CLASSROOM},
-}
-
-
-def where_it_is(system: str) -> JsonDict:
-    """The condition of a system."""
-    told: JsonDict = {"properties": {"system": {"const": system}}, "required": ["system"]}
-    return {"if": told, "then": {"properties": of_system(system)}}
-
-
-BY_SYSTEM: JsonDict = {"allOf": [CLASSROOM, *map(where_it_is, SYSTEMS)]}
+    schema.update(BY_SYSTEM)
 
 
 class SigmaKeys(Strict):
@@ -221,7 +184,7 @@ class WorldKeys(Strict):
     and what the filter is told of both. Metres and degrees.
     """
 
-    model_config = ConfigDict(title="ekfsim world", json_schema_extra=BY_SYSTEM)
+    model_config = ConfigDict(title="ekfsim world", json_schema_extra=by_system)
 
     name: Name = Field(
         description="What pictures and reports call this world.", examples=["classroom"]

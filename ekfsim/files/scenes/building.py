@@ -4,27 +4,28 @@ degrees become radians, lists arrays, and belief what the filter is told.
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import fields, replace
-from typing import Any, TypeVar, overload
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 import numpy as np
 
 from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.files.keys.commands import CommandKeys, CommandsKeys, ExpectKeys
-from ekfsim.files.keys.drive import PathKeys, StretchKeys
-from ekfsim.files.keys.faults import FaultKeys
 from ekfsim.files.keys.fields import PartKeys, Pose, aliases
-from ekfsim.files.keys.sensors import SENSORS, SensorKeys
 from ekfsim.files.keys.world import BeliefKeys, ObstacleKeys, SigmaKeys, WorldKeys
 from ekfsim.filters.tuning import Tuning
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.scene import Expect, Scene
-from ekfsim.systems import SYSTEMS
-from ekfsim.systems.drives import DRIVES, Drive, Stretch, Stretches
+from ekfsim.systems.drive import Drive
 from ekfsim.systems.faults import DriveFaults, SensorFaults
 from ekfsim.systems.instrument import Instrument
-from ekfsim.systems.robots import Robot
+from ekfsim.systems.robot import Robot
 from ekfsim.world import Faults, Landmark, Map, Noise, Obstacle, Told, World
+
+if TYPE_CHECKING:
+    from ekfsim.files.keys.drive import PathKeys, StretchKeys
+    from ekfsim.files.keys.faults import FaultKeys
+    from ekfsim.files.keys.sensors import SensorKeys
 
 P = TypeVar("P", Robot, Instrument)
 NO_NOISE = Noise(0.0, 0.0, 0.0, 0.0, 0.0)  # of the classroom's robot, where another one drives
@@ -33,7 +34,7 @@ NO_NOISE = Noise(0.0, 0.0, 0.0, 0.0, 0.0)  # of the classroom's robot, where ano
 def world_of(keys: WorldKeys) -> World:
     """The world that a file describes."""
     floor_plan = Map(array(keys.boundary), obstacles_of(keys.obstacles))
-    start, noise = pose(keys.start), Noise(**keys.noise.model_dump()) if keys.noise else NO_NOISE
+    start, noise = pose(keys.start), Noise(**dict(keys.noise)) if keys.noise else NO_NOISE
     return World(
         name=keys.name,
         map=floor_plan,
@@ -58,6 +59,8 @@ def robot_of(keys: WorldKeys) -> Robot | None:
     """
     if keys.system == "classroom":
         return None
+    from ekfsim.systems import SYSTEMS  # whose import no classroom waits for
+
     robot = SYSTEMS[keys.system].robot
     return robot if keys.robot is None else changed(robot, keys.robot)
 
@@ -78,6 +81,8 @@ def instruments_of(keys: WorldKeys) -> tuple[Instrument, ...]:
     """The sensors of a file, or those of its system."""
     if keys.system == "classroom":
         return ()
+    from ekfsim.systems import SYSTEMS
+
     return (
         SYSTEMS[keys.system].instruments
         if keys.sensors is None
@@ -99,12 +104,12 @@ def told_instruments_of(keys: WorldKeys, belief: BeliefKeys) -> tuple[Instrument
     )
 
 
-def faults_of(keys: FaultKeys | None) -> Faults:
+def faults_of(keys: "FaultKeys | None") -> Faults:
     """What is wrong with the classroom's robot."""
     return Faults(**_of_record(Faults, keys))
 
 
-def drive_faults_of(keys: FaultKeys | None) -> DriveFaults:
+def drive_faults_of(keys: "FaultKeys | None") -> DriveFaults:
     """What is wrong with a driven robot and its instruments."""
     given = _of_record(DriveFaults, keys)
     faulty = given.pop("sensors", None)
@@ -118,7 +123,9 @@ def drive_faults_of(keys: FaultKeys | None) -> DriveFaults:
     return DriveFaults(**given, sensors=sensors)
 
 
-def _of_record(record: type[Faults] | type[DriveFaults], keys: FaultKeys | None) -> dict[str, Any]:
+def _of_record(
+    record: type[Faults] | type[DriveFaults], keys: "FaultKeys | None"
+) -> dict[str, Any]:
     """What a file tells of the fields of a record."""
     names = {one.name for one in fields(record)}
     return (
@@ -128,8 +135,10 @@ def _of_record(record: type[Faults] | type[DriveFaults], keys: FaultKeys | None)
     )
 
 
-def instrument_of(item: SensorKeys) -> Instrument:
+def instrument_of(item: "SensorKeys") -> Instrument:
     """A sensor, each number the document's where the file tells no other."""
+    from ekfsim.files.keys.sensors import SENSORS
+
     keys = item.part()
     made: Callable[..., Instrument] = SENSORS[type(keys)]
     return made(**keys.given())
@@ -137,11 +146,11 @@ def instrument_of(item: SensorKeys) -> Instrument:
 
 def told(keys: WorldKeys, floor_plan: Map, start: Array, noise: Noise) -> Told:
     """What the filter is told: the truth, except where `belief` differs."""
-    belief = keys.belief or BeliefKeys()
+    belief = keys.belief or BeliefKeys.model_construct()
     return Told(
         start=pose(belief.start) if belief.start else start,
         sigma=sigma(belief.sigma, keys.start.sigma),
-        noise=replace(noise, **belief.noise.model_dump(exclude_none=True))
+        noise=replace(noise, **{name: value for name, value in belief.noise if value is not None})
         if belief.noise
         else noise,
         map=told_map(belief, floor_plan),
@@ -218,7 +227,7 @@ def scene_of(keys: CommandsKeys, world: World, world_source: str, commands_sourc
         drive=None if keys.drive is None else drive_of(keys.drive),
         seed=keys.seed,
         filter=keys.filter,
-        tuning=Tuning(**keys.filter_settings.model_dump()) if keys.filter_settings else Tuning(),
+        tuning=Tuning(**dict(keys.filter_settings)) if keys.filter_settings else Tuning(),
         gate=keys.gate,
         guard=keys.guard,
         description=keys.description,
@@ -228,8 +237,11 @@ def scene_of(keys: CommandsKeys, world: World, world_source: str, commands_sourc
     )
 
 
-def drive_of(keys: PathKeys | list[StretchKeys]) -> Drive:
+def drive_of(keys: "PathKeys | list[StretchKeys]") -> Drive:
     """The way that a robot is driven, each number the document's where the file tells no other."""
+    from ekfsim.files.keys.drive import PathKeys
+    from ekfsim.systems.drives import DRIVES, Stretch, Stretches
+
     if isinstance(keys, PathKeys):
         given = keys.given()
         made: Callable[..., Drive] = DRIVES[given.pop("path")]

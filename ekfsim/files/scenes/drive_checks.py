@@ -1,17 +1,18 @@
-"""What of a commands file no single key can tell: its drive, and whether the world's robot can."""
+"""What of a commands file no single key can tell: its drive, and whether the world's robot can.
+
+What drives are made of is imported where there is one.
+"""
 
 import math
 from collections.abc import Iterator
 
 from ekfsim.errors import Mistake
 from ekfsim.files.keys.commands import SYSTEM_OF, WAYS, CommandsKeys
-from ekfsim.files.keys.drive import MAX_ROUNDS, MAX_STEPS, PathKeys
 from ekfsim.files.keys.fields import aliases
-from ekfsim.files.keys.system import fields_of
 from ekfsim.files.scenes.building import drive_of
 from ekfsim.files.scenes.checks import Sound
 from ekfsim.files.yaml.telling import meant
-from ekfsim.systems.drives import DRIVES, Circle, Drive, Spiral, Square, Stretches
+from ekfsim.systems.drive import Drive
 from ekfsim.world import World
 
 
@@ -32,6 +33,10 @@ def check_path(file: Sound) -> Iterator[Mistake]:
     path, drive = file.value("drive", "path"), file.root.at(("drive",))
     if path is None or drive is None:
         return
+    from ekfsim.files.keys.drive import MAX_ROUNDS, PathKeys
+    from ekfsim.files.keys.system import fields_of
+    from ekfsim.systems.drives import DRIVES, Spiral
+
     names = aliases(PathKeys)
     known = ["path", *(names[name] for name in fields_of(DRIVES[path]))]
     foreign = [key for key in drive.keys if key in names.values() and key not in known]
@@ -91,6 +96,8 @@ def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake
 
 def check_length(file: Sound, drive: Drive, rate: float) -> Iterator[Mistake]:
     """Drives of no step at all, and those that never end."""
+    from ekfsim.files.keys.drive import MAX_STEPS
+
     steps = steps_of(drive, rate)
     if steps > MAX_STEPS:
         number = f"{steps:,.0f}".replace(",", " ") if steps < 1e12 else f"about {steps:.0e}"
@@ -103,6 +110,8 @@ def check_length(file: Sound, drive: Drive, rate: float) -> Iterator[Mistake]:
 
 def steps_of(drive: Drive, rate: float) -> float:
     """How many steps a drive takes, about, without taking them."""
+    from ekfsim.systems.drives import Circle, Spiral, Square, Stretches
+
     match drive:
         case Spiral():
             return drive.duration * rate

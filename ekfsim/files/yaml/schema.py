@@ -9,6 +9,8 @@ from typing import Any, Literal
 from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
+from ekfsim.files.keys.fields import whole
+
 Kind = Literal["world", "commands", "study", "homework"]
 Schema = dict[str, Any]
 CANNOT = (  # say of any file
@@ -94,7 +96,7 @@ def json_schema(kind: Kind) -> Schema:
     >>> json_schema("world")["required"]
     ['name', 'start']
     """
-    schema = model_of(kind).model_json_schema(schema_generator=WithoutNull)
+    schema = whole(model_of(kind)).model_json_schema(schema_generator=WithoutNull)
     cannot = "; ".join((*CANNOT, *CANNOT_OF[kind]))
     told = f"{schema['description']}\n\nOnly `ekfsim check` sees what no schema can tell: {cannot}."
     return {"$schema": WithoutNull.schema_dialect, **schema, "description": told}

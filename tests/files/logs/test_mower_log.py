@@ -12,7 +12,7 @@ from ekfsim.errors import InputError, UsageError
 from ekfsim.files.logs.written import write_log
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.simulation import simulate
-from ekfsim.systems.drives import Course
+from ekfsim.systems.drive import Course
 
 MAP = np.array([[0, 4.0, 1.0], [1, 2.0, -3.0], [2, -3.0, 0.5]])
 

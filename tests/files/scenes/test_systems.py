@@ -20,9 +20,9 @@ from ekfsim.files.keys import system as system_file
 from ekfsim.files.keys import world as world_file
 from ekfsim.files.keys.commands import SYSTEM_OF, LogFormat
 from ekfsim.files.keys.faults import FaultySensorsKeys
-from ekfsim.files.keys.fields import aliases
+from ekfsim.files.keys.fields import SystemName, aliases, whole
 from ekfsim.files.keys.sensors import SENSORS, SensorKeys
-from ekfsim.files.keys.system import RobotKeys, SystemName, fields_of, robot_fields
+from ekfsim.files.keys.system import RobotKeys, fields_of, robot_fields
 from ekfsim.files.keys.told import ToldSensorsKeys
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.building import instrument_of
@@ -214,7 +214,7 @@ def test_the_examples_of_the_schema_are_right(module):
 
 
 def json_schema_of(model):
-    schema = model.model_json_schema()
+    schema = whole(model).model_json_schema()
     return {"properties": {}, **schema, **schema.get("$defs", {}).get(model.__name__, {})}
 
 

@@ -1,0 +1,207 @@
+"""What of the robot and the sensors of a document's system no single key can tell, and of faults.
+
+To be imported where a world has any of them: all that the systems are made of comes along.
+"""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ekfsim.errors import Mistake
+from ekfsim.files.keys.faults import FaultKeys
+from ekfsim.files.keys.fields import aliases
+from ekfsim.files.keys.sensors import SensorKeys
+from ekfsim.files.keys.system import (
+    ODOMETRY,
+    RobotKeys,
+    ToldRobotKeys,
+    not_carried,
+    robot_fields,
+)
+from ekfsim.files.scenes.checks import Sound, check_items
+from ekfsim.files.yaml.marked import Path
+from ekfsim.files.yaml.telling import one_of
+from ekfsim.systems import SYSTEMS
+from ekfsim.systems.instrument import Instrument
+from ekfsim.systems.instruments import (
+    Bearings,
+    Infrared,
+    Lidar,
+    Markers,
+    Pylon,
+    RangeBearings,
+    Ranges,
+    Ultrasonic,
+)
+from ekfsim.world import World
+
+BEAMS: dict[str, type[Ultrasonic] | type[Infrared]] = {
+    "ultrasonic": Ultrasonic,
+    "infrared": Infrared,
+}
+NARROW = 2 * math.pi  # degrees: no bound of a field of view is larger, where radians are written
+LOOKING = (Markers, RangeBearings, Bearings, Ranges, Pylon, Lidar)
+OF_LANDMARKS = tuple(kind.name for kind in LOOKING)
+ALL_IN_ONE = {  # how one sensor does the work of two
+    **dict.fromkeys(BEAMS, ", with the 'bearings' of both"),
+    **dict.fromkeys(OF_LANDMARKS, ", with the 'views' of both"),
+}
+
+
+def check_driven(file: Sound, system: str) -> Iterator[Mistake]:
+    """Keys that a system of the documents does not read."""
+    for path in (("noise",), ("belief", "noise")):
+        if file.root.at(path):
+            right = f"'robot' and 'sensors' hold that of the system '{system}'"
+            yield file.mistake(path, "the noise ratios belong to the classroom's robot", right)
+    for path in (("robot",), ("belief", "robot")):
+        yield from check_robot(file, system, path)
+    yield from check_steering(file)
+    yield from check_faults(file, f"the robot of the system '{system}'", faults_of(system))
+    for path in (("belief", "sensors"), ("faults", "sensors")):
+        yield from check_carried(file, system, path)
+    yield from check_carriable(file, system)
+
+
+def check_robot(file: Sound, system: str, path: Path) -> Iterator[Mistake]:
+    """Keys that the robot of a system does not have,
+    true or told, and a skid-steer matrix that tells nothing.
+    """
+    names = aliases(RobotKeys if path == ("robot",) else ToldRobotKeys)
+    known = [names[name] for name in robot_fields(system) if name in names]
+    robot = file.root.at(path)
+    for key in robot.keys if robot else ():
+        if key in names.values() and key not in known:
+            wrong = f"the robot of the system '{system}' has no key '{key}'"
+            yield file.mistake((*path, key), wrong, f"it has: {', '.join(known)}")
+    odometry = file.value(*path, "odometry")
+    if odometry is not None and "odometry" in known and odometry not in ODOMETRY[system]:
+        wrong = f"the robot of the system '{system}' has no odometry '{odometry}'"
+        yield file.mistake((*path, "odometry"), wrong, f"write {one_of(list(ODOMETRY[system]))}")
+    skid = file.value(*path, "skid")
+    if skid is not None and "skid" in known:
+        (forward, _, turning) = skid
+        if abs(forward[0] * turning[1] - forward[1] * turning[0]) < 1e-9:
+            wrong = "by its rows 1 and 3, other speeds of the two sides make the same motion"
+            yield file.mistake(
+                (*path, "skid"), wrong, "write e.g. [[0.5, 0.5], [0, 0], [2.5, -2.5]]"
+            )
+
+
+def check_steering(file: Sound) -> Iterator[Mistake]:
+    """A filter that is told speeds where the robot counts ways, or the other way round."""
+    believed = file.value("belief", "robot", "odometry")
+    true = file.value("robot", "odometry") or "arctan"
+    if believed is not None and (believed == "skidSteer") != (true == "skidSteer"):
+        wrong = f"a robot of the odometry '{true}' cannot be read as one of '{believed}'"
+        right = "write robot: {odometry: skidSteer} as well, or skidSteer in neither"
+        yield file.mistake(("belief", "robot", "odometry"), wrong, right)
+
+
+def faults_of(system: str) -> list[str]:
+    """The names of what may be wrong with the robot of a system."""
+    return [*SYSTEMS[system].robot.faults, "sensors"]
+
+
+def check_faults(file: Sound, whose: str, names: list[str]) -> Iterator[Mistake]:
+    """Faults that a robot cannot have."""
+    known = [aliases(FaultKeys)[name] for name in names]
+    faults = file.root.at(("faults",))
+    for key in faults.keys if faults else ():
+        if key in aliases(FaultKeys).values() and key not in known:
+            wrong = f"{whose} has no fault '{key}'"
+            yield file.mistake(("faults", key), wrong, f"it may have: {', '.join(known)}")
+
+
+def check_carried(file: Sound, system: str, path: Path) -> Iterator[Mistake]:
+    """Sensors that are told of and that the robot does not carry."""
+    carried = [instrument.name for instrument in SYSTEMS[system].instruments]
+    if file.root.at(("sensors",)):
+        items = (file.root.at(("sensors", index)) for index in range(file.count("sensors")))
+        carried = [kind for item in items if item is not None for kind in item.keys]
+    told = file.root.at(path)
+    for kind in told.keys if told else ():
+        if kind in aliases(SensorKeys).values() and kind not in carried:
+            wrong = f"the world has no sensor '{kind}'"
+            yield file.mistake((*path, kind), wrong, f"it has: {', '.join(carried) or 'none'}")
+
+
+def check_carriable(file: Sound, system: str) -> Iterator[Mistake]:
+    """Sensors that the robot of a system cannot carry."""
+    for index in range(file.count("sensors")):
+        item = file.root.at(("sensors", index))
+        for kind in item.keys if item and len(item.keys) == 1 else ():
+            if kind in not_carried(system):
+                wrong = f"the robot of the system '{system}' cannot carry the sensor '{kind}'"
+                able = one_of([name for name in SYSTEMS if kind not in not_carried(name)])
+                right = (
+                    "write lidar, which no measured yaw has to turn"
+                    if kind == Pylon.name
+                    else f"the robot of {able} can"
+                )
+                yield file.mistake(("sensors", index, kind), wrong, right)
+
+
+def check_sensors(file: Sound) -> Iterator[Mistake]:
+    """Items that hold no sensor or two,
+    a second sensor of a kind, and beams that can measure nothing.
+    """
+    kinds = list(aliases(SensorKeys).values())
+    yield from check_items(file, ("sensors",), kinds, "sensor")
+    yield from check_kinds(file, kinds)
+    for index in range(file.count("sensors")):
+        for kind, document in BEAMS.items():
+            path = ("sensors", index, kind)
+            if (beams := file.value(*path)) is not None:
+                near, far = (
+                    beams.get("nearest", document.nearest),
+                    beams.get("range", document.farthest),
+                )
+                if near >= far:
+                    wrong = (
+                        f"nothing lies between its nearest {near:g} m and its range of {far:g} m"
+                    )
+                    yield file.mistake(path, wrong, "write a range that is more than the nearest")
+
+
+def check_kinds(file: Sound, kinds: list[str]) -> Iterator[Mistake]:
+    """A second sensor of a kind: its readings would go by the names of the first one's."""
+    lines = dict[str, int]()
+    for index in range(file.count("sensors")):
+        item = file.root.at(("sensors", index))
+        kind = next(iter(item.keys)) if item is not None and len(item.keys) == 1 else ""
+        if item is None or kind not in kinds:
+            continue
+        if kind in lines:
+            wrong = f"the sensor '{kind}' on line {lines[kind]} goes by the same name"
+            yield file.mistake(
+                ("sensors", index, kind), wrong, f"keep one of them{ALL_IN_ONE.get(kind, '')}"
+            )
+        lines.setdefault(kind, item.keys[kind][0])
+
+
+def doubts(instrument: Instrument, world: World, logged: bool) -> Iterator[tuple[str, str]]:
+    """Why a sensor hardly does what is meant, and the way out."""
+    name, robot = instrument.name, world.robot
+    if name in OF_LANDMARKS and not world.landmarks and not logged:
+        yield (
+            f"the sensor '{name}' sees landmarks, and the world has none",
+            "list them under 'landmarks'",
+        )
+    if name in BEAMS and not any(world.map.rings()):
+        yield (
+            f"the sensor '{name}' sees walls, and the world has none",
+            "write a 'boundary' or 'obstacles'",
+        )
+    if isinstance(instrument, LOOKING) and np.abs(instrument.views).max() < math.radians(NARROW):
+        yield (
+            f"the sensor '{name}' sees a few degrees only",
+            "'views' are in degrees: [-30, 30] looks ahead",
+        )
+    if robot is not None and instrument.rate > robot.rate:
+        wrong = (
+            f"the sensor '{name}' is to be read at {instrument.rate:g} Hz, the robot moves at "
+            f"{robot.rate:g} Hz"
+        )
+        yield wrong, "it is read once at each motion"
