@@ -35,10 +35,11 @@ PICTURES = Path("out")  # the folder for those of the key s, as in play
 @click.option("--force", is_flag=True, help="Replace the file that lies there.")
 @click.option(
     "--show",
-    type=Word(["auto", "window", "text", "files"]),
+    type=Word(["auto", "window", "image", "text", "files"]),
     default="auto",
     show_default=True,
-    help="Draw in a window, as text in the terminal, or into one file rewritten in place.",
+    help="Draw in a window, as an image in a terminal that has them, as text in any, or into one "
+    "file rewritten in place: see play.",
 )
 @click.option(
     "--conditional",

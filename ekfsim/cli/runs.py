@@ -26,10 +26,11 @@ if TYPE_CHECKING:
     short_help="Step through COMMANDS with single keys.",
 )
 @scene_options
-@click.option("--show", type=Word(["auto", "window", "text", "files"]), default="auto",
-    show_default=True,
-              help="Draw in a window, as text in the terminal, "
-                   "or into one file rewritten in place.")  # fmt: skip
+@click.option("--show", type=Word(["auto", "window", "image", "text", "files"]),
+              default="auto", show_default=True,
+              help="Draw in a window, as an image in a terminal that has them (kitty, iTerm2, "
+                   "sixel), as text in any, or into one file rewritten in place. auto: in the "
+                   "first that there is of window, image and text.")  # fmt: skip
 @click.option("--out", "-o", type=Result(), default=Path("out"), show_default=True,
               help="Folder for the pictures of --show files and of the key s.")  # fmt: skip
 @click.option(

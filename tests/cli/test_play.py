@@ -1,5 +1,6 @@
 """play: keys from a pipe and from a terminal, pictures in characters and in files."""
 
+import base64
 import os
 import re
 import select
@@ -283,3 +284,38 @@ def test_a_terminal_is_put_back_however_it_ends(ending, status):
     assert "Traceback" not in terminal.shown
     assert terminal.shown.count("\x1b[?1049h") == terminal.shown.count("\x1b[?1049l") == 1
     assert terminal.shown.rindex("\x1b[?25h") > terminal.shown.rindex("\x1b[?25l")
+
+
+def test_a_terminal_that_draws_images_gets_the_pictures():
+    terminal = Terminal("play", "short.yaml", "--show", "image")
+    terminal.press(b"n")
+    terminal.wait_for("\x1b[c")  # the last of the questions
+    terminal.press(b"\x1b_Gi=1;OK\x1b\\n\x1b[6;16;8t\x1b[?62;cnq")
+    assert terminal.status() == 0
+    images = re.findall("\x1b_Ga=T,([^;]*);([^\x1b]*)", terminal.shown)
+    assert len(images) == 4
+    assert all("c=79,r=23" in keys for keys, _ in images)
+    assert all(base64.b64decode(begun).startswith(SIGNATURE) for _, begun in images)
+    assert terminal.shown.rindex("\x1b_Ga=d") < terminal.shown.rindex("\x1b[?1049l")
+    assert not pictured(terminal.shown)
+
+
+def test_a_terminal_that_draws_none_is_told_from_one_that_does():
+    terminal = Terminal("play", "short.yaml", "--show", "image")
+    terminal.wait_for("\x1b[c")
+    terminal.press(b"\x1b[?1;2c")
+    assert terminal.status() == 2
+    left = " ".join(terminal.shown.split("\x1b[?1049l")[-1].split())
+    assert left == (
+        "ekfsim: this terminal does not say that it draws images as kitty or iTerm2 do, or sixels; "
+        "--show text draws with letters"
+    )
+
+
+def test_what_is_no_terminal_is_not_asked():
+    played = ekfsim("play", "short.yaml", "--show", "image", keys=b"nq")
+    assert (played.status, played.out) == (2, "")
+    assert played.err == (
+        "ekfsim: --show image draws in a terminal, and this is none that can be drawn on; "
+        "--show files draws into a file\n"
+    )

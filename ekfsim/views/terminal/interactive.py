@@ -32,7 +32,7 @@ def play_interactively(
     scene: Scene, show: str, out: Path, look: Look, force: bool, explain: bool,
     auto: float | None = None,
 ) -> None:  # fmt: skip
-    """Step through a scene until a key quits. show : auto, window, text or files;
+    """Step through a scene until a key quits. show : auto, window, image, text or files;
     out : folder of saved pictures; explain : the narrative in its long form;
     auto : s after which it goes on by itself
 

@@ -19,8 +19,11 @@ from ekfsim.views.picture.look import Look, get_ready
 from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal import drawing as terminal
+from ekfsim.views.terminal.images.asking import Means, ask
+from ekfsim.views.terminal.images.images import Images
 from ekfsim.views.terminal.keys.interrupts import noticed, unnoticed
 from ekfsim.views.terminal.keys.keyboard import Keyboard, keys
+from ekfsim.views.terminal.keys.sources import pixels
 from ekfsim.views.terminal.screens import layout
 from ekfsim.views.terminal.screens.console import Console
 from ekfsim.views.terminal.screens.files import Pictures
@@ -36,14 +39,24 @@ RESIZED = 0.2  # s between two looks at the size of the terminal
 # rows of the terminal left free of the picture, and one more for the hint on the keys
 MARGIN = 2
 WIDEST, HIGHEST = 1000, 300  # columns and rows of a picture, whatever COLUMNS and LINES say
+NO_TERMINAL = (
+    "--show image draws in a terminal, and this is none that can be drawn on; --show files draws "
+    "into a file"
+)
+NO_IMAGES = (
+    "this terminal does not say that it draws images as kitty or iTerm2 do, or sixels; --show text "
+    "draws with letters"
+)
 NextKey = Callable[[float | None], str | None]
 
 
 def wants_window(show: str) -> bool:
-    """Whether a window is to be opened. show : auto, window, text or files
+    """Whether a window is to be opened. show : auto, window, image, text or files
 
-    Raises UsageError where one is asked for and there is none.
+    Raises UsageError where a window or an image is asked for, and there is no place for it.
     """
+    if show == "image" and not _in_place():
+        raise UsageError(NO_TERMINAL)
     wanted = show == "window" or (show == "auto" and _window_available())
     if show == "window" and not _window_available():
         raise UsageError(_why_no_window())
@@ -58,6 +71,8 @@ class Stage:
     pictures: Pictures
     console: Console | None
     window: "Window | None"
+    images: Callable[[Means], Images] | None  # on the terminal, where it can draw them
+    required: bool  # whether nothing will do in their place
 
     @classmethod
     def of(
@@ -84,7 +99,9 @@ class Stage:
         else:
             drawn = None if screens else partial(_drawn, scene, extent, look.probability)
             told = Stream(sys.stdout, drawn, hinting=_somebody())
-        return cls(Together([told, *screens]), pictures, console, window)
+        wanted = show == "image" or (show == "auto" and window is None and console is not None)
+        images = partial(Images, scene, extent, look) if wanted else None
+        return cls(Together([told, *screens]), pictures, console, window, images, show == "image")
 
     @property
     def interruptible(self) -> Callable[[], AbstractContextManager[Callable[[], bool]]]:
@@ -93,13 +110,29 @@ class Stage:
 
     @contextmanager
     def keys(self) -> Iterator[NextKey]:
-        """The keys; what was read of the run stays on the terminal when it is left."""
+        """The keys; what was read of the run stays on the terminal when it is left.
+
+        Raises UsageError where images are asked for, and the terminal does not say that it draws
+        them.
+        """
         try:
             with _typed(self.console) as keyboard:
+                if self.console is not None and self.images is not None:
+                    self._ask(keyboard, self.console, self.images)
                 yield partial(_next_key, keyboard, self.window, self.console)
         finally:
             if self.window is not None:
                 self.window.close()
+
+    def _ask(self, keyboard: Keyboard, console: Console, images: Callable[[Means], Images]) -> None:
+        """Draw images, if the terminal says that it can."""
+        size = shutil.get_terminal_size()
+        asking = partial(ask, write=console.write, size=size, pixels=pixels(sys.stdout))
+        means = keyboard.lend(asking)
+        if means is not None:
+            console.images = images(means)
+        elif self.required:
+            raise UsageError(NO_IMAGES)
 
 
 @contextmanager

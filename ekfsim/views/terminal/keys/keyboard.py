@@ -12,11 +12,13 @@ exception, Ctrl-C, SIGTERM, Ctrl-Z.
 import math
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TextIO, overload
+from typing import TextIO, TypeVar, overload
 
 from ekfsim.views.terminal.keys.sources import Drawn, Source, piped, terminal
+
+T = TypeVar("T")
 
 NO_MORE = ""  # the key that comes when the input is over
 UNNAMED = "unnamed"  # a key that has no name here
@@ -92,6 +94,12 @@ class Keyboard:
                 return self._answer()
             if not self._escaped and character not in self._skipped:  # Alt and a key is that key
                 return CHARACTERS.get(character, character)
+
+    def lend(self, reader: Callable[[Source], tuple[T, bytes]]) -> T:
+        """Let somebody read what comes, as a terminal's answers; what he hands back are keys."""
+        found, keys = reader(self._source)
+        self._ahead += keys
+        return found
 
     def _byte(self, timeout: float | None) -> bytes | None:
         """The next byte, b"" at the end, None where it does not come in time."""

@@ -64,8 +64,14 @@ if sys.platform == "win32":
             if drawn is not None:
                 drawn.leave()
 
+    def pixels(stream: TextIO) -> tuple[int, int]:
+        """Nothing tells them."""
+        return 0, 0
+
 else:
+    import fcntl
     import select
+    import struct
     import termios
     import tty
 
@@ -106,6 +112,15 @@ else:
                 yield held.wait
             finally:
                 held.leave()
+
+    def pixels(stream: TextIO) -> tuple[int, int]:
+        """Width and height of a terminal, 0 where it does not tell."""
+        try:
+            told = fcntl.ioctl(stream.fileno(), termios.TIOCGWINSZ, bytes(8))
+        except OSError:
+            return 0, 0
+        _, _, width, height = struct.unpack("HHHH", told)
+        return width, height
 
     class Held:
         """A terminal that hands over single keys (cbreak: Ctrl-C and Ctrl-Z still signal)."""

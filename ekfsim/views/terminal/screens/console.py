@@ -8,7 +8,9 @@ from io import StringIO
 from ekfsim.scene import Scene
 from ekfsim.views.picture.limits import Limits
 from ekfsim.views.picture.scope import Scope
+from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.braille import Bounds, shorten
+from ekfsim.views.terminal.images.images import Box, Images
 from ekfsim.views.terminal.keys.bindings import Action
 from ekfsim.views.terminal.screens.layout import Layout, Look, Panes, ample
 from ekfsim.views.terminal.screens.moment import Moment
@@ -16,6 +18,8 @@ from ekfsim.views.terminal.screens.moment import Moment
 WIDEST, HIGHEST = 1000, 300  # columns and rows of a screen, whatever COLUMNS and LINES say
 OTHER_SCREEN, OWN_SCREEN = "\x1b[?1049h\x1b[?25l", "\x1b[?25h\x1b[?1049l"
 PRINTED = 20  # lines of what a filter prints that are shown, the last of them
+CLEARED = "\x1b[2J"
+END = "\x1b\\"  # of what a terminal is told in a string
 LEFT = 20  # views whose narrative stays on the terminal when the run is left
 
 
@@ -37,14 +41,17 @@ class Console:
         size: Callable[[], tuple[int, int]] = shutil.get_terminal_size,
     ) -> None:
         self._scene, self._extent, self._probability = scene, extent, probability
-        self._look, self._write, self._size = look, write, size
+        self._look, self.write, self._size = look, write, size
         self.panes = panes  # what was asked for; None: as much as there is room for
         self._scroll: int | None = None  # None: to where the numbers of this view begin
         self._scrolled = 0  # where that was
         self._moment: Moment | None = None
         self._read: dict[int, str] = {}  # narrative of what has been on the screen, by view
+        self.images: Images | None = None  # what draws the picture, where not its characters
         self._drawn: list[str] = []  # the lines that stand there
         self._drawn_for = (0, 0)
+        self._box: Box | None = None  # where an image stands
+        self._pictured: View | None = None  # what it shows
         self._inside = False
         # what a filter of one's own prints meanwhile: nothing comes between the lines of the screen
         self.printed = StringIO()
@@ -53,13 +60,13 @@ class Console:
     def enter(self) -> None:
         """Take the terminal, at the start or again after Ctrl-Z."""
         self._inside, self._drawn_for = True, (0, 0)
-        self._write(OTHER_SCREEN)
+        self.write(OTHER_SCREEN)
 
     def leave(self) -> None:
         """Give the terminal back."""
         if self._inside:
             self._inside = False
-            self._write(OWN_SCREEN)
+            self.write(self._removed() + OWN_SCREEN)
 
     def farewell(self) -> str:
         """What is to stay on the terminal: what was read of the run, as it was told."""
@@ -99,7 +106,7 @@ class Console:
         """Say in the status line how far a long way has come."""
         columns, rows = self._now()
         if self._inside:
-            self._write(f"\x1b[{rows};1H{shorten(note, columns, self._look.ascii)}\x1b[K")
+            self.write(f"\x1b[{rows};1H{shorten(note, columns, self._look.ascii)}\x1b[K")
             self._drawn = self._drawn[: rows - 1]
 
     def _draw(self) -> None:
@@ -107,20 +114,32 @@ class Console:
         size = self._now()
         if not self._inside:
             return
-        shown, first = self._extent.at(self._moment.view), self._extent.base
+        view = self._moment.view
+        shown, first = self._extent.at(view), self._extent.base
         layout = Layout(
-            self._scene, self._probability, _bounds(shown), _bounds(first), *size, self._look
-        )
-        lines, scroll = layout.lines(self._moment, self._what(size), self._scroll)
-        self._scrolled = scroll
-        fresh = self._drawn_for != size
+            self._scene, self._probability, _bounds(shown), _bounds(first), *size, self._look,
+            imaged=self.images is not None,
+        )  # fmt: skip
+        panes = self._what(size)
+        box = layout.box(self._moment, panes)
+        if self.images is None or box is None or not self.images.fits(box):
+            layout, box = replace(layout, imaged=False), None
+        lines, self._scrolled = layout.lines(self._moment, panes, self._scroll)
+        fresh = self._drawn_for != size or box != self._box
         changed = [
             f"\x1b[{row};1H{line}\x1b[K"
             for row, line in enumerate(lines, start=1)
             if fresh or row > len(self._drawn) or line != self._drawn[row - 1]
         ]
-        self._write(("\x1b[2J" if fresh else "") + "".join(changed))
-        self._drawn, self._drawn_for = lines, size
+        self.write((self._removed() + CLEARED if fresh else "") + "".join(changed))
+        self._drawn, self._drawn_for, self._box = lines, size, box
+        if self.images is not None and box is not None and (fresh or view is not self._pictured):
+            self.write(self.images.draw(view, box))
+            self._pictured = view
+
+    def _removed(self) -> str:
+        """What takes the image away, and ends one of which a part was written."""
+        return "" if self.images is None else END + self.images.removed()
 
     def _what(self, size: tuple[int, int]) -> Panes:
         if self.panes is not None:

@@ -24,6 +24,7 @@ from ekfsim.views.terminal.braille import (
     shorten,
 )
 from ekfsim.views.terminal.drawing import PLAIN, depict, legend_lines, scale_bar, title
+from ekfsim.views.terminal.images.images import Box
 from ekfsim.views.terminal.readings import Item
 from ekfsim.views.terminal.screens.moment import Moment
 from ekfsim.views.terminal.wrapping import within, wrapped
@@ -36,6 +37,7 @@ from ekfsim.views.words.judgement import judgement, warns
 WIDE, HIGH = 110 - 1, 36
 NUMBERS = (48, 78)  # columns of the numbers beside a picture, from and to
 SHARE = 0.42  # of the width for them
+BAR = 3  # columns between the two
 FLAT = 1.3  # how much larger a picture must become for the numbers to stand below it instead
 HEADS, HEADS_NARROW = 4, 5  # rows for what the step was and how it is judged
 TWO_LINES = 12  # rows of a picture from which on its legend may have two
@@ -80,6 +82,15 @@ class Layout:
     columns: int
     rows: int
     look: Look
+    imaged: bool = False  # whether the place of the picture is left to an image, which has a title
+
+    def box(self, moment: Moment, panes: Panes) -> Box | None:
+        """Where the picture stands; None where there is none."""
+        heads = len(self._heads(moment))
+        room = self.rows - heads - len(self._foot(moment, panes))
+        if moment.page or panes is Panes.NUMBERS or room < 2:
+            return None
+        return Box(heads, 0, *self._share(panes, room))
 
     def lines(self, moment: Moment, panes: Panes, scroll: int | None) -> tuple[list[str], int]:
         """The lines of the screen, one for each row, and how far the numbers are scrolled.
@@ -103,6 +114,8 @@ class Layout:
         """What the step was and how its belief is to be judged; in every view of a run as many
         lines, so that the picture stays where it is.
         """
+        if self.imaged:
+            return []
         view, ascii = moment.view, self.look.ascii
         rows = min(HEADS if self.columns >= WIDE else HEADS_NARROW, max(self.rows // 4, 1))
         lines = within(title(view, self.scene, self.probability, ascii), self.columns,
@@ -121,28 +134,39 @@ class Layout:
     def _body(
         self, moment: Moment, panes: Panes, room: int, scroll: int | None
     ) -> tuple[list[str], int]:
-        if panes is Panes.PICTURE:
-            return self._picture(moment, self.columns, room), 0
         if panes is Panes.NUMBERS:
             return self._numbers(moment, self.columns, room, scroll)
-        beside = min(max(round(SHARE * self.columns), NUMBERS[0]), NUMBERS[1])
-        left = self.columns - beside - 3
-        if self.columns < WIDE or (self.rows >= HIGH and self._flat(left, room)):
-            high = min(max(room - NARRATIVE - 1, (room + 1) // 2), self._needed(self.columns))
-            picture = self._picture(moment, self.columns, high)
-            numbers, scroll = self._numbers(moment, self.columns, room - len(picture) - 1, scroll)
-            rule = ("-" if self.look.ascii else "─") * self.columns
-            return [*picture, rule, *numbers], scroll
-        picture = self._picture(moment, left, room)
-        numbers, scroll = self._numbers(moment, beside, room, scroll)
+        columns, rows = self._share(panes, room)
+        picture = self._picture(moment, columns, rows)
+        if panes is Panes.PICTURE:
+            return picture, 0
+        if columns == self.columns:
+            numbers, scroll = self._numbers(moment, columns, room - rows - 1, scroll)
+            return [*picture, ("-" if self.look.ascii else "─") * columns, *numbers], scroll
+        numbers, scroll = self._numbers(moment, self.columns - columns - BAR, room, scroll)
         bar = " | " if self.look.ascii else " │ "
         return [
-            _padded(one, left) + bar + other
+            (f"\x1b[{columns}C" if self.imaged else _padded(one, columns)) + bar + other
             for one, other in zip(picture, _filled(numbers, room), strict=True)
         ], scroll
 
+    def _share(self, panes: Panes, room: int) -> tuple[int, int]:
+        """Columns and rows of the picture; with numbers beside it, or below where it is as wide as
+        the screen.
+        """
+        if panes is Panes.PICTURE:
+            return self.columns, room
+        beside = min(max(round(SHARE * self.columns), NUMBERS[0]), NUMBERS[1])
+        left = self.columns - beside - BAR
+        if self.columns < WIDE or (self.rows >= HIGH and self._flat(left, room)):
+            high = min(max(room - NARRATIVE - 1, (room + 1) // 2), self._needed(self.columns))
+            return self.columns, high
+        return left, room
+
     def _picture(self, moment: Moment, columns: int, rows: int) -> list[str]:
         """The picture with its legend, in exactly so many rows."""
+        if self.imaged:
+            return [""] * rows
         two = 2 if rows > TWO_LINES else 1
         canvas = Canvas(columns, max(rows - two, 1), self.limits, self.look.ascii)
         items = depict(canvas, moment.view, self.scene, self.probability)

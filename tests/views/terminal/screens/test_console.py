@@ -163,3 +163,76 @@ def test_how_far_a_long_way_has_come_stands_in_the_status_line_alone():
     console.arrange(Action.PANES, 1)
     playing(terminal, "n")
     assert terminal.lines == before
+
+
+class Drawn:
+    """Says where an image would stand, and of what."""
+
+    def __init__(self, largest=10_000):
+        self.largest = largest
+
+    def fits(self, box):
+        return box.columns * box.rows < self.largest
+
+    def draw(self, view, box):
+        return f"<{view.number} at {box.row},{box.column}: {box.columns}x{box.rows}>"
+
+    def removed(self):
+        return "<gone>"
+
+
+def imaged(terminal, *keys, largest=10_000):
+    console = Console(
+        PLACE, EXTENT, 0.954, Look(False, False), terminal.write, size=lambda: terminal.size
+    )
+    console.images = Drawn(largest)
+    console.enter()
+    player = Player(PLACE, play(PLACE), console, lambda view: "saved", 0.954)
+    waiting = iter([*keys, "q"])
+    player.play(lambda timeout: next(waiting))
+    return console, re.findall("<.*?>", terminal.written)
+
+
+def test_an_image_stands_in_the_place_of_the_picture():
+    terminal = Terminal(80, 24)
+    assert imaged(terminal, "n", "7")[1] == ["<gone>", "<0 at 0,0: 79x23>", "<1 at 0,0: 79x23>"]
+    assert terminal.lines[:23] == [""] * 23
+    assert "step 1 of 3" in terminal.lines[23]
+
+
+def test_the_numbers_beside_an_image_leave_its_cells_alone():
+    terminal = Terminal(120, 30)
+    _, images = imaged(terminal, "n")
+    assert images[1:] == ["<0 at 0,0: 66x29>", "<1 at 0,0: 66x29>"]
+    assert all(line.startswith("\x1b[66C │ ") for line in terminal.lines[:29])
+    assert terminal.written.rindex("<1 at") > terminal.written.rindex("\x1b[K")
+
+
+def test_where_no_image_stands_the_last_one_is_gone():
+    terminal = Terminal(80, 24)
+    _, images = imaged(terminal, "v", "v", "?", "n", "n")
+    assert images == [
+        "<gone>", "<0 at 0,0: 79x23>",  # the picture
+        "<gone>",  # the numbers
+        "<gone>", "<0 at 0,0: 79x12>",  # both
+        "<gone>",  # the help
+        "<gone>", "<1 at 0,0: 79x12>", "<2 at 0,0: 79x12>",
+    ]  # fmt: skip
+    assert terminal.written.count("<gone>" + CLEARED) == images.count("<gone>")
+
+
+def test_a_place_too_small_for_an_image_has_characters():
+    small, text = Terminal(80, 24), Terminal(80, 24)
+    assert imaged(small, "n", largest=100)[1] == ["<gone>"]
+    playing(text, "n")
+    assert small.lines == text.lines
+
+
+def test_the_image_goes_with_the_screen_and_comes_back_with_it():
+    terminal = Terminal(80, 24)
+    console, _ = imaged(terminal)
+    console.leave()
+    assert terminal.written.endswith("\x1b\\<gone>" + OWN_SCREEN)
+    console.enter()
+    console.refresh()
+    assert terminal.written.endswith("<0 at 0,0: 79x23>")
