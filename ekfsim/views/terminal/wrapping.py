@@ -34,12 +34,18 @@ def wrapped(line: str, columns: int) -> list[str]:
 
 
 def within(text: str, columns: int, most: int, ascii: bool) -> list[str]:
-    """A printable text in at most so many lines; where that is too little, with an ellipsis."""
+    """A printable text in at most so many lines; where that is too little, with an ellipsis after
+    a whole word: half a number would be another number.
+
+    >>> within("off by 28.4 cm and 11.3°, before by 3.2 cm", 16, 2, False)
+    ['off by 28.4 cm', '  and 11.3°,…']
+    """
     lines = wrapped(text, columns)
     if len(lines) <= most:
         return lines
-    rest = " ".join(line.strip() for line in lines[most - 1 :])
-    return [*lines[: most - 1], shorten(rest, columns, ascii)]
+    dots = "..." if ascii else "…"
+    last = wrapped(lines[most - 1], columns - len(dots))[0] if columns > len(dots) else ""
+    return [*lines[: most - 1], shorten(last + dots, columns, ascii)]
 
 
 def _fitting(text: str, columns: int) -> int:

@@ -126,11 +126,11 @@ def losing(view: View, names: Sequence[str]) -> str:
     if view.others:
         told = (f"{name} (off by {_off(one.pose, truth)})" for name, one in lost)
         return f"lost {when}: {', '.join(told)}"
-    off = f"the estimate is off by {_off(view.pose, truth)}"
+    off = f"off by {_off(view.pose, truth)}"
     if not isinstance(given, Reading):
         return f"lost {when}: {off}"
     before = _off(posed(view.step.prior, view.layout), truth)
-    return f"lost {when}: {off}, before it was by {before}"
+    return f"lost {when}: {off}, before by {before}"
 
 
 def _off(pose: Gaussian, truth: Array) -> str:

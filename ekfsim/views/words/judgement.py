@@ -6,6 +6,7 @@ NIS 82.1 (99.9 %: 10.8) · NEES 20341 (3 dof, 99.9 %: 16.3) · truth outside ell
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import NamedTuple
 
 from ekfsim.diagnostics.coverage import inside_cone, inside_ellipse
@@ -80,7 +81,8 @@ def judgement(view: View, scene: Scene, probability: float, columns: int = COLUM
     """
     every = (view, *view.others)
     if len(every) == 1:
-        forms = _shorter(_parts(view, probability))
+        parts = _parts(view, probability)
+        forms = chain(_shorter(parts), _fewer(parts, 0 if view.judged.closing else -1))
     else:
         each = (
             _forms(one, name, probability) for one, name in zip(every, scene.watching, strict=True)
@@ -114,6 +116,14 @@ def _shorter(parts: Sequence[Part]) -> Iterator[str]:
             yield " · ".join(
                 word for part, j in zip(parts, taken, strict=True) if (word := part[j])
             )
+
+
+def _fewer(parts: Sequence[Part], kept: int) -> Iterator[str]:
+    """The shortest forms of ever fewer parts, the one that says most to the last."""
+    left = list(parts)
+    while len(left) > 1:
+        del left[-1 if kept == 0 else -2]
+        yield " · ".join(part.least for part in left if part.least)
 
 
 def _parts(view: View, probability: float) -> list[Part]:

@@ -107,17 +107,16 @@ def test_the_reading_that_loses_the_run_says_so():
     ]
     assert losing == [23]
     assert said[23][0] == (
-        "lost with this reading: the estimate is off by 28.4 cm and 11.3°, "
-        "before it was by 11 cm and 3.78°"
+        "lost with this reading: off by 28.4 cm and 11.3°, before by 11 cm and 3.78°"
     )
     assert "the reading was very surprising (9.1σ)" in said[23][1]
 
 
 def test_a_start_and_a_step_that_lose_the_run_say_so():
     wrong = told(scene(Move(0.1, 0), sigma=SIGMA), start=np.array([3.0, 1.0, 0.5]))
-    assert captions(wrong, 0)[0].startswith("lost from the start: the estimate is off by 1.99 m")
+    assert captions(wrong, 0)[0].startswith("lost from the start: off by 1.99 m")
     carried_away = captions(scene(Kidnap(5, 5, 2), Move(0.1, 0), sigma=SIGMA), 1)
-    assert carried_away[0].startswith("lost with this step: the estimate is off by")
+    assert carried_away[0].startswith("lost with this step: off by")
     assert carried_away[1].startswith("the robot was carried away")
 
 

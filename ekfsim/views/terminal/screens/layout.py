@@ -123,7 +123,9 @@ class Layout:
         lines = [self.look.strong(line) for line in lines]
         warned = warns(view, self.probability)
         sign = (WARNING if ascii else WARNING_SIGN) if warned else ""
-        judged = sign + judgement(view, self.scene, self.probability, self.columns - len(sign))
+        several = 2 if view.others and rows - len(lines) > 1 else 1  # lines: each has its own
+        room = several * (self.columns - len(sign))
+        judged = sign + judgement(view, self.scene, self.probability, room)
         for told in (judged, losing(view, self.scene.watching) or meaning(view)):
             if told and len(lines) < rows:
                 told = printable(told.translate(PLAIN), True) if ascii else printable(told)
