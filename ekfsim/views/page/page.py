@@ -18,7 +18,7 @@ from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.views.page.holding import Holding
-from ekfsim.views.page.scenery import inks, origin_of, scenery
+from ekfsim.views.page.scenery import framed, inks, origin_of, scenery
 from ekfsim.views.page.told import Teller, ways
 from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.look import STANDARD, Look
@@ -64,15 +64,19 @@ class Page:
         tally, (first, *others) = Tally(), runs
         with redirect_stderr(StringIO()):  # what a filter prints it prints again
             steps = kept(first, [tally.write])
-            limits = scopes.of_all(scene, (steps, *others), look.probability).whole
-        origin, holding = origin_of(limits), Holding(tally.views, every)
-        teller = Teller(scene, look, origin, limits.size, expanded_length(scene.commands))
+            scope = scopes.of_all(scene, (steps, *others), look.probability)
+        origin, holding = origin_of(scope.whole), Holding(tally.views, every)
+        teller = Teller(scene, look, origin, scope.whole.size, expanded_length(scene.commands))
         views, last = [], None
+        limits: list[list[Any]] = []  # of the map, each with the view from which on they hold
         for view in holding.choose(together(first, others, (scene.filter, *scene.beside))):
+            if (seen := framed(scope.at(view), origin)) != (limits and limits[-1][1:]):
+                limits.append([len(views), *seen])
             views.append(inert(teller.tell(view)))
             last = view
         assert last is not None
-        fixed = scenery(scene, limits, look, origin) | {
+        fixed = scenery(scene, look, origin) | {
+            "limits": limits,
             "ways": ways(last, origin),
             "last": last.step.entry.index,
             "lines": teller.lines.texts,

@@ -1,5 +1,5 @@
-"""What stays the same from view to view of a page: the world, how much of it is shown, who
-watches, and how everything looks.
+"""What stays the same from view to view of a page: the world, who watches, and how everything
+looks; and how much of the plane is shown.
 """
 
 from collections.abc import Iterator
@@ -37,18 +37,17 @@ def origin_of(limits: Limits) -> Array:
     return np.round(middle) if max(map(abs, middle)) > FAR else np.zeros(2)
 
 
-def scenery(scene: Scene, limits: Limits, look: Look, origin: Array) -> dict[str, Any]:
+def framed(limits: Limits, origin: Array) -> list[Any]:
+    """How much of the plane is shown: left, bottom, right, top"""
+    (x, y), edges = origin.tolist(), (limits.left, limits.bottom, limits.right, limits.top)
+    return [length(edge - start) for edge, start in zip(edges, (x, y, x, y), strict=True)]
+
+
+def scenery(scene: Scene, look: Look, origin: Array) -> dict[str, Any]:
     """All of it, by name."""
     world, told = scene.world, scene.world.told.map
     fixed: dict[str, Any] = {
         "origin": [length(value) for value in origin.tolist()],
-        "limits": [
-            length(value)
-            for value in (
-                limits.left - origin[0], limits.bottom - origin[1],
-                limits.right - origin[0], limits.top - origin[1],
-            )
-        ],
         "world": _map(world.map, origin),
         "landmarks": [
             [*points(np.array([[mark.x, mark.y]]), origin), str(mark.id)]

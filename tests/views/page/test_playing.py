@@ -113,6 +113,17 @@ def test_a_click_on_a_curve_goes_there_and_its_cursor_follows(opened, pages):
         assert nees.locator(".bound").get_attribute("d")
 
 
+def test_the_map_grows_where_the_estimate_leaves_it_and_shrinks_on_the_way_back(opened, pages):
+    with opened(pages("diverge-01-wrong-wall"), "#32") as page:
+        room = "e => e.getBoundingClientRect().width"
+        before = page.locator("#map .boundary").evaluate(room)
+        page.keyboard.press("End")
+        at_last = page.locator("#map .boundary").evaluate(room)
+        assert at_last < 0.8 * before
+        page.keyboard.press("Home")
+        assert page.locator("#map .boundary").evaluate(room) == before
+
+
 def test_the_truth_outside_is_shown_in_a_style_of_its_own(opened, pages):
     with opened(pages("diverge-01-wrong-wall"), "#13") as page:
         judged = page.locator("#judgement")

@@ -20,7 +20,8 @@ const strips = [
 ]
   .map(([key, name]) => new Strip(at("strips"), key, name, go))
   .filter(strip => strip.any || !strip.svg.remove());
-const size = Math.max(lesson.limits[2] - lesson.limits[0], lesson.limits[3] - lesson.limits[1]);
+let room = [], // pixels of the map
+  limits = null; // what it shows of the plane
 
 function go(i) {
   current = Math.min(views.length - 1, Math.max(0, i));
@@ -81,7 +82,9 @@ function show() {
   at("map-told").textContent =
     `${spoken}. ${where(belief.pose)}; ${belief.spread}. ${view.judged}.`;
   at("close-told").textContent = [belief.spread, view.away].filter(Boolean).join("; ");
-  map.show(view, before, 0.022 * size, told, shown);
+  survey();
+  const [, left, bottom, right, top] = limits;
+  map.show(view, before, 0.022 * Math.max(right - left, top - bottom), told, shown);
   const [x, y] = belief.pose,
     w = view.wide / 2;
   close.fit([x - w, y - w, x + w, y + w], 300, 300, { left: 0, bottom: 0, top: 0, right: 0 });
@@ -96,6 +99,15 @@ function show() {
   ])
     at(id).disabled = off;
   choose(symbol);
+}
+
+// The map grows from where on the estimate, or the truth, has left what it shows.
+function survey() {
+  const now = lesson.limits.findLast(([first]) => first <= current);
+  if (now === limits) return;
+  limits = now;
+  map.fit(limits.slice(1), ...room, MARGIN);
+  map.label();
 }
 
 // What was believed before this view's step, where it is held and something else.
@@ -172,13 +184,12 @@ function frame({ wide, away }) {
 function lay() {
   const widths = strips.map(strip => strip.svg.clientWidth); // asked for before anything is changed
   const width = Math.max(280, at("pictures").clientWidth),
-    [left, bottom, right, top] = lesson.limits;
+    [, left, bottom, right, top] = lesson.limits[0];
   const wide = width - MARGIN.left - MARGIN.right,
     most = Math.max(220, 0.42 * innerHeight);
   const height =
     Math.min(most, (wide * (top - bottom)) / (right - left)) + MARGIN.top + MARGIN.bottom;
-  map.fit(lesson.limits, width, height, MARGIN);
-  map.label();
+  [room, limits] = [[width, height], null];
   strips.forEach((strip, i) => strip.draw(widths[i], shown));
   show();
 }
