@@ -24,6 +24,7 @@ from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.look import STANDARD, Look
 from ekfsim.views.playback.kept import kept
 from ekfsim.views.playback.playback import Tally, together
+from ekfsim.views.playback.view import View
 
 BROWSER = files("ekfsim.views.page") / "browser"
 # in this order
@@ -67,7 +68,8 @@ class Page:
             scope = scopes.of_all(scene, (steps, *others), look.probability)
         origin, holding = origin_of(scope.whole), Holding(tally.views, every)
         teller = Teller(scene, look, origin, scope.whole.size, expanded_length(scene.commands))
-        views, last = [], None
+        views: list[str] = []
+        last: View | None = None
         limits: list[list[Any]] = []  # of the map, each with the view from which on they hold
         for view in holding.choose(together(first, others, (scene.filter, *scene.beside))):
             if (seen := framed(scope.at(view), origin)) != (limits and limits[-1][1:]):

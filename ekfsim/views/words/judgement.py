@@ -80,6 +80,7 @@ def judgement(view: View, scene: Scene, probability: float, columns: int = COLUM
     several filters watch, each has its own.
     """
     every = (view, *view.others)
+    forms: Iterator[str]
     if len(every) == 1:
         parts = _parts(view, probability)
         forms = chain(_shorter(parts), _fewer(parts, 0 if view.judged.closing else -1))
