@@ -25,6 +25,12 @@ NOT_RUN = {  # these are understood, and no more
     "docker": "asks for a container",
     "--cluster": "asks for a scheduler: tests/study/running/test_cluster.py has its own",
 }
+OPTIONS = {
+    option
+    for command in cli.ekfsim.commands.values()
+    for parameter in command.params
+    for option in parameter.opts
+}
 PLACEHOLDER = re.compile(r"\b[A-Z]{2,}\b|…|\|")
 LOG = re.compile(r"(\w+)_log --log (?:DIR|FILE\.csv)")
 QUICKER = {  # what is typed in addition, so that it is soon done
@@ -143,7 +149,7 @@ def test_every_command_line_of_a_page_is_run(page, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_no_command_line_of_a_page_is_passed_over(page):
-    """Nor one that a page tells without the name of the program, such as `render --follow`."""
+    """Nor one that is told without the program's name, as `render --follow`, and no option."""
     found = read_through(page)
     assert sum(named_in(each.text) for each in found if isinstance(each, Line)) == named_in(
         page.read_text(encoding="utf-8")
@@ -151,6 +157,8 @@ def test_no_command_line_of_a_page_is_passed_over(page):
     for each in found:
         if isinstance(each, Line) and each.text.split()[0] in cli.ekfsim.commands:
             check_names(re.split(r"[\s,=]+", each.text))
+        if isinstance(each, Line) and re.match(r"--[a-z]", each.text):
+            assert re.split(r"[\s=]", each.text)[0] in OPTIONS
 
 
 def test_every_exception_is_one():
