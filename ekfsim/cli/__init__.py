@@ -7,7 +7,7 @@ from typing import NoReturn
 
 import click
 
-from ekfsim.cli import comparing, driving, files, grading, process, runs, students, studies
+from ekfsim.cli import comparing, driving, files, gallery, grading, process, runs, students, studies
 from ekfsim.version import VERSION
 
 
@@ -33,7 +33,7 @@ def ekfsim() -> None:
 for command in (
     *(runs.play, driving.drive, runs.render, runs.plot, runs.run, runs.record),
     *(files.check, files.schema, files.list_packaged, files.show, files.new, files.figures),
-    *(studies.study, studies.compare),
+    *(studies.study, studies.compare, gallery.gallery),
     *(comparing.diff, students.mutants, students.worksheet),
     *(grading.grade, grading.autograder),
 ):

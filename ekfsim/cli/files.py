@@ -1,6 +1,7 @@
 """The commands that look at files and make them: check, schema, list, show, new, figures."""
 
 import sys
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ import click
 from ekfsim.cli.asked import scene_of
 from ekfsim.cli.kinds import Result, Seed, Source, Word
 from ekfsim.cli.options import DOCUMENTS, FORCE, PLAIN, READING
-from ekfsim.cli.process import say, shown, warn
+from ekfsim.cli.process import say, shown, warn, width
 from ekfsim.errors import MOST_TOLD, EkfsimError, Mistake, UsageError, told
 from ekfsim.printable import in_a_line
 
@@ -19,6 +20,10 @@ if TYPE_CHECKING:
 KINDS = ("world", "commands", "homework", "filter")  # of files to start from
 # in the name of a file, and what it then is
 WORDS = {"world": "world", "command": "commands", "homework": "homework"}
+
+MORE = """\
+ekfsim list GROUP ({}) tells what each is for,
+ekfsim list --all the same of all, ekfsim list NAME all that is said of one."""  # than is listed
 
 
 @click.command(short_help="Validate FILES: every mistake with its place, or ok.")
@@ -101,21 +106,47 @@ def schema(kind: str, markdown: bool) -> None:
 
 @click.command("list", short_help="List what comes along, or all that is said of NAME.")
 @click.argument("name", required=False)
+@click.option("--all", "all_told", is_flag=True, help="What each of the commands is for.")
 @click.option("--worlds", is_flag=True, help="The worlds in place of the commands.")
-def list_packaged(name: str | None, worlds: bool) -> None:
-    """List the commands that come along, or the worlds; with NAME, all that is said of that one."""
-    from ekfsim.files.packaged import described, description_of, grouped, kind_of, packaged, resolve
+def list_packaged(name: str | None, all_told: bool, worlds: bool) -> None:
+    """List the commands that come along, or the worlds; with NAME, all that is said of that one, or
+    what each of a group is for: start, proofs, divergence, systems or logs.
+    """
+    from ekfsim.files.packaged import described, grouped, kind_of, packaged, resolve
 
+    groups = {group.name: group for group in grouped()}
+    if name in groups and not worlds:
+        return _tell_group(groups[name].title, groups[name].files)
     if name is not None:
         kind: Folder = "worlds" if worlds else kind_of(name)
         click.echo(
             shown(described(resolve(name, kind)) or in_a_line(f"{name}: has no description"))
         )
         return
-    for title, files in [("worlds", packaged("worlds"))] if worlds else grouped():
-        click.echo(f"{title}:")
-        for one, path in files.items():
-            click.echo(f"  {one:{max(map(len, files))}}  {description_of(path)}")
+    if worlds:
+        return _tell_group("worlds", packaged("worlds"))
+    for group in groups.values():
+        if all_told or group.name == "start":
+            _tell_group(group.title, group.files)
+        else:
+            names = "  ".join(group.files)
+            click.echo(
+                textwrap.fill(
+                    f"{group.title}: {names}", width() or 80, subsequent_indent="  ",
+                    break_on_hyphens=False, break_long_words=False,
+                )
+            )  # fmt: skip
+    if not all_told:
+        click.echo(MORE.format(", ".join([*groups][1:])))
+
+
+def _tell_group(title: str, files: "dict[str, Path]") -> None:
+    """What each of some files is for."""
+    from ekfsim.files.packaged import description_of
+
+    click.echo(f"{title}:")
+    for one, path in files.items():
+        click.echo(f"  {one:{max(map(len, files))}}  {description_of(path)}")
 
 
 @click.command(short_help="Print a file that comes along, or copy it.")
@@ -233,8 +264,8 @@ def figures(
     seed: int | None,
     force: bool,
 ) -> None:
-    """Draw every figure and table of one of the five documents,
-    or of the gallery, with captions.
+    """Draw every figure and table of one of the five documents, with captions; or, of gallery, the
+    table of the scenarios that diverge, as they stand and cured. `ekfsim gallery` shows them all.
     """
     from ekfsim.views.picture.look import get_ready
 

@@ -58,10 +58,10 @@ def progress(plan: "Plan", journal: "Journal") -> Iterator[Callable[["Task", "Ta
 
 
 @contextmanager
-def blocks_bar(total: int) -> Iterator[Callable[[object, object], None]]:
+def blocks_bar(total: int, label: str = "blocks") -> Iterator[Callable[[object, object], None]]:
     """A bar for blocks of which none is kept."""
     with click.progressbar(
-        length=total, label="blocks", file=sys.stderr, hidden=not sys.stderr.isatty()
+        length=total, label=label, file=sys.stderr, hidden=not sys.stderr.isatty()
     ) as bar:
 
         def done(task: object, found: object) -> None:

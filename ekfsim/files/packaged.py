@@ -3,7 +3,7 @@
 import os
 import re
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from ekfsim.errors import EkfsimError, UsageError
 from ekfsim.files.looking import exists, is_file, is_folder
@@ -64,23 +64,32 @@ def resolve(name_or_path: str | Path, kind: Folder) -> Path:
     return known[name]
 
 
-GROUPS = (  # of the commands that come along: what their names begin or end with
-    ("start here", re.compile("tour|square|theta")),
-    ("proofs: each shows one thing", re.compile("proof-.*")),
-    ("divergence: how a filter gets lost, and why", re.compile("diverge-.*")),
-    ("recorded logs, by --log", re.compile(".*_log")),
-    ("other systems", re.compile(".*")),
+START = "tour", "square", "theta"  # in the order to look at them
+LOGS = "logs"
+GROUPS = (  # of the other commands that come along: what their names begin or end with
+    ("proofs", "proofs: each shows one thing", re.compile("proof-.*")),
+    ("divergence", "divergence: how a filter gets lost, and why", re.compile("diverge-.*")),
+    ("systems", "other systems", re.compile(".*(?<!_log)")),
+    (LOGS, "recorded logs, by --log", re.compile(".*_log")),
 )
 
 
-def grouped() -> list[tuple[str, dict[str, Path]]]:
+class Group(NamedTuple):
+    """Packaged commands that serve one purpose."""
+
+    name: str  # by which it is asked for
+    title: str
+    files: dict[str, Path]  # by their bare names
+
+
+def grouped() -> list[Group]:
     """The packaged commands in groups, those to begin with first."""
     left = packaged("commands")
-    groups = []
-    for title, names in GROUPS:
-        groups.append((title, {name: path for name, path in left.items() if names.fullmatch(name)}))
-        left = {name: path for name, path in left.items() if name not in groups[-1][1]}
-    return [(title, files) for title, files in groups if files]
+    groups = [Group("start", "start here", {name: left.pop(name) for name in START})]
+    for name, title, pattern in GROUPS:
+        chosen = [each for each in left if pattern.fullmatch(each)]
+        groups.append(Group(name, title, {each: left.pop(each) for each in chosen}))
+    return groups
 
 
 def world_beside(path: Path, named: str) -> Path:

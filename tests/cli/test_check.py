@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from program import SHORT, WORLD, ekfsim, lay_out, left_in, process
 
-from ekfsim.files.packaged import description_of, packaged
+from ekfsim.files.packaged import description_of, grouped, packaged
 
 
 @pytest.fixture(autouse=True)
@@ -92,16 +92,35 @@ def test_schema_is_json(kind):
     assert json.loads(told.out)["title"] == f"ekfsim {kind}"
 
 
-def test_list_names_all_that_comes_along():
-    for more, kind in (((), "commands"), (("--worlds",), "worlds")):
+def test_list_is_short_and_names_all_that_comes_along():
+    told = ekfsim("list")
+    assert (told.status, told.err) == (0, "")
+    lines = told.out.splitlines()
+    assert len(lines) <= 24
+    assert max(map(len, lines[4:])) <= 80
+    assert lines[0] == "start here:"
+    assert [line.split()[0] for line in lines[1:4]] == ["tour", "square", "theta"]
+    assert lines[1].endswith(description_of(packaged("commands")["tour"]))
+    named = set(told.out.split())
+    assert packaged("commands").keys() <= named
+
+
+def test_list_tells_what_each_of_a_group_is_for():
+    def listed(*more):
         told = ekfsim("list", *more)
         assert (told.status, told.err) == (0, "")
-        names = [line.split()[0] for line in told.out.splitlines() if line.startswith("  ")]
-        assert sorted(names) == sorted(packaged(kind))
-    groups = [
-        line.split(":")[0] for line in ekfsim("list").out.splitlines() if not line.startswith(" ")
-    ]
-    assert groups[:3] == ["start here", "proofs", "divergence"]
+        return dict(line.split(maxsplit=1) for line in told.out.splitlines() if line[0] == " ")
+
+    groups = [group.name for group in grouped()]
+    assert groups == ["start", "proofs", "divergence", "systems", "logs"]
+    parts = [listed(group) for group in groups]
+    told = {name: description_of(path) for name, path in packaged("commands").items()}
+    assert listed("--all") == told == {name: line for part in parts for name, line in part.items()}
+    assert sum(map(len, parts)) == len(told)
+    assert all(name.endswith("_log") == (name in parts[-1]) for name in told)
+    assert listed("--worlds").keys() == packaged("worlds").keys()
+    more = ekfsim("list").out.partition("ekfsim list GROUP (")[2].partition(")")[0]
+    assert more.split(", ") == groups[1:]
 
 
 def test_list_tells_all_that_a_file_says_of_itself():

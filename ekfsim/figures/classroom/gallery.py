@@ -15,32 +15,20 @@ from ekfsim.geometry import Integers
 from ekfsim.localization import play
 from ekfsim.scene import Scene
 from ekfsim.study.block import run_block
-from ekfsim.study.results import Result, Share
+from ekfsim.study.results import Result
 from ekfsim.version import VERSION
-from ekfsim.views.study.words import percent, shared
+from ekfsim.views.study import shares
+from ekfsim.views.study.words import shared
 
 RUNS = 1000
 GATE = 0.99
 HEAD = (
-    *(
-        "input",
-        "lost",
-        "ΣNIS above / below",
-        "NEES above / below",
-        "inside the ellipse",
-        "NIS per number read",
-    ),
+    *("input", *shares.HEAD),
     *("lost, gate 0.99", "left out by it", "lost, guard skip", "left out by it"),
 )
 CAPTION = """\
-Shares of {runs} runs of seed {seed} of each `diverge-…` input that comes along, in percent, with \
-the 95 % interval
-(Wilson) of each share in brackets. Lost: the last NEES lies beyond its χ² 99.9 % quantile, or the \
-belief is impossible.
-ΣNIS: runs whose sum of NIS lies above / below its two-sided 95 % band; NEES: runs whose last NEES \
-does. Inside: the
-true position, of the ellipses of 95.4 % that have an area. The last columns are the same runs, on \
-the same draws, with
+Of {runs} runs of seed {seed} of each `diverge-…` input that comes along. {meaning} \
+The last columns are the same runs, on the same draws, with
 `--gate {gate}` and with `--guard skip`, and how many of a run's readings these leave out on \
 average. Each file's
 description tells its mechanism, and `ekfsim run NAME` one of its runs.
@@ -60,24 +48,14 @@ def draw_gallery(scene: Scene, album: Album) -> None:
         "Scenarios that diverge",
         HEAD,
         rows,
-        CAPTION.format(runs=RUNS, seed=scene.seed, gate=GATE),
+        CAPTION.format(runs=RUNS, seed=scene.seed, meaning=shares.MEANING, gate=GATE),
     )
 
 
 def row(name: str, seed: int) -> list[str]:
     """What is found of one input: as it stands, with a gate, and with the guard."""
     plain = replace(shipped(name), filter="ekf", seed=seed)
-    found = result(plain)
-    of, runs, last = found.tally.of, found.tally.runs, found.last
-    cells = [
-        *(
-            name,
-            shared(last.lost),
-            sides(of.nis_above, of.nis_below, runs),
-            sides(of.nees_above, of.nees_below, runs),
-        ),
-        *(shared(last.ellipse) if last.ellipse.of else "–", f"{found.nis.value:.3g}"),
-    ]
+    cells = [name, *shares.shares(result(plain))]
     for cured, refused in (
         (replace(plain, gate=GATE), Refused.GATE),
         (replace(plain, guard="skip"), Refused.GUARD),
@@ -92,11 +70,6 @@ def row(name: str, seed: int) -> list[str]:
 def result(scene: Scene) -> Result:
     """What is said of all runs of a scene."""
     return Result.alone(scene, run_block(scene, 0, RUNS))
-
-
-def sides(above: int, below: int, runs: int) -> str:
-    """Two shares of runs, in percent."""
-    return " / ".join(percent(Share(n, runs)) for n in (above, below))
 
 
 def left_out(scene: Scene, why: Refused) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 page.py      the page whole
 writing.py   the page as a file
+document.py  a text with its style and its script, and no other
 holding.py   which of a run's views it holds
 scenery.py   what stays the same from view to view: world, limits, colours, legend
 told.py      what it holds of one view: words, beliefs, matrices

@@ -1,14 +1,9 @@
 """One self-contained page that plays a run: a step is one press of n."""
 
-import base64
-import hashlib
 import json
-import re
 from collections.abc import Iterable, Sequence
 from contextlib import redirect_stderr
 from dataclasses import dataclass
-from html import escape
-from importlib.resources import files
 from io import StringIO
 from typing import Any, Self
 
@@ -17,6 +12,7 @@ from ekfsim.printable import in_a_line, shown
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Step
 from ekfsim.scene import Scene
+from ekfsim.views.page.document import filled, hashed, text_of
 from ekfsim.views.page.holding import Holding
 from ekfsim.views.page.scenery import framed, inks, origin_of, scenery
 from ekfsim.views.page.told import Teller, ways
@@ -26,7 +22,6 @@ from ekfsim.views.playback.kept import kept
 from ekfsim.views.playback.playback import Tally, together
 from ekfsim.views.playback.view import View
 
-BROWSER = files("ekfsim.views.page") / "browser"
 # in this order
 SCRIPTS = (
     "shapes.js",
@@ -124,26 +119,15 @@ def inert(value: Any) -> str:
 
 def _filled(scene: Scene, lesson: str, thinned: str) -> str:
     """The page's text with everything in its place."""
-    style = inks() + _text("page.css")
-    script = "(() => {\n" + "".join(map(_text, SCRIPTS)) + "})();\n"
+    style = inks() + text_of("page.css")
+    script = "(() => {\n" + "".join(map(text_of, SCRIPTS)) + "})();\n"
     heading, *rest = shown(scene.description.strip() or scene.world.name).splitlines()
     facts = {
-        "policy": f"default-src 'none'; img-src data:; style-src '{_hash(style)}'; "
-        f"script-src '{_hash(script)}'; base-uri 'none'; form-action 'none'",
+        "policy": f"default-src 'none'; img-src data:; style-src '{hashed(style)}'; "
+        f"script-src '{hashed(script)}'; base-uri 'none'; form-action 'none'",
         "title": in_a_line(heading),
         "rest": " ".join(line.strip() for line in rest),
         "thinned": thinned,
         "source": in_a_line(told_in_a_line(scene)),
     }
-    filled = {name: escape(told) for name, told in facts.items()}
-    filled |= {"style": style, "script": script, "lesson": lesson}
-    return re.sub(r"{{(\w+)}}", lambda name: filled[name[1]], _text("page.html"))
-
-
-def _text(name: str) -> str:
-    return (BROWSER / name).read_text(encoding="utf-8")
-
-
-def _hash(text: str) -> str:
-    """By which a page's policy knows its own style and script, and allows no other."""
-    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+    return filled(text_of("page.html"), facts, {"style": style, "script": script, "lesson": lesson})

@@ -1,4 +1,4 @@
-"""One browser for all tests of the page. Elsewhere than on Debian there may be none: then they are
+"""One browser for all tests of pages. Elsewhere than on Debian there may be none: then they are
 skipped, unless EKFSIM_NEEDS_BROWSER says that there has to be one.
 """
 
