@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass
 from html import escape
+from pathlib import Path
 
+from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
 from ekfsim.scene import Scene
 from ekfsim.views.page.page import page
@@ -29,8 +31,10 @@ class Animation:
         )
 
 
-def animate(scene: Scene, look: Look = STANDARD, height: int = HEIGHT) -> Animation:
+def animate(scene: Scene | str | Path, look: Look = STANDARD, height: int = HEIGHT) -> Animation:
     """The run of a scene as a page that plays in the cell: n, p, space, a slider, a click on the
     curves beneath. All filters that watch are in it. height : of the frame, in pixels
     """
+    if not isinstance(scene, Scene):
+        scene = load_scene(scene)
     return Animation(page(scene, [list(play(one)) for one in scene.alone()], look), height)

@@ -145,10 +145,12 @@ def compare(
     a, b : what either side sets, {"guard": "skip", "gate": 0.99}, its filter, too; nothing where
     left out. Raises UsageError or InputError where what is asked is no comparison.
     """
+    example = "write e.g. a={'guard': 'off'}, b={'guard': 'skip', 'gate': 0.99}"
+    for side in (a, b):
+        if side is not None and not isinstance(side, Mapping):
+            raise UsageError(f"compare: a and b are what either side sets of one scene; {example}")
     if not a and not b:
-        raise UsageError(
-            "nothing is compared; write e.g. a={'guard': 'off'}, b={'guard': 'skip', 'gate': 0.99}"
-        )
+        raise UsageError(f"nothing is compared; {example}")
     scene, told = _asked(scene, seed=seed, filter=filter)
     if scene.beside:
         raise UsageError("compare: two filters are compared as a={'filter': …}, b={'filter': …}")

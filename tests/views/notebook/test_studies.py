@@ -129,6 +129,7 @@ def test_a_mistake_in_a_study_is_told(told, what):
     ("told", "what"),
     [
         ("nothing is compared; write e.g. a=", {}),
+        ("compare: a and b are what either side sets", {"a": SQUARE}),
         ("compare: a and b are the same; let them differ", {"a": {"guard": "warn"}}),
         ("seed: both sides have the same draws; give seed to both", {"a": {"seed": 3}}),
         ("compare: two filters are compared as a=", {"a": {"gate": 0.9}, "filter": "ekf,ukf"}),
