@@ -157,14 +157,14 @@ class Player:
         if self.number == start:
             self._stay(self._over())
         else:
-            self._stayed = ("", 0)
             passed = range(start + 1, self.number) if self.screen.keeps else ()
             self._show(passed="".join(self._told(self._view(number)) for number in passed))
 
     def _stay(self, why: str) -> None:
         """Say why the view stays, of a held key once."""
-        again, self._stayed = self._stayed == (why, self.number), (why, self.number)
-        self._show(note="" if again and self.screen.keeps else why)
+        if self._stayed != (why, self.number):
+            self._show(note=why)
+            self._stayed = (why, self.number)
 
     def _go_on(self) -> None:
         """The next view, as its time has come."""
@@ -248,11 +248,11 @@ class Player:
     def _to(self, number: int, note: str = "") -> None:
         """To another view; those between are not told."""
         whither = "Back at" if number < self.number else "On to"
-        self._stayed = ("", 0)
         moved, self.number = number != self.number, number
         self._show(note, passed=f"<=={whither} {self._place}\n\n" if moved else "")
 
     def _show(self, note: str = "", page: str = "", passed: str = "", typed: int = 0) -> None:
+        self._stayed = ("", 0)
         view = self._view(self.number)
         revised = self.number > 0 and not view.beam and self._view(self.number - 1).beam
         before = self._narrated(self._view(self.number - 1)) if revised else ""

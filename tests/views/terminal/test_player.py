@@ -111,6 +111,11 @@ def test_nothing_comes_after_the_last_view():
     assert played(*[NEXT] * 6, BACK, *[NEXT] * 3)[1].count(OVER) == 2
 
 
+@pytest.mark.parametrize(("held", "stay"), [("Gnnnnn", 3), ("pppp", 2), ("GnnE5nn?n", 8)])
+def test_a_key_held_where_it_does_nothing_draws_the_screen_once(held, stay):
+    assert len(moments(*held)) == stay
+
+
 def test_back_shows_and_tells_the_view_before():
     shown, told = played(NEXT, NEXT, BACK)
     assert shown == [0, 1, 2, 1]
