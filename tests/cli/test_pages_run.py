@@ -37,6 +37,7 @@ QUICKER = {  # what is typed in addition, so that it is soon done
     "render": ["--every", "40"],
     "study": ["--runs", "2"],
     "compare": ["--runs", "2"],
+    "gallery": ["--only", "square"],
 }
 QUOTED = {  # what a page quotes of what a line prints, for which that is run in full
     "compare theta --seed 1 --runs 3000 --b filter.crossCovariances=dropped": [
@@ -106,7 +107,7 @@ def run(line: str) -> None:
             if name in READERS and not Path(name).exists():
                 run(READERS[name])
     command = " ".join(words)
-    in_full = "--expect" in words or command in QUOTED
+    in_full = "--expect" in words or "--step" in words or command in QUOTED
     quicker = [] if in_full else QUICKER.get(words[0], [])
     with pytest.MonkeyPatch.context() as patched:
         for name, value in environment.items():
