@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from PIL.GifImagePlugin import getdata, getheader
 
-from ekfsim.geometry import Array, Booleans
+from ekfsim.geometry import Array, Integers
 from ekfsim.views.film.png import Pixels
 from ekfsim.views.picture.artists import (
     BLUE,
@@ -46,39 +46,39 @@ def write(file: BinaryIO, pictures: Iterable[tuple[Pixels, float]], comment: str
         now = pixels.view(np.uint32)[..., 0]
         if shown is None:
             shown = np.zeros_like(now)  # transparent
+            indices = np.full(now.shape, UNCHANGED, np.uint8)
             info = {"loop": 0, "comment": comment.encode()}
             header, _ = getheader(palette().resize(now.shape[::-1]), info=info)
             file.writelines(header)
-        changed = now != shown
-        rows, columns = _span(changed.any(axis=1)), _span(changed.any(axis=0))
-        box = changed[rows, columns]
-        indices = np.full(box.shape, UNCHANGED, np.uint8)
-        indices[box] = _nearest(now[rows, columns][box])
-        picture, corner = Image.fromarray(indices), (columns.start, rows.start)
+        changed = np.flatnonzero(now != shown)  # few of all, so all else is asked of them alone
+        colors = now.ravel()[changed]
+        shown.ravel()[changed] = colors
+        indices.ravel()[changed] = _nearest(colors)
+        rows, columns = map(_span, np.divmod(changed, now.shape[1]))
+        picture, corner = Image.fromarray(indices[rows, columns]), (columns.start, rows.start)
         duration = round(1000 * seconds)
         file.writelines(
             getdata(picture, corner, duration=duration, disposal=KEEP, transparency=UNCHANGED)
         )
-        shown[rows, columns] = now[rows, columns]
+        indices.ravel()[changed] = UNCHANGED
     file.write(END)
 
 
-def _span(some: Booleans) -> slice:
-    """From the first to the last that is true; one where none is, as an equal picture is still one.
+def _span(places: Integers) -> slice:
+    """From the first to the last; one where there is none, as an equal picture is still one.
 
-    >>> _span(np.array([False, True, False, True, False])), _span(np.array([False, False]))
+    >>> _span(np.array([3, 1])), _span(np.array([], int))
     (slice(1, 4, None), slice(0, 1, None))
     """
-    (places,) = some.nonzero()
-    return slice(int(places[0]), int(places[-1]) + 1) if len(places) else slice(0, 1)
+    return slice(int(places.min()), int(places.max()) + 1) if len(places) else slice(0, 1)
 
 
 def _nearest(colors: NDArray[np.uint32]) -> NDArray[np.uint8]:
     """The palette's colour for each. colors : (n,), of red, green, blue and what does not count"""
     if not len(colors):
         return np.empty(0, np.uint8)
-    rgb = np.ascontiguousarray(colors.view(np.uint8).reshape(1, -1, 4)[..., :3])
-    matched = Image.fromarray(rgb).quantize(palette=palette(), dither=Image.Dither.NONE)
+    rgb = Image.frombytes("RGB", (len(colors), 1), colors.tobytes(), "raw", "RGBX")
+    matched = rgb.quantize(palette=palette(), dither=Image.Dither.NONE)
     indices: NDArray[np.uint8] = np.asarray(matched)[0]
     return indices
 

@@ -105,7 +105,8 @@ def line(
 ) -> Line2D:
     """A line that is still to be placed."""
     made = Line2D([], [], color=color, lw=width, ls=dashes, zorder=zorder, gid=gid, label=label)
-    return axes.add_line(made)
+    axes.add_artist(made)  # add_line would look at how far it reaches, as well
+    return made
 
 
 def marks(
@@ -114,7 +115,8 @@ def marks(
     """Marks that are still to be placed; filled."""
     made = Line2D([], [], color=color, ls="none", marker=marker, ms=size, zorder=zorder, gid=gid)
     made.set_label(label)
-    return axes.add_line(made)
+    axes.add_artist(made)
+    return made
 
 
 def place(line: Line2D, points: Array) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.path import Path
 
 from ekfsim.commands import expanded_length
 from ekfsim.geometry.ellipse import outline
@@ -29,7 +30,7 @@ from ekfsim.views.picture.layout import (
     arranged,
     fitting,
 )
-from ekfsim.views.picture.legend import Key
+from ekfsim.views.picture.legend import Key, Row
 from ekfsim.views.picture.lettering import drawable, families, shortened, wrapped
 from ekfsim.views.picture.look import SCREEN, STANDARD, Look, Paper
 from ekfsim.views.picture.names import Names
@@ -125,8 +126,9 @@ class Picture:
         return moved
 
     def moving(self) -> Iterator[Artist]:
-        """What differs from view to view but for the legend, in the order it is drawn."""
-        yield self.names.artist
+        """What differs from view to view but for names, which are drawn first, and legend; in the
+        order it is drawn.
+        """
         yield from sorted(self.main.moving, key=Artist.get_zorder)
         yield from sorted(self.close.moving, key=Artist.get_zorder)
         yield from (self.title, self.judgement, self.notes, self.spread)
@@ -153,11 +155,13 @@ class Frame:
     ) -> None:
         self.picture = Picture.on(paper, scene, scope, look)
         self._canvas: Any = self.picture.figure.canvas  # matplotlib leaves its methods untyped
-        self._rows: dict[object, Any] = {}  # of the legend: their pixels
-        for artist in (*self.picture.moving(), self.picture.legend):
+        # of the legend, where each has stood: their pixels
+        self._rows: dict[tuple[Row, tuple[float, float]], Any] = {}
+        picture = self.picture
+        for artist in (picture.names.artist, *picture.moving(), picture.legend):
             artist.set_animated(True)
-        self._draw_still()
         self._replay = Replay(self._canvas)
+        self._draw_still()
         width, height = self._canvas.get_width_height()
         self._encoder = Encoder(height, width)
 
@@ -177,7 +181,7 @@ class Frame:
         """The canvas with a view on it, until the next : (h, w, 4)"""
         if self.picture.show(view):
             self._draw_still()
-        self._canvas.restore_region(self._still)
+        self._draw_ground()
         self._draw_legend()
         self._replay.draw(artist for artist in self.picture.moving() if not empty(artist))
         return np.asarray(self._canvas.buffer_rgba())
@@ -186,12 +190,29 @@ class Frame:
         """Draw what does not move."""
         self._canvas.draw()
         self._still = self._canvas.copy_from_bbox(self.picture.figure.bbox)
+        self._last: Path | None = None  # the names of the last view
+        self._kept: tuple[Path, Any] | None = None  # names, and pixels that they are on
+
+    def _draw_ground(self) -> None:
+        """Draw what does not move and the names on it, which stay where they are for many views."""
+        names = self.picture.names.artist
+        letters = names.get_path()
+        if self._kept is not None and self._kept[0] is letters:
+            self._canvas.restore_region(self._kept[1])
+            return
+        self._canvas.restore_region(self._still)
+        self._replay.draw([names])
+        if letters is self._last:
+            self._kept = letters, self._canvas.copy_from_bbox(self.picture.figure.bbox)
+        self._last = letters
 
     def _draw_legend(self) -> None:
         """Draw each row of the legend, or put the pixels there with which it was drawn before."""
-        for look, row, box in self.picture.legend.placed():
-            if look in self._rows:
-                self._canvas.restore_region(self._rows[look])
+        legend = self.picture.legend
+        for row in legend.rows():
+            kept = self._rows.get((row, row.corner))
+            if kept is not None:
+                self._canvas.restore_region(kept)
             else:
                 row.draw(self._canvas.get_renderer())
-                self._rows[look] = self._canvas.copy_from_bbox(box)
+                self._rows[row, row.corner] = self._canvas.copy_from_bbox(legend.box(row))

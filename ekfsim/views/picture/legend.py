@@ -50,7 +50,7 @@ class Row:
     def __init__(self, figure: Figure, handle: Handle, words: str, points: float) -> None:
         self._em, self.lines = points / 72, 1 + words.count("\n")
         self._sample: list[Sample] = sample(handle)
-        self.left = self.top = 0.0
+        self.corner = self._drawn_at = (0.0, 0.0)  # left and top, in inches
         inches = figure.dpi_scale_trans
         self.text = OutlinedText(0, 0, points, inches, inches, "legend-text")
         self.text.set_text(words)
@@ -62,17 +62,17 @@ class Row:
             artist.set_transform(inches)
 
     def place(self, left: float, top: float) -> None:
-        """Begin it at a corner, in inches."""
-        if (left, top) == (self.left, self.top):
-            return
-        self.left, self.top = left, top
-        em, baseline = self._em, top - self._em
-        for artist in self._sample:
-            artist.fill(Bbox.from_bounds(left, baseline - 0.02 * em, WIDE * em, 0.7 * em))
-        self.text.place(left + APART * em, baseline)
+        """Begin it at a corner, in inches. It goes there when it is drawn."""
+        self.corner = left, top
 
     def artists(self) -> Iterator[Artist]:
-        """All of it."""
+        """All of it, in its place."""
+        if self.corner != self._drawn_at:
+            self._drawn_at, (left, top) = self.corner, self.corner
+            em, baseline = self._em, top - self._em
+            for artist in self._sample:
+                artist.fill(Bbox.from_bounds(left, baseline - 0.02 * em, WIDE * em, 0.7 * em))
+            self.text.place(left + APART * em, baseline)
         yield from self._sample
         yield self.text
 
@@ -125,18 +125,20 @@ class Key(Artist):
                 row.draw(renderer)
         self.stale = False
 
-    def placed(self) -> Iterator[tuple[object, Row, Bbox]]:
-        """Its rows, with what tells each from all others at any place, and the box, in pixels, that
-        nothing else of it is drawn in.
-        """
-        dpi = self._figure.dpi
-        for row, look in zip(self._rows, self.look, strict=True):
-            top = row.top + UP * self._pitch
-            below, above = (top - row.lines * self._pitch) * dpi, top * dpi
-            box = Bbox.from_extents(
-                row.left * dpi - RIM, below, (row.left + row.width) * dpi + RIM, above
-            )
-            yield (look, self._pitch, row.left, row.top), row, box
+    def rows(self) -> list[Row]:
+        """Its entries: the same one looks the same at the same corner, whatever else is shown."""
+        return self._rows
+
+    def box(self, row: Row) -> Bbox:
+        """The box, in pixels, that nothing else of it is drawn in."""
+        dpi, (left, top) = self._figure.dpi, row.corner
+        above = top + UP * self._pitch
+        return Bbox.from_extents(
+            left * dpi - RIM,
+            (above - row.lines * self._pitch) * dpi,
+            (left + row.width) * dpi + RIM,
+            above * dpi,
+        )
 
     def get_window_extent(self, renderer: Any = None) -> Bbox:
         """Where it is, in pixels."""

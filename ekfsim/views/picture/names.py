@@ -78,8 +78,10 @@ class Names:
         blocked = self._on_what_moves(moving)
         if blocked.tobytes() != self._blocked:
             self._blocked = blocked.tobytes()
-            self.shown = list(self._chosen(blocked))
-            self.artist.set_path(self._letters())
+            chosen = list(self._chosen(blocked))
+            if [*map(id, chosen)] != [*map(id, self.shown)]:
+                self.shown = chosen
+                self.artist.set_path(self._letters())
 
     def _arrange(self) -> None:
         """Find the places where a name covers nothing that stands still."""
