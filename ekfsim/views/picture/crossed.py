@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, Booleans
 
 SQUARE = 6.0  # pixels
 
@@ -35,11 +35,12 @@ class Crossed:
         columns, rows = ((places - self._low) / SQUARE).astype(int).T
         self._seen[rows, columns] = True
 
-    def inside(self, boxes: Array) -> Array:
+    def inside(self, boxes: Array) -> Booleans:
         """Whether a line crosses each of these. boxes : (n, 4) pixels"""
         total = np.zeros(np.add(self._seen.shape, 1), np.int32)
-        np.cumsum(self._seen, axis=0, dtype=np.int32, out=total[1:, 1:])
-        np.cumsum(total, axis=1, out=total)
+        along = np.cumsum(self._seen, axis=1, dtype=np.int32)
+        # down the columns, turned to rows for it, as that is three times as fast
+        total[1:, 1:] = np.cumsum(np.ascontiguousarray(along.T), axis=1).T
         rows, columns = self._seen.shape
         low = np.floor((boxes[:, :2] - self._low) / SQUARE).astype(int)
         high = np.floor((boxes[:, 2:] - self._low) / SQUARE).astype(int) + 1

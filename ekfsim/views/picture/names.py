@@ -15,7 +15,7 @@ from matplotlib.patches import PathPatch, Polygon
 from matplotlib.path import Path
 from shapely.geometry.base import BaseGeometry
 
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, Booleans
 from ekfsim.views.picture.artists import empty
 from ekfsim.views.picture.crossed import Crossed
 from ekfsim.views.picture.lettering import drawable, shortened
@@ -132,21 +132,23 @@ class Names:
         inches = points * np.array([width * PER_POINT, HEIGHT / 72])
         return inches * self._figure.dpi
 
-    def _on_what_moves(self, moving: Iterable[Artist]) -> Any:
-        """Which places are not free : (n,) of bool"""
+    def _on_what_moves(self, moving: Iterable[Artist]) -> Booleans:
+        """Which places are not free : (n,)"""
         crossed = Crossed(self._axes.bbox.extents)
-        blocked = np.zeros(len(self._boxes), bool)
         grown = self._boxes + CLEAR * np.array([-1, -1, 1, 1])
-        corners = grown[:, [[0, 1], [2, 1], [2, 3], [0, 3]]].reshape(-1, 2)
-        to_pixels, lines = self._axes.transData.transform, [APART]
+        lines, areas, end = [APART], [], 1
         for artist in moving:
             for points, is_area in _drawn(artist):
                 lines += [points, points[-1:], APART]  # a single point becomes a line, too
                 if is_area:
-                    inside = Path(to_pixels(points)).contains_points(corners).reshape(-1, 4)
-                    blocked |= inside.any(axis=1)
-        crossed.add(to_pixels(np.concatenate(lines)))
-        return blocked | crossed.inside(grown)
+                    areas.append(slice(end, end + len(points)))
+                end += len(points) + 2
+        pixels = self._axes.transData.transform(np.concatenate(lines))
+        crossed.add(pixels)
+        blocked = crossed.inside(grown)
+        for area in areas:
+            _block(blocked, grown, pixels[area])
+        return blocked
 
     def _chosen(self, blocked: Any) -> Iterator[Name]:
         """The first free place of each name that lies on no other name."""
@@ -193,6 +195,18 @@ def _drawn(artist: Artist) -> Iterator[tuple[Array, bool]]:
         case PathCollection():
             dots = np.asarray(artist.get_offsets())
             yield np.stack([dots, dots, np.full_like(dots, np.nan)], axis=1).reshape(-1, 2), False
+
+
+def _block(blocked: Booleans, boxes: Array, area: Array) -> None:
+    """Tell of those boxes that are still free whether a corner of theirs is in an area. boxes :
+    (n, 4), area : (m, 2) pixels
+    """
+    low, high = area.min(axis=0), area.max(axis=0)
+    near = ~blocked & (boxes[:, 2:] > low).all(axis=1) & (boxes[:, :2] < high).all(axis=1)
+    (which,) = near.nonzero()
+    if len(which):
+        corners = boxes[which][:, [[0, 1], [2, 1], [2, 3], [0, 3]]].reshape(-1, 2)
+        blocked[which] = Path(area).contains_points(corners).reshape(-1, 4).any(axis=1)
 
 
 def _inside(shape: BaseGeometry, taken: shapely.STRtree, own: int, size: Array) -> Iterator[Array]:
