@@ -46,7 +46,7 @@ def play_interactively(
     with stage.keys() as next_key:
         player = Player(
             scene, play(scene), stage.screen, stage.pictures.save, look.probability, explain,
-            Pace(auto), stage.interruptible,
+            Pace(auto), stage.interruptible, hear=stage.hear,
         )  # fmt: skip
         player.play(next_key)
     if player.drives:

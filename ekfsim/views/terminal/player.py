@@ -13,7 +13,7 @@ from ekfsim.localization import play
 from ekfsim.printable import shown
 from ekfsim.records import Step
 from ekfsim.scene import Scene
-from ekfsim.views.playback.kept import kept
+from ekfsim.views.playback.kept import heard, kept, nobody
 from ekfsim.views.playback.length import Length, length_of
 from ekfsim.views.playback.playback import Playback, Run
 from ekfsim.views.playback.view import View
@@ -50,6 +50,8 @@ class Player:
     interruptible: Callable[[], AbstractContextManager[Callable[[], bool]]] = unnoticed
     number: int = 0  # of the view on the screen
     greeting: str = ""  # what there is to say before any key
+    # is told of each step as it is made, which may be long before it is shown
+    hear: Callable[[int], None] = nobody
     drives: bool = False  # whether it ended because somebody wants to drive on from there
     playback: Run = field(init=False)
     # of the steps so far, by filter; ahead of what is shown by a view
@@ -62,7 +64,7 @@ class Player:
     def __post_init__(self, steps: Iterable[Step]) -> None:
         alone = self.scene.alone()
         self._summaries = [Summary.of(one) for one in alone]
-        runs = (steps, *map(play, alone[1:]))
+        runs = [heard(run, self.hear) for run in (steps, *map(play, alone[1:]))]
         first, *others = (kept(run, [s.add]) for run, s in zip(runs, self._summaries, strict=True))
         self.playback = Playback(first, others, (self.scene.filter, *self.scene.beside))
         self._length = length_of(self.scene)

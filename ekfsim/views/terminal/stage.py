@@ -17,6 +17,7 @@ from ekfsim.files.yaml.telling import quoted
 from ekfsim.scene import Scene
 from ekfsim.views.picture.look import Look, get_ready
 from ekfsim.views.picture.scope import Scope
+from ekfsim.views.playback.kept import nobody
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal import drawing as terminal
 from ekfsim.views.terminal.images.asking import Means, ask
@@ -107,6 +108,11 @@ class Stage:
     def interruptible(self) -> Callable[[], AbstractContextManager[Callable[[], bool]]]:
         """A block in which Ctrl-C stops what takes long, and not the program."""
         return unnoticed if self.console is None else noticed
+
+    @property
+    def hear(self) -> Callable[[int], None]:
+        """Is told of each step as it is made."""
+        return nobody if self.console is None else self.console.hear
 
     @contextmanager
     def keys(self) -> Iterator[NextKey]:

@@ -55,7 +55,8 @@ class Console:
         self._inside = False
         # what a filter of one's own prints meanwhile: nothing comes between the lines of the screen
         self.printed = StringIO()
-        self._printed = 0  # how much of it has been shown
+        self._printed = 0  # how much of it is known to belong to a step, or has been shown
+        self._said: dict[int, str] = {}  # what it has printed, by step
 
     def enter(self) -> None:
         """Take the terminal, at the start or again after Ctrl-Z."""
@@ -79,12 +80,25 @@ class Console:
         if last is None or (last.view.number, last.page) != (moment.view.number, moment.page):
             self._scroll = None
         self._read[moment.view.number] = moment.narrative
-        if said := self.printed.getvalue()[self._printed :]:
-            self._printed += len(said)
+        step = moment.view.step.entry.index
+        made = () if moment.view.beam else range(step - moment.view.inputs + 1, step + 1)
+        if said := "".join(self._said.get(index, "") for index in made) + self._unclaimed():
             lines = ["The filter has printed:", *said.splitlines()[-PRINTED:]]
             narrative = moment.narrative + "".join(f"{line}\n" for line in lines)
             self._moment = replace(moment, narrative=narrative)
         self._draw()
+
+    def hear(self, step: int) -> None:
+        """What the filter has printed until now it has printed in this step."""
+        if said := self._unclaimed():
+            self._said[step] = self._said.get(step, "") + said
+
+    def _unclaimed(self) -> str:
+        """What has been printed since it was last asked."""
+        self.printed.seek(self._printed)
+        said = self.printed.read()
+        self._printed += len(said)
+        return said
 
     def refresh(self) -> None:
         """Draw again where the terminal has another size, or was somebody else's."""

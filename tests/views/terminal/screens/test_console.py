@@ -4,6 +4,7 @@ import pytest
 from scenes import scene
 
 from ekfsim.commands import Move, Sense
+from ekfsim.errors import StepError
 from ekfsim.localization import play
 from ekfsim.views.picture import scope
 from ekfsim.views.terminal.keys.bindings import Action
@@ -98,25 +99,35 @@ def test_the_terminal_is_given_back_and_taken_again():
     assert "view 1 of 4" in terminal.lines[-1]
 
 
-def test_what_a_filter_prints_stands_below_the_numbers_of_the_view_that_it_came_with():
+def test_what_a_filter_prints_stands_below_the_numbers_of_the_step_that_it_came_with():
     terminal = Terminal()
     console = Console(
         PLACE, EXTENT, 0.954, Look(False, False), terminal.write, size=lambda: terminal.size
     )
     console.enter()
-    player = Player(PLACE, play(PLACE), console, lambda view: "saved", 0.954)
-    waiting = iter("nnq")
+
+    def printing():
+        for step in play(PLACE):
+            print(f"made {step.entry.index}", file=console.printed)
+            if step.entry.index == 3:
+                raise StepError("it fails")
+            yield step
+
+    player = Player(
+        PLACE, printing(), console, lambda view: "saved", 0.954, hear=console.hear
+    )  # fmt: skip
+    waiting = iter("nnnpppq")
 
     def next_key(timeout):
-        seen.append(" ".join(terminal.lines))
-        print("gain" if len(seen) == 1 else "", end="", file=console.printed)
+        seen.append(re.findall(r"made \d", " ".join(terminal.lines)))
         return next(waiting)
 
     seen = []
-    player.play(next_key)
-    assert ["The filter has printed:" in shown for shown in seen] == [False, True, False]
-    assert "gain" in seen[1]
-    assert "gain" not in console.farewell()  # it is told by itself
+    with pytest.raises(StepError):
+        player.play(next_key)
+    start, move, beam, revised = ["made 0"], ["made 1"], [], ["made 2", "made 3"]
+    assert seen == [start, move, beam, revised, beam, move, start]
+    assert "made" not in console.farewell()  # it is told by itself
 
 
 def test_what_was_read_stays_once_and_in_the_order_of_the_run():
