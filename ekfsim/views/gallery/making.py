@@ -49,7 +49,7 @@ def chosen(names: Sequence[str]) -> list[str]:
             raise UsageError(f"{name}: is of a recorded log, which does not come along")
         if name not in known:
             resolve(name, "commands")  # which tells a name that is none
-            raise UsageError(f"{name}: the gallery is of what comes along; see `ekfsim list`")
+            raise UsageError(f"{name!r}: the gallery is of what comes along; see `ekfsim list`")
     return [name for name in known if not names or name in names]
 
 

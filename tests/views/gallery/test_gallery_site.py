@@ -114,7 +114,7 @@ def test_it_is_of_everything_but_recorded_logs():
     for wrong, told in (
         ("tuor", "did you mean 'tour'?"),
         ("mower_log", "mower_log: is of a recorded log"),
-        ("mine.yaml", "mine.yaml: the gallery is of what comes along"),
+        ("mine.yaml", "'mine.yaml': the gallery is of what comes along"),
     ):
         with pytest.raises(UsageError, match=re.escape(told)):
             chosen([wrong])
