@@ -1,5 +1,6 @@
 """What a command line asks for → the scenes that are played, and where a study's runs are made."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ekfsim.cli.process import say, warn
@@ -44,6 +45,16 @@ def scene_of(
     chosen: dict[str, Any] = {"seed": seed, "run": run_number, "gate": gate, "guard": guard}
     chosen |= {"filter": names[0] if names else None, "beside": names[1:]}
     return replace(scene, **{name: value for name, value in chosen.items() if value is not None})
+
+
+def files_of(commands: str, scene: "Scene") -> "tuple[Path, ...]":
+    """The files that people write of which a scene was made: commands, world, filters."""
+    from ekfsim.files.packaged import resolve
+    from ekfsim.filters.place import is_file, parts
+
+    own = [Path(parts(name)[0]) for name in (scene.filter, *scene.beside) if is_file(name)]
+    world = [] if scene.world_file is None else [scene.world_file]
+    return resolve(commands, "commands"), *world, *own
 
 
 def engine_of(workers: int, address: str | None) -> "Engine":

@@ -2,13 +2,14 @@
 
 import sys
 from contextlib import ExitStack, redirect_stderr
+from functools import partial
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from ekfsim.cli.asked import scene_of
+from ekfsim.cli.asked import files_of, scene_of
 from ekfsim.cli.kinds import Area, Pace, Result, StepNumber, Whole, Word
 from ekfsim.cli.options import DPI, EXPLAIN, FORCE, SIZE, scene_options
 from ekfsim.cli.process import heed, say, warn
@@ -40,18 +41,26 @@ if TYPE_CHECKING:
 )
 @click.option("--auto", type=Pace(), metavar="SECONDS",
               help="Go on by itself, a view every so many seconds.")  # fmt: skip
+@click.option("--watch", is_flag=True,
+              help="Read commands, world and a filter FILE.py again whenever they are saved, and "
+                   "stay at the step.")  # fmt: skip
 @EXPLAIN
 @FORCE
 def play(
-    show: str, out: Path, conditional: bool, auto: float | None, explain: bool, force: bool,
-    confidence: float, **chosen: Any
+    show: str, out: Path, conditional: bool, auto: float | None, watch: bool, explain: bool,
+    force: bool, confidence: float, **chosen: Any
 ) -> None:  # fmt: skip
     """Begin at the first view; the keys do the rest."""
     from ekfsim.views.picture.look import Look
     from ekfsim.views.terminal.interactive import play_interactively
 
-    look = Look(confidence, conditional)
-    play_interactively(scene_of(**chosen), show, out, look, force, explain, auto)
+    scene, look, watching = scene_of(**chosen), Look(confidence, conditional), None
+    if watch:
+        from ekfsim.views.terminal.watching import Watch
+
+        files = partial(files_of, chosen["commands"])
+        watching = Watch(scene, partial(scene_of, **chosen), files)
+    play_interactively(scene, show, out, look, force, explain, auto, watching)
 
 
 @click.command()

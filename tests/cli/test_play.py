@@ -12,7 +12,19 @@ import time
 from contextlib import suppress
 
 import pytest
-from program import LONG, PATIENCE, ekfsim, ended, lay_out, left_in, process, started, wait_for
+from program import (
+    LONG,
+    PATIENCE,
+    SHORT,
+    WORLD,
+    ekfsim,
+    ended,
+    lay_out,
+    left_in,
+    process,
+    started,
+    wait_for,
+)
 
 from ekfsim.views.film.png import SIGNATURE
 
@@ -318,4 +330,33 @@ def test_what_is_no_terminal_is_not_asked():
     assert played.err == (
         "ekfsim: --show image draws in a terminal, and this is none that can be drawn on; "
         "--show files draws into a file\n"
+    )
+
+
+def test_what_is_saved_is_shown_at_the_same_step(place):
+    terminal = Terminal("play", "short.yaml", "--show", "text", "--watch")
+    terminal.press(b"nn")
+    terminal.wait_for("step 2 of 3, view 2 of 4")
+    (place / "short.yaml").write_text(SHORT.replace("  - say: The end.\n", ""))
+    terminal.wait_for("step 2 of 2, view 2 of 3 · Read again")
+    (place / "short.yaml").write_text(SHORT.replace("sense", "sens").replace("move", "mov"))
+    terminal.wait_for("short.yaml:4:5: commands[1]: 'sens' is not a command; did you mean 'sense'?")
+    assert "short.yaml:3:5: commands[0]: 'mov' is not a command" in terminal.shown
+    (place / "world.yaml").write_text(WORLD.replace("lab", "hall"))
+    (place / "new").write_text("world: world.yaml\ncommands:\n  - sense: {angle: 0}\n")
+    (place / "new").replace(place / "short.yaml")
+    terminal.wait_for("Read again; there is no step 2, the run ends at step 1")
+    (place / "short.yaml").write_text(SHORT)
+    terminal.wait_for("step 2 of 3, view 2 of 4 · Read again")  # where it was before
+    terminal.press(b"q")
+    assert terminal.status() == 0
+    assert "Traceback" not in terminal.shown
+
+
+def test_nobody_watches_a_pipe():
+    played = ekfsim("play", "short.yaml", "--watch", keys=b"nq")
+    assert (played.status, played.out) == (2, "")
+    assert played.err == (
+        "ekfsim: --watch shows what is saved to whoever sits before a terminal that can be drawn "
+        "on, and there is none; leave it out\n"
     )

@@ -4,6 +4,7 @@ keys/         bytes → names of keys → what each asks for
 player.py     steps through a run as keys are pressed: what is to be seen after each, a Moment
 screens/      where a Moment is seen: in place, as a stream, in a window, in a file
 images/       the picture as an image, where the terminal draws them
+watching.py   files that are read again when they are saved
 pace.py       a run that goes on by itself
 drawing.py    a view in text, with readings.py and beliefs.py, on the canvas of braille.py
 wrapping.py   lines of text

@@ -26,6 +26,7 @@ from ekfsim.views.words.closing import conclude_all
 from ekfsim.views.words.long_form import WORDS
 from ekfsim.views.words.narrative import narrate
 
+CHANGED = "changed"  # comes in place of a key where the files of the run were saved anew
 OFTEN = 0.2  # s between two words on how far a long way has come
 STEPPING = (Action.NEXT, Action.BACK, Action.RESTART, Action.STEP, Action.END, Action.AMBIGUOUS,
             Action.LOST)  # fmt: skip
@@ -52,6 +53,7 @@ class Player:
     greeting: str = ""  # what there is to say before any key
     # is told of each step as it is made, which may be long before it is shown
     hear: Callable[[int], None] = nobody
+    remark: str = ""  # what there is to say of the whole run, beside its place
     drives: bool = False  # whether it ended because somebody wants to drive on from there
     playback: Run = field(init=False)
     # of the steps so far, by filter; ahead of what is shown by a view
@@ -83,6 +85,8 @@ class Player:
 
     def _take(self, name: str) -> bool:
         """Do what one key asks for; whether the run goes on."""
+        if name == CHANGED:
+            return False
         pressed = self._counted.press(name)
         if pressed is None:
             self._show(typed=self._counted.typed)
@@ -265,7 +269,7 @@ class Player:
         self._page = page
         pace = "" if self.pace.seconds is None else f" · every {self.pace.seconds:g} s"
         moment = Moment(
-            view, told, self._place + pace, self.explain, before, passed, note, page,
+            view, told, self._place + pace + self.remark, self.explain, before, passed, note, page,
             typed, self.hints,
         )  # fmt: skip
         self.screen.show(moment)

@@ -64,6 +64,15 @@ def wants_window(show: str) -> bool:
     return wanted
 
 
+def wants_watching() -> None:
+    """Raises UsageError where nobody could see what was saved."""
+    if not _in_place():
+        raise UsageError(
+            "--watch shows what is saved to whoever sits before a terminal that can be drawn on, "
+            "and there is none; leave it out"
+        )
+
+
 @dataclass
 class Stage:
     """The screens of one run, and the keys pressed before them."""
@@ -103,6 +112,12 @@ class Stage:
         wanted = show == "image" or (show == "auto" and window is None and console is not None)
         images = partial(Images, scene, extent, look) if wanted else None
         return cls(Together([told, *screens]), pictures, console, window, images, show == "image")
+
+    def turn_to(self, scene: Scene, extent: Scope) -> None:
+        """Another run comes in place of the one that was shown."""
+        for screen in (self.console, self.window, self.pictures):
+            if screen is not None:
+                screen.turn_to(scene, extent)
 
     @property
     def interruptible(self) -> Callable[[], AbstractContextManager[Callable[[], bool]]]:

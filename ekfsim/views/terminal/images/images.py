@@ -36,9 +36,14 @@ class Images:
     """Draws views into a box of a terminal."""
 
     def __init__(self, scene: Scene, extent: Scope, look: Look, means: Means) -> None:
-        self._scene, self._extent, self._look, self._means = scene, extent, look, means
-        self._frame = lru_cache(maxsize=2)(self._made)  # one for each size, of which few come back
+        self._look, self._means = look, means
         self._number = 0  # of the image that stands there, as kitty counts
+        self.turn_to(scene, extent)
+
+    def turn_to(self, scene: Scene, extent: Scope) -> None:
+        """The next views are of this scene."""
+        self._scene, self._extent = scene, extent
+        self._frame = lru_cache(maxsize=2)(self._made)  # one for each size, of which few come back
 
     def fits(self, box: Box) -> bool:
         """Whether a picture in this box can be read."""

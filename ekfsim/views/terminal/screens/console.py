@@ -74,6 +74,16 @@ class Console:
         numbers = sorted(self._read)[-LEFT:]
         return "".join(self._read[number] for number in numbers)
 
+    def turn_to(self, scene: Scene, extent: Scope) -> None:
+        """Another run comes in place of the one that was shown."""
+        self._scene, self._extent, self._moment = scene, extent, None
+        self._read, self._drawn_for, self._pictured = {}, (0, 0), None
+        self.printed.seek(0)
+        self.printed.truncate()
+        self._printed, self._said = 0, {}
+        if self.images is not None:
+            self.images.turn_to(scene, extent)
+
     def show(self, moment: Moment) -> None:
         """Draw this in place of the last one."""
         last, self._moment = self._moment, moment

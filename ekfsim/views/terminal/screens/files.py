@@ -25,8 +25,12 @@ class Pictures:
     keeps = False
 
     def __init__(self, scene: Scene, extent: Scope, look: Look, out: Path, force: bool) -> None:
-        self._scene, self._extent, self._look = scene, extent, look
-        self._out, self._force = out, force
+        self._look, self._out, self._force = look, out, force
+        self.turn_to(scene, extent)
+
+    def turn_to(self, scene: Scene, extent: Scope) -> None:
+        """The next views are of this scene."""
+        self._scene, self._extent = scene, extent
         self._frame: Frame | None = None
         self._shown: View | None = None
 

@@ -222,20 +222,31 @@ class Layout:
     def _foot(self, moment: Moment, panes: Panes) -> list[str]:
         """The status line; more than one where what there is to say is longer."""
         place = moment.place + (f" · {moment.typed}" if moment.typed else "")
-        note = " ".join(shown(moment.note).split())
+        notes = [" ".join(line.split()) for line in shown(moment.note).split("\n")]
+        note = " ".join(notes)
         hints = [*moment.hints[:2], self._other(panes), *moment.hints[2:]]
         if moment.page:
             place, hints = "the keys", ["n goes on", "any other key: back to the run"]
-        if note:
+        if len(notes) > 1:
+            lines = self._cut([place, *notes])
+        elif note:
             told = f"{place} · {note}"
             lines = [told] if cells(told) <= self.columns else within(note, self.columns, 3, False)
         else:
             lines = [_hinted(place, hints, self.columns)]
-        lines = lines[: max(self.rows // 3, 1)]
+        lines = lines[: max(self.rows // (2 if len(notes) > 1 else 3), 1)]
         if self.look.ascii:
             lines = [printable(line.translate(PLAIN), True) for line in lines]
         lines = [shorten(line, self.columns, self.look.ascii) for line in lines]
         return [self.look.strong(_padded(line, self.columns), REVERSE) for line in lines]
+
+    def _cut(self, texts: list[str]) -> list[str]:
+        """Several texts in lines, of which at most half of the screen is taken."""
+        lines = [part for text in texts for part in wrapped(text, self.columns)]
+        most = max(self.rows // 2, 2)
+        if len(lines) > most:
+            lines = [*lines[: most - 1], f"… {len(lines) - most + 1} more lines"]
+        return lines
 
     def _other(self, panes: Panes) -> str:
         return f"v {(Panes.NUMBERS if panes is Panes.PICTURE else Panes.PICTURE).value}"

@@ -92,6 +92,7 @@ class Window:
         self._name = f"ekfsim: {scene.world.name}"
         self._figure = pyplot.figure(num=self._name, figsize=SIZE, dpi=SCREEN.dpi)
         self._canvas: Any = self._figure.canvas  # matplotlib leaves most of its methods untyped
+        self._look = look
         self._picture = Picture(self._figure, scene, scope, look)
         self._canvas.mpl_connect("key_press_event", self._press)
         self._canvas.mpl_connect("close_event", self._close)
@@ -99,13 +100,19 @@ class Window:
         self._shown: View | None = None
         pyplot.show(block=False)
 
+    def turn_to(self, scene: Scene, scope: Scope) -> None:
+        """The next views are of this scene."""
+        if not self.closed:
+            self._figure.clear()
+            self._shown, self._picture = None, Picture(self._figure, scene, scope, self._look)
+
     def show(self, moment: Moment) -> None:
         """Show a view, and do not wait."""
         if self.closed:
             return
         self._shown = moment.view
         self._picture.show(moment.view)
-        self._say(moment.note or moment.place)
+        self._say((moment.note or moment.place).split("\n")[0])
         self._canvas.draw_idle()
         self._canvas.flush_events()
 

@@ -1,4 +1,5 @@
 import re
+from functools import partial
 
 import pytest
 from scenes import scene
@@ -247,3 +248,25 @@ def test_the_image_goes_with_the_screen_and_comes_back_with_it():
     console.enter()
     console.refresh()
     assert terminal.written.endswith("<0 at 0,0: 79x23>")
+
+
+def pressed(keys, timeout):
+    return next(keys)
+
+
+def test_another_run_comes_in_place_of_the_one_that_was_shown():
+    terminal, fresh = Terminal(), Terminal()
+    console = playing(terminal, *"nn")
+    console.printed.write("of the old one")
+    console.hear(1)
+    other = scene(Move(2.0, 0.0), Sense(0.2))
+    extent = scope.of(other, play(other))
+    console.turn_to(other, extent)
+    for each in (console, Console(other, extent, 0.954, Look(False, False), fresh.write,
+                                  size=lambda: fresh.size)):  # fmt: skip
+        each.enter()
+        player = Player(other, play(other), each, lambda view: "saved", 0.954)
+        player.play(partial(pressed, iter("nq")))
+    assert terminal.lines == fresh.lines
+    assert console.printed.getvalue() == ""
+    assert console.farewell() == each.farewell()

@@ -45,7 +45,8 @@ SIZES = [(39, 15), (79, 24), (99, 30), (119, 40), (199, 60), (60, 80), (9, 4), (
 @pytest.mark.parametrize("look", [PLAIN, Look(colour=True, ascii=True)])
 def test_every_line_keeps_to_the_screen(size, panes, look):
     long = {"note": "Saved " + "x" * 200}
-    for number, more in product((0, 1, 2, 3, 4, LOST), ({}, long, {"page": "a  b\n" * 50})):
+    many = {"note": "\n".join(f"a.yaml:{n}:1: wrong" for n in range(60))}
+    for number, more in product((0, 1, 2, 3, 4, LOST), ({}, long, many, {"page": "a  b\n" * 50})):
         lines = screen(number, size, panes, look, **more)
         plain = [CONTROL_SEQUENCE.sub("", line) for line in lines]
         assert len(plain) == size[1]
@@ -145,3 +146,14 @@ def test_the_status_line_keeps_what_matters_most():
     assert status(119, note="The run is over") == f"{place} · The run is over"
     assert status(30, note="The run is over") == "The run is over"
     assert status(119, typed=13).startswith(f"{place} · 13 · ")
+
+
+def test_each_mistake_has_a_line_of_its_own_up_to_half_of_the_screen():
+    mistakes = [f"a.yaml:{n}:1: wrong" for n in range(1, 31)]
+    few = screen(1, (79, 24), note="\n".join(mistakes[:3]))
+    assert [line.rstrip() for line in few[-4:]] == ["step 1 of 5, view 1 of 7", *mistakes[:3]]
+    many = screen(1, (79, 24), note="\n".join(mistakes))
+    assert [line.rstrip() for line in many[-12:]] == [
+        "step 1 of 5, view 1 of 7", *mistakes[:10], "… 20 more lines"
+    ]  # fmt: skip
+    assert BRAILLE.search("".join(many))
