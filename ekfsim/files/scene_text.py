@@ -21,7 +21,7 @@ from ekfsim.files.keys.fields import aliases
 from ekfsim.files.looking import is_file, read_from
 from ekfsim.files.packaged import folder, packaged
 from ekfsim.files.scenes.settings import kind_of, setting
-from ekfsim.files.source import UNPRINTABLE
+from ekfsim.files.source import UNPRINTABLE, unprintable
 from ekfsim.files.yaml.marked import scalar
 from ekfsim.filters.place import is_file as is_files_place
 from ekfsim.filters.place import parts
@@ -68,7 +68,7 @@ def replay(scene: Scene, path: Path, options: Sequence[str] = ()) -> str:
 
 def _lines(scene: Scene, path: Path, options: Sequence[str]) -> Iterator[str]:
     yield f"# Driven by hand with ekfsim {VERSION}; this shows the same run:"
-    yield f"#   {UNPRINTABLE.sub('?', replay(scene, Path(path.name), options))}"
+    yield f"#   {re.sub(UNPRINTABLE, '?', replay(scene, Path(path.name), options))}"
     yield f"world: {_text(_world(scene, path))}"
     yield f"seed: {scene.seed}"
     yield f"filter: {_text(_filter(scene.filter, path))}"
@@ -114,7 +114,7 @@ def _way(file: str, folder: Path) -> str:
         way = Path(os.path.relpath(file, folder)).as_posix()
     except ValueError:  # it lies on another drive
         way = Path(file).as_posix()
-    if UNPRINTABLE.search(way):
+    if unprintable(way):
         raise UsageError(f"{folder}: no file in it can name {way!r}: that is no text; rename it")
     return way
 

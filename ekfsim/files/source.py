@@ -9,10 +9,10 @@ from ekfsim.files.looking import contents, current_folder, read_from
 
 MAX_BYTES = 10_000_000
 
-# What YAML allows in a file: printable characters, tab and line breaks.
-UNPRINTABLE = re.compile(
-    "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
-)
+# What YAML does not allow in a file: all but printable characters, tab and line breaks. The whole
+# class takes long to compile, and most files are ASCII.
+UNPRINTABLE_ASCII = "[^\t\n\r\x20-\x7e]"
+UNPRINTABLE = "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
 
 
 def as_written(path: Path, shown: str) -> str:
@@ -42,9 +42,14 @@ def as_written(path: Path, shown: str) -> str:
     return readable(text, shown)
 
 
+def unprintable(text: str) -> re.Match[str] | None:
+    """The first character of a text that cannot stand in a file, None where all can."""
+    return re.search(UNPRINTABLE_ASCII if text.isascii() else UNPRINTABLE, text)
+
+
 def readable(text: str, shown: str) -> str:
     """The same text. Raises InputError where no file may hold it."""
-    if found := UNPRINTABLE.search(text):
+    if found := unprintable(text):
         line, column = position(text[: found.start()])
         raise mistake(
             shown, line, column, f"{character(found[0])} cannot stand in a text file", "delete it"

@@ -4,8 +4,6 @@ from collections.abc import Mapping
 
 from ekfsim.filters import FILTERS
 from ekfsim.filters.protocol import Beginning, Filter, Kind
-from ekfsim.filters.variants.by_reading import NoiseByReading
-from ekfsim.filters.variants.shadows import ShadowsAlone
 
 GROUP = "ekfsim.filters"  # of entry points
 
@@ -60,7 +58,11 @@ def begun(name: str, beginning: Beginning) -> Filter:
     """
     filter: Filter = kind_of(name).begin(beginning)
     if beginning.tuning.range_variance == "reading":
+        from ekfsim.filters.variants.by_reading import NoiseByReading
+
         filter = NoiseByReading(filter)
     if beginning.tuning.cross_covariances == "dropped":
+        from ekfsim.filters.variants.shadows import ShadowsAlone
+
         filter = ShadowsAlone(filter)
     return filter

@@ -1,21 +1,24 @@
 """Motions of one robot, in plain floats: several times as fast as arrays of three."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ekfsim.fast.one.angles import wrap_one
 from ekfsim.geometry import Array
-from ekfsim.models.motions.move_turn import MoveTurn
-from ekfsim.models.motions.unicycle import Unicycle
-from ekfsim.models.motions.wheel_speeds import WheelSpeeds
-from ekfsim.models.motions.wheels import GyroWheels
 from ekfsim.models.noise import independent
+
+if TYPE_CHECKING:  # each takes its time to import, and a run has one of them
+    from ekfsim.models.motions.move_turn import MoveTurn
+    from ekfsim.models.motions.unicycle import Unicycle
+    from ekfsim.models.motions.wheel_speeds import WheelSpeeds
+    from ekfsim.models.motions.wheels import GyroWheels
 
 Linearized = tuple[Array, Array, Array, Array, Array | float]  # f, F, G, M, Q
 
 
-def move_turn_f(motion: MoveTurn, x: Array, u: Array) -> Array | None:
+def move_turn_f(motion: "MoveTurn", x: Array, u: Array) -> Array | None:
     """Twin of `MoveTurn.f`."""
     if not x.ndim == u.ndim == 1:
         return None
@@ -23,7 +26,7 @@ def move_turn_f(motion: MoveTurn, x: Array, u: Array) -> Array | None:
     return np.array([px + d * math.cos(θ), py + d * math.sin(θ), wrap_one(θ + a)])
 
 
-def move_turn(motion: MoveTurn, x: Array, u: Array) -> Linearized | None:
+def move_turn(motion: "MoveTurn", x: Array, u: Array) -> Linearized | None:
     """Twin of f, F, G, M and Q of `MoveTurn`."""
     if not x.ndim == u.ndim == 1:
         return None
@@ -38,7 +41,7 @@ def move_turn(motion: MoveTurn, x: Array, u: Array) -> Linearized | None:
     )
 
 
-def gyro_wheels_f(motion: GyroWheels, x: Array, u: Array) -> Array | None:
+def gyro_wheels_f(motion: "GyroWheels", x: Array, u: Array) -> Array | None:
     """Twin of `GyroWheels.f`."""
     if not x.ndim == u.ndim == 1:
         return None
@@ -47,7 +50,7 @@ def gyro_wheels_f(motion: GyroWheels, x: Array, u: Array) -> Array | None:
     return np.array([px + ΔD * math.cos(middle), py + ΔD * math.sin(middle), wrap_one(Φ + ω * dt)])
 
 
-def gyro_wheels(motion: GyroWheels, x: Array, u: Array) -> Linearized | None:
+def gyro_wheels(motion: "GyroWheels", x: Array, u: Array) -> Linearized | None:
     """Twin of f, F, G, M and Q of `GyroWheels`."""
     if not x.ndim == u.ndim == 1:
         return None
@@ -71,7 +74,7 @@ def gyro_wheels(motion: GyroWheels, x: Array, u: Array) -> Linearized | None:
     )
 
 
-def unicycle_f(motion: Unicycle, x: Array, u: Array) -> Array | None:
+def unicycle_f(motion: "Unicycle", x: Array, u: Array) -> Array | None:
     """Twin of `Unicycle.f`."""
     if not x.ndim == u.ndim == 1:
         return None
@@ -80,7 +83,7 @@ def unicycle_f(motion: Unicycle, x: Array, u: Array) -> Array | None:
     return np.array([px + D * math.cos(middle), py + D * math.sin(middle), wrap_one(θ + ω * dt)])
 
 
-def unicycle(motion: Unicycle, x: Array, u: Array) -> Linearized | None:
+def unicycle(motion: "Unicycle", x: Array, u: Array) -> Linearized | None:
     """Twin of f, F, G, M and Q of `Unicycle`."""
     if not x.ndim == u.ndim == 1:
         return None
@@ -104,7 +107,7 @@ def unicycle(motion: Unicycle, x: Array, u: Array) -> Linearized | None:
     )
 
 
-def wheel_speeds(motion: WheelSpeeds, x: Array, u: Array) -> Linearized | None:
+def wheel_speeds(motion: "WheelSpeeds", x: Array, u: Array) -> Linearized | None:
     """Twin of f, F, G, M and Q of `WheelSpeeds`."""
     if not x.ndim == u.ndim == 1:
         return None

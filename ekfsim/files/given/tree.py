@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ekfsim.errors import Mistake, Place
-from ekfsim.files.source import UNPRINTABLE, character
+from ekfsim.files.source import character, unprintable
 from ekfsim.files.yaml.marked import NOTHING, Node, Path, Scalar, field_of
 from ekfsim.files.yaml.parsing import MAX_DEPTH
 from ekfsim.printable import quoted, short
@@ -29,7 +29,7 @@ def tree_of(value: object, shown: str, mistakes: list[Mistake], path: Path = ())
         case None:
             return Node(NOWHERE, NOTHING, "None")
         case str():
-            if found := UNPRINTABLE.search(value):
+            if found := unprintable(value):
                 wrong = f"{character(found[0])} cannot stand in text"
                 return _refused(wrong, shown, mistakes, path, "delete it")
             return Node(NOWHERE, str(value), str(value), quoted=True)

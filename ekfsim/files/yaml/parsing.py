@@ -15,7 +15,7 @@ from typing import Any
 import yaml
 
 from ekfsim.errors import InputError, Mistake, Place
-from ekfsim.files.source import UNPRINTABLE, character
+from ekfsim.files.source import character, unprintable
 from ekfsim.files.yaml.marked import NOTHING, Mark, Node, field_of, scalar
 from ekfsim.files.yaml.syntax import syntax_mistake
 from ekfsim.printable import quoted
@@ -240,7 +240,7 @@ class Tree:
 
     def check_characters(self, node: Node) -> None:
         """Refuse what no file may hold; quoted text can escape it."""
-        if found := UNPRINTABLE.search(node.written):
+        if found := unprintable(node.written):
             self.refuse(node.mark, f"{character(found[0])} cannot stand in text", "delete it")
             node.faulty = True
 

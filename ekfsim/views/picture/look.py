@@ -2,11 +2,14 @@
 apart from the drawing, so that who asks need not import matplotlib.
 """
 
-import logging
 import os
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ekfsim.errors import UsageError
+
+if TYPE_CHECKING:
+    import logging
 
 NARROWEST, LOWEST = 6.0, 4.5  # inches of a picture
 
@@ -52,6 +55,8 @@ def get_ready() -> None:
     started from it, and it need not be installed here. Raises UsageError where matplotlib does not
     take other settings.
     """
+    import logging
+
     named = os.environ.get("MPLBACKEND")
     os.environ["MPLBACKEND"] = "agg"  # read once, as matplotlib is imported
     logging.getLogger("matplotlib").addFilter(_of_no_backend)
@@ -69,12 +74,12 @@ def get_ready() -> None:
             os.environ["MPLBACKEND"] = named
 
 
-def _of_no_backend(record: logging.LogRecord) -> bool:
+def _of_no_backend(record: "logging.LogRecord") -> bool:
     """Whether matplotlib's warning is of another setting than the backend of a matplotlibrc."""
     return "Key backend: " not in record.getMessage()
 
 
-def _of_no_folder(record: logging.LogRecord) -> bool:
+def _of_no_folder(record: "logging.LogRecord") -> bool:
     """Whether matplotlib's warning is of another thing than its folder:
     without a writable home it uses another.
     """

@@ -6,6 +6,7 @@ What more is to be said of a beam to a wall, `views.beams` tells.
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,15 +16,11 @@ from ekfsim.geometry import Array
 from ekfsim.models.protocols import Quantity, Sensor
 from ekfsim.models.sensors.frozen import Frozen
 from ekfsim.models.sensors.infrared import InfraredBeam
-from ekfsim.models.sensors.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
-from ekfsim.models.sensors.laser import Laser
-from ekfsim.models.sensors.lidar import LidarOffset
-from ekfsim.models.sensors.offset import LandmarkOffset
-from ekfsim.models.sensors.position import Position
-from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
-from ekfsim.models.sensors.yaw import Yaw
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
+
+if TYPE_CHECKING:
+    from ekfsim.models.sensors.position import Position
 
 # to each side of the estimate: as much of the circle about a landmark as is drawn
 ARC = math.radians(25)
@@ -59,8 +56,27 @@ def sight(step: Step) -> Sight | None:
     if not isinstance(given, Reading) or correction is None:
         return None
     pose, z, predicted = posed(step.prior, step.layout).mean, given.z, correction.predicted
-    refused = Refused(int(correction.refused))
-    match sensor := bare(given.sensor):
+    refused, sensor = Refused(int(correction.refused)), bare(given.sensor)
+    if isinstance(sensor, BeamSensor):
+        line, way = (
+            _ray(pose, sensor.bearing, beam_length(sensor, float(value[0])))
+            for value in (z, predicted)
+        )
+        return Sight(line, line[1:], way, way[1:], NOWHERE, refused, "beam")
+    return _without_beam(sensor, pose, z, predicted, refused)
+
+
+def _without_beam(
+    sensor: Sensor, pose: Array, z: Array, predicted: Array, refused: Refused
+) -> Sight | None:
+    """What is drawn of any other sensor; these are imported where one of them is read."""
+    from ekfsim.models.sensors.landmarks import BearingOnly, MarkerAngles, RangeBearing, RangeOnly
+    from ekfsim.models.sensors.lidar import LidarOffset
+    from ekfsim.models.sensors.offset import LandmarkOffset
+    from ekfsim.models.sensors.position import Position
+    from ekfsim.models.sensors.yaw import Yaw
+
+    match sensor:
         case MarkerAngles() | BearingOnly():
             place = np.array([sensor.x, sensor.y])
             line, way = (
@@ -96,12 +112,6 @@ def sight(step: Step) -> Sight | None:
                 for value in (z, predicted)
             )
             return Sight(line, NOWHERE, way, NOWHERE, NOWHERE, refused, "direction")
-        case Laser() | UltrasonicBeam() | InfraredBeam():
-            line, way = (
-                _ray(pose, sensor.bearing, beam_length(sensor, float(value[0])))
-                for value in (z, predicted)
-            )
-            return Sight(line, line[1:], way, way[1:], NOWHERE, refused, "beam")
     return None
 
 
@@ -208,7 +218,7 @@ def _about(place: Array, pose: Array, measured: float, predicted: float, refused
     return Sight(arc, NOWHERE, way, way[1:], place[None], refused, "range")
 
 
-def _fix(sensor: Position, z: Array, predicted: Array, refused: Refused) -> Sight:
+def _fix(sensor: "Position", z: Array, predicted: Array, refused: Refused) -> Sight:
     """A fix with a circle of 1 σ, and the way from it to where it was expected."""
     turn = np.linspace(0, 2 * math.pi, CORNERS)
     circle = _finite(

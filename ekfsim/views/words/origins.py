@@ -3,14 +3,6 @@
 import re
 from dataclasses import dataclass, replace
 
-from ekfsim.filters import FILTERS, protocol
-from ekfsim.filters.ekf import EKF
-from ekfsim.filters.iekf import IEKF
-from ekfsim.filters.kf import KF
-from ekfsim.filters.pf import PF
-from ekfsim.filters.ukf import UKF
-from ekfsim.filters.variants.nominal import NominalKF
-from ekfsim.filters.variants.ukf_augmented import AugmentedUKF
 from ekfsim.scene import Scene
 from ekfsim.systems import system_of
 
@@ -59,24 +51,24 @@ SIGMA_POINTS = Origins(
     linear=False,
 )
 
-BY_FILTER: dict[protocol.Kind, Origins] = {
-    EKF: Origins(),
-    KF: _tangents("the first state estimate"),
-    NominalKF: _tangents("on the nominal trajectory"),
-    IEKF: Origins(
+BY_FILTER: dict[str, Origins] = {
+    "ekf": Origins(),
+    "kf": _tangents("the first state estimate"),
+    "kf-nominal": _tangents("on the nominal trajectory"),
+    "iekf": Origins(
         derivatives="H where its iterations ended",
         S="eq 11: H P H' + R, H at the state before",
         gain="P H' (H P H' + R)^-1 with H where its iterations ended",
         revised="eq 10: x + K r, iterated",
     ),
-    UKF: SIGMA_POINTS,
-    AugmentedUKF: replace(
+    "ukf": SIGMA_POINTS,
+    "ukf-augmented": replace(
         SIGMA_POINTS,
         covariance="the spread of the sigma points, which hold the noise of M and Q, moved",
         jacobians="",
         S="the spread of the sigma points' readings, which hold the noise of R",
     ),
-    PF: Origins(
+    "pf": Origins(
         state="the mean of the particles, each moved with a noise of its own",
         covariance="the spread of the particles",
         jacobians="",
@@ -99,8 +91,7 @@ A_FILE = Origins(
 
 def origins(scene: Scene) -> Origins:
     """Those of the filter that watches."""
-    kind = FILTERS.get(scene.filter)
-    own = A_FILE if kind is None else BY_FILTER.get(kind, A_FILE)
+    own = BY_FILTER.get(scene.filter, A_FILE)
     if system_of(scene.world.system).by_listing(scene.filter, scene.reading):
         before = "where the robot stood before the last motion"
         own = replace(own, predicted=f"h(x), x {before}", derivatives=f"H {before}")
