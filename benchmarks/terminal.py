@@ -45,6 +45,8 @@ class Played:
         program = [sys.executable, "-P", "-c", "from ekfsim.cli import main; main()"]
         environment = {**os.environ, "PYTHONPATH": str(self.build.folder), "TERM": "xterm"}
         environment.pop("DISPLAY", None)
+        # whoever has installed it has it compiled
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
         self.process = subprocess.Popen(
             [*program, "play", "tour", "--show", "text"], stdin=its, stdout=its,
             stderr=subprocess.DEVNULL, env=environment, start_new_session=True,

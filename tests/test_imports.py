@@ -17,7 +17,7 @@ MODULES = {
     if "_packaged" not in path.parts
 }
 ROOMS = (  # each imports only from those above it, and from its own
-    {"errors", "printable", "seeds", "version", "twins", "shown"},
+    {"errors", "printable", "seeds", "version", "twins", "shown", "late"},
     {"geometry"},
     {"raycast"},
     {"models"},
@@ -271,3 +271,23 @@ def test_a_start_is_light(program):
     )
     done = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True)
     assert not set(done.stderr.split()) & set(HEAVY)
+
+
+def test_to_play_the_tour_imports_no_other_robot_and_no_window():
+    """What its classroom does not have is imported by no run of it."""
+    told = (
+        "import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr)); "
+        "sys.argv = ['ekfsim', 'play', 'tour', '--show', 'text']; import ekfsim.cli; "
+        "ekfsim.cli.main()"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", told], capture_output=True, text=True, check=True, input="q"
+    )
+    imported = set(done.stderr.split())
+    others = {"robots", "instruments", "drives", "watched", "interpolation", "echo"}
+    own = {"ekfsim.filters.ekf", "ekfsim.systems.system", "ekfsim.views.terminal.drawing"}
+    assert imported >= own
+    assert not imported & {f"ekfsim.systems.{module}" for module in others}
+    assert not imported & {f"ekfsim.files.keys.{part}" for part in ("system", "told", "faults")}
+    assert not imported & {f"ekfsim.filters.{name}" for name in ("kf", "ukf", "pf", "iekf")}
+    assert not imported & {"matplotlib", "PIL", "scipy", *EXTRAS}

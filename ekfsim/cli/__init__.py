@@ -3,12 +3,30 @@
 Heavy modules are imported where they are used.
 """
 
-from typing import NoReturn
+from collections.abc import MutableMapping
+from typing import NoReturn, cast
 
 import click
 
-from ekfsim.cli import comparing, driving, files, gallery, grading, process, runs, students, studies
+from ekfsim.cli import process
+from ekfsim.late import Table
 from ekfsim.version import VERSION
+
+MODULES = {
+    "runs": ("play", "render", "plot", "run", "record"),
+    "driving": ("drive",),
+    "files": ("check", "schema", "list_packaged", "show", "new", "figures"),
+    "studies": ("study", "compare"),
+    "gallery": ("gallery",),
+    "comparing": ("diff",),
+    "students": ("mutants", "worksheet"),
+    "grading": ("grade", "autograder"),
+}
+PLACES = {
+    name.removesuffix("_packaged"): f"ekfsim.cli.{module}:{name}"
+    for module, names in MODULES.items()
+    for name in names
+}
 
 
 def main() -> NoReturn:
@@ -18,6 +36,8 @@ def main() -> NoReturn:
 
 @click.group(
     cls=process.Program,
+    # click only reads it
+    commands=cast("MutableMapping[str, click.Command]", Table[click.Command](PLACES)),
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
 @click.version_option(VERSION, message="%(prog)s %(version)s")
@@ -28,13 +48,3 @@ def ekfsim() -> None:
     COMMANDS is a commands file, or the name of one that comes along: try `ekfsim play tour` and
     press n.
     """
-
-
-for command in (
-    *(runs.play, driving.drive, runs.render, runs.plot, runs.run, runs.record),
-    *(files.check, files.schema, files.list_packaged, files.show, files.new, files.figures),
-    *(studies.study, studies.compare, gallery.gallery),
-    *(comparing.diff, students.mutants, students.worksheet),
-    *(grading.grade, grading.autograder),
-):
-    ekfsim.add_command(command)

@@ -16,42 +16,21 @@ models/protocols.py). What is quicker than kalman.py and square_root.py as they 
 ekfsim/fast/.
 """
 
-from collections.abc import Iterator, Mapping
-from importlib import import_module
 from typing import TYPE_CHECKING
+
+from ekfsim.late import Table
 
 if TYPE_CHECKING:
     from ekfsim.filters.protocol import Kind
 
-_HOMES = {  # the module of each filter, and its name there
-    "kf": ("kf", "KF"),
-    "kf-nominal": ("variants.nominal", "NominalKF"),
-    "ekf": ("ekf", "EKF"),
-    "iekf": ("iekf", "IEKF"),
-    "ukf": ("ukf", "UKF"),
-    "ukf-augmented": ("variants.ukf_augmented", "AugmentedUKF"),
-    "pf": ("pf", "PF"),
-}
-
-
-class _Filters(Mapping[str, "Kind"]):
-    """The filters by their names, each imported when it is first asked for: a run of one must not
-    wait for all the others.
-    """
-
-    def __getitem__(self, name: str) -> "Kind":
-        module, of = _HOMES[name]
-        kind: Kind = getattr(import_module(f"ekfsim.filters.{module}"), of)
-        return kind
-
-    def __contains__(self, name: object) -> bool:
-        return name in _HOMES
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(_HOMES)
-
-    def __len__(self) -> int:
-        return len(_HOMES)
-
-
-FILTERS = _Filters()
+FILTERS: Table["Kind"] = Table(
+    {
+        "kf": "ekfsim.filters.kf:KF",
+        "kf-nominal": "ekfsim.filters.variants.nominal:NominalKF",
+        "ekf": "ekfsim.filters.ekf:EKF",
+        "iekf": "ekfsim.filters.iekf:IEKF",
+        "ukf": "ekfsim.filters.ukf:UKF",
+        "ukf-augmented": "ekfsim.filters.variants.ukf_augmented:AugmentedUKF",
+        "pf": "ekfsim.filters.pf:PF",
+    }
+)

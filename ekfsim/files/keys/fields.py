@@ -4,7 +4,6 @@ messages and editors read the same bounds.
 
 import math
 from functools import cached_property
-from importlib import import_module
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import (
@@ -19,6 +18,7 @@ from pydantic.config import JsonDict
 from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_plain_validator_function
 
+from ekfsim.late import found
 from ekfsim.seeds import MOST_SEED, REPEATS
 
 # m, of coordinates: every grid of a map lies inside, and a double still tells 15 nm apart there
@@ -82,8 +82,7 @@ class Late:
     @cached_property
     def found(self) -> Any:
         """The type itself."""
-        module, _, name = self.place.partition(":")
-        return getattr(import_module(module), name)
+        return found(self.place)
 
     @cached_property
     def reader(self) -> TypeAdapter[Any]:
