@@ -1,9 +1,7 @@
 """What is imported when it is first asked for: most of it no run needs."""
 
-import sys
 from collections.abc import Iterator, Mapping
 from importlib import import_module
-from importlib.util import LazyLoader, find_spec, module_from_spec
 from typing import Any, Generic, TypeVar
 
 T_co = TypeVar("T_co", covariant=True)
@@ -13,18 +11,6 @@ def found(place: str) -> Any:
     """What stands at a place "module:name"."""
     module, _, name = place.partition(":")
     return getattr(import_module(module), name)
-
-
-def put_off(module: str) -> None:
-    """Let what imports a module of the standard library at once, and may never use it, not wait for
-    it: it is read when the first of its names is asked for.
-    """
-    spec = find_spec(module)
-    if module in sys.modules or spec is None or spec.loader is None:
-        return
-    spec.loader = LazyLoader(spec.loader)
-    made = sys.modules[module] = module_from_spec(spec)
-    spec.loader.exec_module(made)
 
 
 class Table(Mapping[str, T_co], Generic[T_co]):

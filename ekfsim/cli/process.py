@@ -17,7 +17,6 @@ from typing import Any, NoReturn
 import click
 
 from ekfsim.errors import MOST_TOLD, EkfsimError, first_of
-from ekfsim.late import put_off
 from ekfsim.printable import in_a_line
 from ekfsim.printable import shown as shown
 
@@ -38,7 +37,6 @@ def run(program: click.Group) -> NoReturn:
     gc.set_threshold(SELDOM)
     # of pydantic; to look for some goes through all that is installed
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
-    put_off("importlib.metadata")  # with which it would look
     _open_closed_streams()
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)  # Windows does not hang up
