@@ -13,6 +13,17 @@ SERIOUS = """async () => (await axe.run()).violations
     .filter(one => ['serious', 'critical'].includes(one.impact))
     .map(one => [one.id, one.nodes.map(node => node.target.join(' ') + node.failureSummary)])"""
 
+APART = """() => {
+    const box = document.getElementById('map').getBoundingClientRect();
+    const ticks = [...document.querySelectorAll('#map .tick')].map(
+        one => one.getBoundingClientRect());
+    const meet = (a, b) =>
+        a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    const cut = ticks.filter(one => one.left < box.left || one.right > box.right);
+    const met = ticks.filter((one, i) => ticks.some((other, j) => i < j && meet(one, other)));
+    return [ticks.length, cut.length, met.length];
+}"""  # how many numbers the map has, and how many are cut off or lie on another
+
 
 @pytest.mark.parametrize(("width", "scheme"), [(390, "light"), (1200, "dark")])
 def test_nothing_serious_keeps_anybody_out(opened, pages, width, scheme):
@@ -145,3 +156,20 @@ noise: {{executionDstSigmaRatio: 0, executionAngSigmaRatio: 0, odometryDstSigmaR
         assert page.locator("script").count() == 2
         assert page.locator("b").count() == 0
         assert page.title().startswith("</script><script>alert(1)</script><!-- <b>&amp; ")
+
+
+@pytest.mark.parametrize("width", [390, 1200])
+def test_long_numbers_are_neither_cut_off_nor_on_one_another(opened, tmp_path, width):
+    (tmp_path / "world.yaml").write_text("""
+name: far
+start: {x: 500001, y: 5000001, theta: 0}
+boundary: [[500000, 5000000], [500009, 5000000], [500009, 5000009], [500000, 5000009]]
+noise: {executionDstSigmaRatio: 0, executionAngSigmaRatio: 0, odometryDstSigmaRatio: 0.1,
+  odometryAngSigmaRatio: 0, rangeSigmaRatio: 0.1}
+""")
+    (tmp_path / "commands.yaml").write_text("world: world.yaml\ncommands: []\n")
+    write(load_scene(tmp_path / "commands.yaml"), path := tmp_path / "page.html")
+    with opened(path, viewport={"width": width, "height": 800}) as page:
+        count, cut, crossed = page.evaluate(APART)
+        assert count > 4
+        assert (cut, crossed) == (0, 0)

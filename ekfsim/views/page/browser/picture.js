@@ -2,6 +2,7 @@
 
 const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = { left: 38, bottom: 24, top: 6, right: 6 }; // pixels about the map, for its numbers
+const DIGIT = 6.5; // pixels of a number's width
 
 function element(name, attributes = {}, text = "") {
   const made = document.createElementNS(SVG, name);
@@ -253,23 +254,30 @@ class Picture {
     const { x, y, width, height } = this.box,
       [scale, , , , east, south] = this.matrix,
       [ox, oy] = lesson.origin;
-    const step = oneTwoFive(60 / scale),
-      digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    const step = oneTwoFive(60 / scale);
+    const number = m => m.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
     const write = (place, text, more) =>
       this.words.appendChild(element("text", { x: place[0], y: place[1], ...more }, text));
-    const each = (from, to, put) => {
+    const each = (step, from, to, put) => {
       for (let i = Math.ceil(from / step); i * step <= to; i++) put(i * step);
     };
-    each((x - east) / scale + ox, (x + width - east) / scale + ox, m =>
-      write([scale * (m - ox) + east, y + height + 14], m.toFixed(digits) + " m", {
+    const longest = (...values) => DIGIT * Math.max(...values.map(m => number(m).length));
+    const [left, right] = [x, x + width].map(place => (place - east) / scale + ox);
+    const long = longest(left, right) + 2 * DIGIT;
+    each(Math.max(step, oneTwoFive((12 + long) / scale)), left, right, m => {
+      const place = scale * (m - ox) + east;
+      if (place + long / 2 <= x + width + MARGIN.right)
+        write([place, y + height + 14], number(m) + " m", {
+          class: "tick",
+          "text-anchor": "middle",
+        });
+    });
+    const [low, high] = [y + height, y].map(place => (south - place) / scale + oy);
+    const beside = longest(low, high) < x - 4; // else they stand on the map, whole
+    each(step, low, high, m =>
+      write([beside ? x - 4 : x + 4, south - scale * (m - oy) + 4], number(m), {
         class: "tick",
-        "text-anchor": "middle",
-      }),
-    );
-    each((south - y - height) / scale + oy, (south - y) / scale + oy, m =>
-      write([x - 4, south - scale * (m - oy) + 4], m.toFixed(digits), {
-        class: "tick",
-        "text-anchor": "end",
+        "text-anchor": beside ? "end" : "start",
       }),
     );
     const taken = lesson.landmarks.map(mark => this.pixel(mark)); // no number stands on another
