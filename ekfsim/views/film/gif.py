@@ -46,11 +46,12 @@ def write(file: BinaryIO, pictures: Iterable[tuple[Pixels, float]], comment: str
         now = pixels.view(np.uint32)[..., 0]
         if shown is None:
             shown = np.zeros_like(now)  # transparent
-            indices = np.full(now.shape, UNCHANGED, np.uint8)
+            indices, differs = np.full(now.shape, UNCHANGED, np.uint8), np.empty(now.shape, bool)
             info = {"loop": 0, "comment": comment.encode()}
             header, _ = getheader(palette().resize(now.shape[::-1]), info=info)
             file.writelines(header)
-        changed = np.flatnonzero(now != shown)  # few of all, so all else is asked of them alone
+        np.not_equal(now, shown, out=differs)
+        changed = np.flatnonzero(differs)  # few of all, so all else is asked of them alone
         colors = now.ravel()[changed]
         shown.ravel()[changed] = colors
         indices.ravel()[changed] = _nearest(colors)

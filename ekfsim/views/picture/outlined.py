@@ -4,7 +4,7 @@ matplotlib's own is 20 times slower.
 
 import unicodedata
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ SPACING = 1.45  # from line to line, in heights of the letters
 # vertices (n, 2) and codes (n,) of a path, FONT_SCALE units to the em
 Outline = tuple[Array, NDArray[np.uint8]]
 NOTHING: Outline = np.empty((0, 2)), np.empty(0, np.uint8)
+WORDS = 1024  # that are kept: most are said again in the next picture
 PER_POINT = 1 / 72 / text_to_path.FONT_SCALE  # inches per point and unit of an outline
 
 
@@ -102,14 +103,17 @@ def _joined(outlines: list[Outline], places: list[tuple[float, float]]) -> Outli
 
 
 def _line(text: str) -> Iterator[tuple[Outline, float]]:
-    """The glyphs of a line, and how far to the right each begins."""
+    """The words of a line, and how far to the right each begins."""
     if not text.isascii() and any(map(_shaped, text)):
         yield _outline(text), 0.0
         return
     right = 0.0
-    for sign in text:
-        yield _glyph(sign), right
-        right += _advance(sign)
+    for i, word in enumerate(text.split(" ")):
+        if i:
+            right += _advance(" ")
+        outline, width = _word(word)
+        yield outline, right
+        right += width
 
 
 def _shaped(sign: str) -> bool:
@@ -119,6 +123,17 @@ def _shaped(sign: str) -> bool:
         or unicodedata.bidirectional(sign) in ("R", "AL")
         or sign == "\u200d"
     )
+
+
+@lru_cache(WORDS)
+def _word(text: str) -> tuple[Outline, float]:
+    """The outline of a word that begins at (0, 0), and how far what follows it is."""
+    right, glyphs, places = 0.0, [NOTHING], [(0.0, 0.0)]
+    for sign in text:
+        glyphs.append(_glyph(sign))
+        places.append((right, 0.0))
+        right += _advance(sign)
+    return _joined(glyphs, places), right
 
 
 @cache
