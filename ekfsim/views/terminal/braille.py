@@ -95,9 +95,9 @@ class Canvas:
         along = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
         share = along / np.maximum(count - 1, 1)[segment]
         walked = (np.cumsum(length) - length)[segment] + share * length[segment]
-        inked = np.rint(walked) % (pen.on + pen.off) < pen.on
+        inked = _nearest(walked) % (pen.on + pen.off) < pen.on
         dots = (a[segment] + share[:, None] * (b - a)[segment])[inked]
-        self._set(np.rint(dots).astype(np.int64), pen)
+        self._set(_nearest(dots), pen)
 
     def polygons(self, rings: Sequence[Array], pen: Pen) -> None:
         """Draw the closed lines through points : (n, 2) each, thousands of them as fast as one."""
@@ -114,7 +114,7 @@ class Canvas:
         here = np.asarray(point, dtype=np.float64)
         if not inside(here, self.bounds):
             return
-        column, row = np.rint(self._on_dots(here)).astype(np.int64) // self._cell
+        column, row = _nearest(self._on_dots(here)) // self._cell
         text = "".join("?" if cells(c) > 1 else c for c in printable(text, self.ascii))
         for j, character in enumerate(text, start=int(column) - (len(text) - 1) // 2):
             if 0 <= j < self.columns:
@@ -145,6 +145,11 @@ class Canvas:
             np.bitwise_or.at(self._dots, (row, column), BITS[y, x])
             self._characters[row, column] = ""
         self._colours[row, column] = pen.colour
+
+
+def _nearest(dots: Array) -> Integers:
+    """Whole dots. Every half goes the same way: to the even one each second would be left out."""
+    return np.floor(dots + (0.5 + 1e-6)).astype(np.int64)
 
 
 def clip(start: Array, end: Array, bounds: Bounds) -> tuple[Array, Array]:

@@ -196,3 +196,13 @@ def test_cut_texts_say_so() -> None:
     assert shorten("a long title", 8, ascii=True) == "a lon..."
     assert shorten("机器人定位", 6) == "机器…"
     assert shorten("x" * 10_000, 2) == "x…"
+
+
+@pytest.mark.parametrize("place", [3.0, 3.5, 3.25])
+def test_a_line_between_two_rows_of_dots_has_no_gaps(place):
+    """np.rint would carry every half to the even one."""
+    canvas = Canvas(10, 5, (0.0, 19.0, 0.0, 19.0))  # a dot is as wide as a unit
+    canvas.polyline([(place, 0.5), (place, 15.5)], Pen())
+    canvas.polyline([(5.5, place), (15.5, place)], Pen())
+    bits = [ord(sign) - 0x2800 for sign in canvas.render().replace("\n", "").replace(" ", "")]
+    assert sum(bit.bit_count() for bit in bits) == 16 + 11

@@ -53,12 +53,16 @@ def picture(of: Scene, number: int, ascii: bool = True, size: tuple[int, int] = 
     return draw(view(of, number), of, 0.954, size, LIMITS, colour=False, ascii=ascii).split("\n")
 
 
+def nearest(place):
+    return math.floor(place + 0.5 + 1e-6)  # halves all go one way
+
+
 def at(lines: list[str], x: float, y: float) -> str:
     """The character at a point in m of an ASCII picture at 80 × 24: 21 steps down for 8 m, twice as
     many across."""
     per_metre = 42 / 8
-    return lines[1 + round(10.5 - (y - 4) * per_metre / 2)].ljust(80)[
-        round(39.5 + (x - 5) * per_metre)
+    return lines[1 + nearest(10.5 - (y - 4) * per_metre / 2)].ljust(80)[
+        nearest(39.5 + (x - 5) * per_metre)
     ]
 
 
@@ -67,7 +71,7 @@ def test_everything_stands_where_it_is() -> None:
     assert [at(lines, *corner) for corner in ROOM] == ["#"] * 4
     assert [at(lines, *corner) for corner in DESK.points] == ["#"] * 4
     assert at(lines, 7.5, 0.0) == "#"
-    assert "desk" in lines[1 + round(10.5 - (3.5 - 4) * 21 / 8)]
+    assert "desk" in lines[1 + nearest(10.5 - (3.5 - 4) * 21 / 8)]
     assert at(lines, 2.0, 4.0) == "."  # the path begins at the start
     assert at(lines, 4.0, 4.0) == "o"  # the truth, over the estimate
     assert at(lines, 4.0, 4.5) == "~"  # and its heading
@@ -146,7 +150,7 @@ def test_the_robot_is_a_triangle_that_points_ahead(degrees: float) -> None:
     )
     # in dots from the middle
     for corner in (5 * ahead, -3 * ahead + 3.5 * left, -3 * ahead - 3.5 * left, 0 * ahead):
-        column, row = round(79.5 + corner[0]), round(43.5 - corner[1])
+        column, row = nearest(79.5 + corner[0]), nearest(43.5 - corner[1])
         bit = [[0, 3], [1, 4], [2, 5], [6, 7]][row % 4][column % 2]
         assert ord(lines[row // 4][column // 2]) - 0x2800 >> bit & 1
 
@@ -246,7 +250,7 @@ def test_a_recorded_log_without_truth_or_commands_is_drawn() -> None:
 
 def test_landmarks_stand_with_their_number() -> None:
     lines = picture(scene(landmarks=(Landmark(7, 5.0, 6.0),)), 0)
-    assert "#7" in lines[1 + round(10.5 - 2 * 21 / 8)]
+    assert "#7" in lines[1 + nearest(10.5 - 2 * 21 / 8)]
 
 
 @pytest.mark.parametrize("ascii", [False, True])
