@@ -20,8 +20,11 @@ OWN_TESTS = {  # which run the blocks of kind `sh` of a page
 }
 NOT_RUN = {  # these are understood, and no more
     "figures": "takes minutes: tests/figures/ draws what it draws",
+    "run mower -q": "drives for 549 s: tests/cli/test_systems_e2e.py drives for less",
     "compare mower": "drives for 549 s, and again: tests/study/ compares shorter drives",
     "--through": "asks for another user: tests/student/sandbox/ begins processes by a command",
+    "--show image": "asks for a terminal that draws pictures: tests/views/terminal/ plays one",
+    "--watch": "asks for an editor: tests/views/terminal/test_watching.py saves files itself",
     "docker": "asks for a container",
     "--cluster": "asks for a scheduler: tests/study/running/test_cluster.py has its own",
 }
