@@ -28,7 +28,7 @@ from timing import optional, ratios
 from ekfsim.commands import Move, Sense
 from ekfsim.localization import play
 from ekfsim.scene import Scene
-from ekfsim.views.picture import scope
+from ekfsim.views.picture.extent import scope
 from ekfsim.views.picture.frames import Frame, Picture
 from ekfsim.views.picture.look import STANDARD
 from ekfsim.views.playback.playback import views

@@ -116,9 +116,9 @@ def render(
     from ekfsim.localization import play as steps_of
     from ekfsim.views.curves.series import Series
     from ekfsim.views.film import animation, one_step
-    from ekfsim.views.picture import scope as scopes
-    from ekfsim.views.picture.lettering import boxes
-    from ekfsim.views.picture.limits import Limits
+    from ekfsim.views.picture.extent import scope as scopes
+    from ekfsim.views.picture.extent.limits import Limits
+    from ekfsim.views.picture.written.lettering import boxes
     from ekfsim.views.playback.kept import kept
     from ekfsim.views.playback.playback import Tally, together
     from ekfsim.views.words.captions import texts
@@ -212,7 +212,7 @@ def plot(
     from ekfsim.views.curves.plot import write
     from ekfsim.views.curves.series import Series
     from ekfsim.views.film.still import refuse
-    from ekfsim.views.picture.lettering import boxes
+    from ekfsim.views.picture.written.lettering import boxes
     from ekfsim.views.words.captions import texts
 
     scene = scene_of(**chosen)

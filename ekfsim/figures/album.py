@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ekfsim.views.film.still import metadata
-from ekfsim.views.picture.lettering import drawable
 from ekfsim.views.picture.panels import in_metres
+from ekfsim.views.picture.written.lettering import drawable
 
 PATTERNS = ("*.png", "*.svg", "*.pdf", "*.csv", "captions.md")  # what an album consists of
 BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = (

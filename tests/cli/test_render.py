@@ -20,7 +20,7 @@ from program import (
 )
 
 from ekfsim.views.film.png import SIGNATURE
-from ekfsim.views.picture import lettering
+from ekfsim.views.picture.written import lettering
 
 PUT_IN = ["long.yaml", "short.yaml", "world.yaml"]
 FRAMES = [f"step-000{name}.png" for name in ("0", "1", "2-beam", "2", "3")]

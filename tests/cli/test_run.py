@@ -8,7 +8,7 @@ import pytest
 from program import LONG, MEASURED, SHORT, WORLD, ekfsim, lay_out, left_in, process
 
 from ekfsim.filters import FILTERS
-from ekfsim.views.picture.lettering import wrapped
+from ekfsim.views.picture.written.lettering import wrapped
 
 BREAKS = "\r\x85"  # to YAML the end of a line, as \n
 CONTROLS = sorted({chr(code) for code in [*range(32), *range(127, 160)]} - {*"\t\n"})

@@ -11,7 +11,7 @@ from ekfsim.figures.album import Album
 from ekfsim.figures.classroom.document import draw_classroom
 from ekfsim.figures.classroom.proofs import shipped
 from ekfsim.localization import play
-from ekfsim.views.picture import scope as scopes
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.playback.playback import views
 

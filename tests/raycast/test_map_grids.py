@@ -12,7 +12,7 @@ from ekfsim.files.scenes.load import check, load_scene
 from ekfsim.files.scenes.polygons import FloorPlan, fault_of
 from ekfsim.localization import play
 from ekfsim.raycast.walls import Walls
-from ekfsim.views.picture import scope as scopes
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.playback.playback import views
 

@@ -19,8 +19,8 @@ from ekfsim.views.curves.marks import tell_lost
 from ekfsim.views.curves.panels import Panel, draw_panels
 from ekfsim.views.curves.plot import lines, marked
 from ekfsim.views.curves.series import Series
-from ekfsim.views.picture.legend import HANDLERS
 from ekfsim.views.picture.look import STANDARD, Look
+from ekfsim.views.picture.written.legend import HANDLERS
 from ekfsim.views.playback.playback import views
 
 WRONG_WALL = "diverge-01-wrong-wall"

@@ -11,7 +11,7 @@ from ekfsim.figures.classroom.ellipses import ellipse_size, theta_question
 from ekfsim.figures.classroom.proofs import proof_rows
 from ekfsim.localization import play
 from ekfsim.scene import Scene
-from ekfsim.views.picture import scope
+from ekfsim.views.picture.extent import scope
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.playback.playback import views
 from ekfsim.views.playback.view import View

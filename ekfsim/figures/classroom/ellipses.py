@@ -27,9 +27,9 @@ from ekfsim.localization import play
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Step
 from ekfsim.views.notebook.drawing import draw
-from ekfsim.views.picture import limits
-from ekfsim.views.picture.legend import HANDLERS
+from ekfsim.views.picture.extent import limits
 from ekfsim.views.picture.look import Look
+from ekfsim.views.picture.written.legend import HANDLERS
 from ekfsim.views.playback.playback import views
 from ekfsim.views.playback.view import View
 

@@ -13,7 +13,7 @@ from ekfsim.views.curves.judged import lifted
 from ekfsim.views.curves.pens import pen
 from ekfsim.views.curves.series import Series
 from ekfsim.views.picture.artists import PURPLE, VERMILLION
-from ekfsim.views.picture.lettering import drawable, families
+from ekfsim.views.picture.written.lettering import drawable, families
 
 BASE = 0.03  # of an Axes' height: where a reading is marked that has no NIS
 SAID = "#777777"

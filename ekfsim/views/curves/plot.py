@@ -24,8 +24,8 @@ from ekfsim.views.curves.panels import Panel, draw_panels, panels_of, remarks
 from ekfsim.views.curves.pens import pen
 from ekfsim.views.curves.series import Series
 from ekfsim.views.film.still import save
-from ekfsim.views.picture.lettering import drawable, families, shortened, wrapped
 from ekfsim.views.picture.look import SCREEN, STANDARD, Paper
+from ekfsim.views.picture.written.lettering import drawable, families, shortened, wrapped
 from ekfsim.views.words.captions import percent, source
 from ekfsim.views.words.closing import sentence
 

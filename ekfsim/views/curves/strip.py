@@ -17,9 +17,9 @@ from ekfsim.views.curves.bands import ErrorPanel, InnovationPanel
 from ekfsim.views.curves.panels import Panel, draw_panels, over_steps, panels_of
 from ekfsim.views.curves.series import Series
 from ekfsim.views.film.png import Encoder, Pixels
+from ekfsim.views.picture.extent.scope import Scope
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.picture.look import LOWEST, STANDARD, Look, Paper
-from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
 
 HEIGHT = 2.4  # in

@@ -15,9 +15,9 @@ from ekfsim.views.curves.series import Series
 from ekfsim.views.curves.strip import Stripped, framed
 from ekfsim.views.film import gif, still, video
 from ekfsim.views.film.png import Pixels
+from ekfsim.views.picture.extent.scope import Scope
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.picture.look import SCREEN, STANDARD, Look, Paper
-from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
 
 BEAM, OTHER, LAST = 0.8, 1.2, 3.2  # s that a view stays

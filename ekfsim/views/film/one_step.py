@@ -10,9 +10,9 @@ from ekfsim.scene import Scene
 from ekfsim.views.curves.series import Series
 from ekfsim.views.curves.strip import framed
 from ekfsim.views.film import still
+from ekfsim.views.picture.extent.scope import Scope
 from ekfsim.views.picture.frames import Picture
 from ekfsim.views.picture.look import SCREEN, STANDARD, Look, Paper
-from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
 
 

@@ -9,7 +9,7 @@ from PIL.PngImagePlugin import PngInfo
 from ekfsim.localization import play
 from ekfsim.provenance import metadata
 from ekfsim.scene import Scene
-from ekfsim.views.picture import scope as scopes
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.picture.look import STANDARD, Paper
 from ekfsim.views.playback.playback import views

@@ -14,15 +14,15 @@ from matplotlib.transforms import Bbox, ScaledTranslation
 from ekfsim.geometry.ellipse import outline
 from ekfsim.records import Step
 from ekfsim.scene import Scene
-from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.belief.others import OtherArtists
-from ekfsim.views.picture.legend import HANDLERS, entries
-from ekfsim.views.picture.lettering import families
-from ekfsim.views.picture.limits import Limits
+from ekfsim.views.picture.extent import scope as scopes
+from ekfsim.views.picture.extent.limits import Limits
 from ekfsim.views.picture.look import STANDARD, Look
-from ekfsim.views.picture.names import Names
 from ekfsim.views.picture.panels import BODY, Main, reading
-from ekfsim.views.picture.samples import Handle
+from ekfsim.views.picture.written.legend import HANDLERS, entries
+from ekfsim.views.picture.written.lettering import families
+from ekfsim.views.picture.written.names import Names
+from ekfsim.views.picture.written.samples import Handle
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.captions import watching
 from ekfsim.world import Map

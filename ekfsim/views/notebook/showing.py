@@ -11,8 +11,8 @@ from ekfsim.provenance import provenance
 from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.views.notebook.cells import page
+from ekfsim.views.picture.extent.scope import of as scope_of
 from ekfsim.views.picture.frames import Frame
-from ekfsim.views.picture.scope import of as scope_of
 from ekfsim.views.playback.playback import views
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.closing import conclude

@@ -16,7 +16,7 @@ from ekfsim.views.page.document import filled, hashed, text_of
 from ekfsim.views.page.holding import Holding
 from ekfsim.views.page.scenery import framed, inks, origin_of, scenery
 from ekfsim.views.page.told import Teller, ways
-from ekfsim.views.picture import scope as scopes
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.look import STANDARD, Look
 from ekfsim.views.playback.kept import kept
 from ekfsim.views.playback.playback import Tally, together

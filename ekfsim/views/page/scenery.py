@@ -16,10 +16,10 @@ from ekfsim.views.picture import artists
 from ekfsim.views.picture.belief import ghost, warned, ways
 from ekfsim.views.picture.belief.belief import COVERED
 from ekfsim.views.picture.belief.others import STYLES
-from ekfsim.views.picture.lettering import shortened
-from ekfsim.views.picture.limits import Limits
+from ekfsim.views.picture.extent.limits import Limits
 from ekfsim.views.picture.look import Look
 from ekfsim.views.picture.sight_artists import FIX, OTHERWISE, recorded_fixes
+from ekfsim.views.picture.written.lettering import shortened
 from ekfsim.views.words.captions import conditioned_label, cone_label, ellipse_label
 from ekfsim.world import Map
 

@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
 from ekfsim.geometry import Array
-from ekfsim.views.picture.outlined import OutlinedText
+from ekfsim.views.picture.written.outlined import OutlinedText
 from ekfsim.world import World
 
 BLUE, SKY, GREEN, VERMILLION, PURPLE, ORANGE = (

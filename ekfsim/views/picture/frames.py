@@ -19,6 +19,7 @@ from ekfsim.geometry.ellipse import outline
 from ekfsim.scene import Scene
 from ekfsim.views.film.png import Encoder, Pixels
 from ekfsim.views.picture.artists import VERMILLION, empty
+from ekfsim.views.picture.extent.scope import Scope
 from ekfsim.views.picture.layout import (
     HIGHEST,
     JUDGED,
@@ -30,14 +31,13 @@ from ekfsim.views.picture.layout import (
     arranged,
     fitting,
 )
-from ekfsim.views.picture.legend import Key, Row
-from ekfsim.views.picture.lettering import drawable, families, shortened, wrapped
 from ekfsim.views.picture.look import SCREEN, STANDARD, Look, Paper
-from ekfsim.views.picture.names import Names
-from ekfsim.views.picture.outlined import OutlinedText
 from ekfsim.views.picture.panels import CloseUp, Main, reading
 from ekfsim.views.picture.replay import Replay
-from ekfsim.views.picture.scope import Scope
+from ekfsim.views.picture.written.legend import Key, Row
+from ekfsim.views.picture.written.lettering import drawable, families, shortened, wrapped
+from ekfsim.views.picture.written.names import Names
+from ekfsim.views.picture.written.outlined import OutlinedText
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.captions import notes, source, spread, title, too_large
 from ekfsim.views.words.judgement import judgement, warns

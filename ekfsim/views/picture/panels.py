@@ -20,10 +20,10 @@ from ekfsim.views.picture.artists import WorldArtists
 from ekfsim.views.picture.belief.belief import BeliefArtists
 from ekfsim.views.picture.belief.others import OtherArtists
 from ekfsim.views.picture.belief.shape import Shape
-from ekfsim.views.picture.limits import Limits
-from ekfsim.views.picture.outlined import OutlinedText
+from ekfsim.views.picture.extent.limits import Limits
 from ekfsim.views.picture.sight_artists import BeamArtists, FixArtists, SightArtists
 from ekfsim.views.picture.sights import Sight, kinds, sight
+from ekfsim.views.picture.written.outlined import OutlinedText
 from ekfsim.views.playback.view import View
 from ekfsim.views.playback.zoom import PROBABILITY, Zoom, one_two_five
 from ekfsim.views.words.beams.beam import Beam, beam

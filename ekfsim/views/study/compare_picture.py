@@ -14,7 +14,7 @@ from ekfsim.study.comparison import Comparison
 from ekfsim.study.pairs import PER_OCTAVE, Pairs
 from ekfsim.study.results import Result
 from ekfsim.version import VERSION
-from ekfsim.views.picture.lettering import drawable, wrapped
+from ekfsim.views.picture.written.lettering import drawable, wrapped
 from ekfsim.views.study.compare_words import measures, sentence, settings
 from ekfsim.views.study.sheet import PENS, Pen, draw_shares, panel, save, sheet
 

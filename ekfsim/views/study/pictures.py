@@ -20,7 +20,7 @@ from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
 from ekfsim.study.verdict import MOST_LOST
 from ekfsim.version import VERSION
-from ekfsim.views.picture.lettering import wrapped
+from ekfsim.views.picture.written.lettering import wrapped
 from ekfsim.views.study.sheet import GREY, PENS, draw_shares, numbers, panel, save, sheet
 
 FAINT = 0.1  # how far from where it should be a share must lie to have the deepest colour of a map

@@ -16,7 +16,7 @@ from matplotlib.ticker import PercentFormatter
 from ekfsim.geometry import Array
 from ekfsim.study.results import Share
 from ekfsim.version import VERSION
-from ekfsim.views.picture.lettering import drawable, wrapped
+from ekfsim.views.picture.written.lettering import drawable, wrapped
 
 GREY = "#666666"
 DPI = 120

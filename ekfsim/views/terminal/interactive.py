@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from ekfsim.localization import play
 from ekfsim.printable import in_a_line
 from ekfsim.scene import Scene
-from ekfsim.views.picture import scope as scopes
+from ekfsim.views.picture.extent import scope as scopes
+from ekfsim.views.picture.extent.scope import Scope
 from ekfsim.views.picture.look import STANDARD, Look
-from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.playback import UntilFailure
 from ekfsim.views.terminal.pace import Pace
 from ekfsim.views.terminal.player import Player

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, TextIO
 from ekfsim.errors import StepError, UsageError
 from ekfsim.files.yaml.telling import quoted
 from ekfsim.scene import Scene
+from ekfsim.views.picture.extent.scope import Scope
 from ekfsim.views.picture.look import Look, get_ready
-from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.kept import nobody
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal import drawing as terminal

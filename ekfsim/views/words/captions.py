@@ -9,8 +9,8 @@ from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse, radius
 from ekfsim.models.sensors.infrared import InfraredBeam
 from ekfsim.records import Control, Entry, Reading, Step
 from ekfsim.scene import Scene
-from ekfsim.views.picture.lettering import shortened
 from ekfsim.views.picture.sights import Sight, instants, told
+from ekfsim.views.picture.written.lettering import shortened
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.beams.beam import Beam, called
 from ekfsim.views.words.changes import ARROWS, carried, losing, revised

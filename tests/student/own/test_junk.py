@@ -18,7 +18,7 @@ from ekfsim.student.own.filter import OwnFilter
 from ekfsim.student.own.forms import Functions
 from ekfsim.student.own.home import Home
 from ekfsim.student.own.loading import Code
-from ekfsim.views.picture import scope as scopes
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.closing import conclude
 from ekfsim.views.words.narrative import narrate

@@ -11,7 +11,7 @@ from ekfsim.localization import play
 from ekfsim.views.curves.plot import figure_of
 from ekfsim.views.curves.series import Series
 from ekfsim.views.curves.strip import COMING, HEIGHT, Strip, Stripped
-from ekfsim.views.picture import scope
+from ekfsim.views.picture.extent import scope
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.playback.playback import views
 

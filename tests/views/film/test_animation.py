@@ -14,7 +14,7 @@ from ekfsim.localization import play
 from ekfsim.provenance import metadata, told_in_a_line
 from ekfsim.views.film import animation, gif, video
 from ekfsim.views.film.animation import render
-from ekfsim.views.picture import scope as scopes
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.playback.playback import views
 

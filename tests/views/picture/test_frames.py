@@ -17,8 +17,8 @@ from ekfsim.geometry.ellipse import conditioned, radius_factor
 from ekfsim.localization import play
 from ekfsim.views.notebook.drawing import draw
 from ekfsim.views.picture import frames, panels
-from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.artists import VERMILLION
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.frames import Frame, Picture
 from ekfsim.views.picture.look import Look
 from ekfsim.views.picture.panels import close_width

@@ -7,7 +7,7 @@ from scenes import DESK, rich, scene
 from ekfsim.commands import Kidnap, Move, Sense
 from ekfsim.localization import play
 from ekfsim.views.picture import replay
-from ekfsim.views.picture import scope as scopes
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.picture.look import Look
 from ekfsim.views.playback.playback import views

@@ -27,8 +27,8 @@ from ekfsim.models.sensors.offset import LandmarkOffset
 from ekfsim.models.sensors.position import Position
 from ekfsim.records import Entry, Log, Reading, Step
 from ekfsim.systems.instrument import Landmark
-from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.artists import BLUE, CROWD, MEANT, VERMILLION
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.frames import Frame, Picture
 from ekfsim.views.picture.look import Look
 from ekfsim.views.picture.sight_artists import recorded_fixes

@@ -12,7 +12,7 @@ from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
 from ekfsim.views.picture.frames import LINES
-from ekfsim.views.picture.lettering import wrapped
+from ekfsim.views.picture.written.lettering import wrapped
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.captions import notes
 from ekfsim.views.words.judgement import COLUMNS, judgement, warns

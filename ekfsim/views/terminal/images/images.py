@@ -5,8 +5,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ekfsim.scene import Scene
+from ekfsim.views.picture.extent.scope import Scope
 from ekfsim.views.picture.look import LOWEST, NARROWEST, Look, Paper, get_ready
-from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.images import protocols
 from ekfsim.views.terminal.images.asking import Means, Protocol

@@ -6,8 +6,8 @@ from dataclasses import replace
 from io import StringIO
 
 from ekfsim.scene import Scene
-from ekfsim.views.picture.limits import Limits
-from ekfsim.views.picture.scope import Scope
+from ekfsim.views.picture.extent.limits import Limits
+from ekfsim.views.picture.extent.scope import Scope
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.braille import Bounds, shorten
 from ekfsim.views.terminal.images.images import Box, Images

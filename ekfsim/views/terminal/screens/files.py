@@ -9,8 +9,8 @@ from ekfsim.errors import EkfsimError
 from ekfsim.files.results.writing import whole_file
 from ekfsim.provenance import metadata
 from ekfsim.scene import Scene
+from ekfsim.views.picture.extent.scope import Scope
 from ekfsim.views.picture.look import Look, get_ready
-from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.keys.bindings import Action
 from ekfsim.views.terminal.screens.moment import Moment

@@ -11,9 +11,9 @@ from typing import Any
 from matplotlib.backend_bases import Event, KeyEvent
 
 from ekfsim.scene import Scene
+from ekfsim.views.picture.extent.scope import Scope
 from ekfsim.views.picture.frames import Picture
 from ekfsim.views.picture.look import SCREEN, STANDARD, Look
-from ekfsim.views.picture.scope import Scope
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.keys.bindings import Action
 from ekfsim.views.terminal.keys.keyboard import NO_MORE

@@ -17,8 +17,8 @@ from ekfsim.geometry import Array
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
-from ekfsim.views.picture.lettering import shortened
 from ekfsim.views.picture.sights import beam_length
+from ekfsim.views.picture.written.lettering import shortened
 from ekfsim.views.words.beams.told import elsewhere, others_met
 from ekfsim.views.words.numbers import length
 from ekfsim.world import BOUNDARY, Map

@@ -12,13 +12,13 @@ from scenes import DESK, SILENT, rich, scene, told
 from ekfsim.commands import Kidnap, Move, Say, Sense
 from ekfsim.geometry.ellipse import outline, radius_factor
 from ekfsim.localization import play
-from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.artists import empty
 from ekfsim.views.picture.belief.belief import BeliefArtists
 from ekfsim.views.picture.belief.shape import Shape
 from ekfsim.views.picture.belief.warned import ALARM_DASHES
 from ekfsim.views.picture.belief.ways import RECKONED_DASHES, TRUE_DASHES
-from ekfsim.views.picture.limits import Limits
+from ekfsim.views.picture.extent import scope as scopes
+from ekfsim.views.picture.extent.limits import Limits
 from ekfsim.views.picture.panels import Main, reading
 from ekfsim.views.playback.playback import views
 

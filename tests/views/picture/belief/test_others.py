@@ -13,8 +13,8 @@ from ekfsim.commands import Move, Sense
 from ekfsim.diagnostics.coverage import inside_ellipse
 from ekfsim.geometry.ellipse import outline
 from ekfsim.localization import play
-from ekfsim.views.picture import scope as scopes
 from ekfsim.views.picture.belief.others import STYLES
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.frames import Picture
 from ekfsim.views.playback.playback import Playback, together, views
 from ekfsim.views.terminal import drawing as terminal

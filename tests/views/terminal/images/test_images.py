@@ -8,7 +8,7 @@ from sixels import decoded
 
 from ekfsim.commands import Move, Sense
 from ekfsim.localization import play
-from ekfsim.views.picture import scope
+from ekfsim.views.picture.extent import scope
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.picture.look import STANDARD, Paper
 from ekfsim.views.playback.playback import together

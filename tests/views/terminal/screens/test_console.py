@@ -7,7 +7,7 @@ from scenes import scene
 from ekfsim.commands import Move, Sense
 from ekfsim.errors import StepError
 from ekfsim.localization import play
-from ekfsim.views.picture import scope
+from ekfsim.views.picture.extent import scope
 from ekfsim.views.terminal.keys.bindings import Action
 from ekfsim.views.terminal.player import Player
 from ekfsim.views.terminal.screens.console import OTHER_SCREEN, OWN_SCREEN, Console

@@ -9,7 +9,7 @@ from matplotlib.backend_bases import ResizeEvent
 from ekfsim.errors import UsageError
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
-from ekfsim.views.picture import scope as scopes
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.look import SCREEN, STANDARD
 from ekfsim.views.playback.playback import views
 from ekfsim.views.terminal.interactive import play_interactively

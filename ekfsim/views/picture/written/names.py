@@ -17,9 +17,9 @@ from shapely.geometry.base import BaseGeometry
 
 from ekfsim.geometry import Array, Booleans
 from ekfsim.views.picture.artists import empty
-from ekfsim.views.picture.crossed import Crossed
-from ekfsim.views.picture.lettering import drawable, shortened
-from ekfsim.views.picture.outlined import PER_POINT, lettered
+from ekfsim.views.picture.written.crossed import Crossed
+from ekfsim.views.picture.written.lettering import drawable, shortened
+from ekfsim.views.picture.written.outlined import PER_POINT, lettered
 from ekfsim.world import World
 
 POINTS, SMALLER = 7.0, 6.5  # the letters' size of names and of numbers

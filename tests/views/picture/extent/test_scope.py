@@ -12,8 +12,8 @@ from ekfsim.commands import Kidnap, Move, Repeat
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.belief import Gaussian
 from ekfsim.localization import play
-from ekfsim.views.picture import scope as scopes
-from ekfsim.views.picture.limits import Limits
+from ekfsim.views.picture.extent import scope as scopes
+from ekfsim.views.picture.extent.limits import Limits
 from ekfsim.views.playback.playback import views
 
 ALL_ROUND = Repeat(40, (Move(1.0, math.radians(90)), Move(0.5, 0.1)))

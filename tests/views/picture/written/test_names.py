@@ -14,10 +14,10 @@ from scenes import DESK, scene
 from ekfsim.commands import Move
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
-from ekfsim.views.picture import scope as scopes
-from ekfsim.views.picture.crossed import SQUARE, Crossed
+from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.frames import Picture
 from ekfsim.views.picture.look import SCREEN
+from ekfsim.views.picture.written.crossed import SQUARE, Crossed
 from ekfsim.views.playback.playback import views
 
 LONGEST = 250  # steps of a run that are looked at

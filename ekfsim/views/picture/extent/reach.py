@@ -8,7 +8,7 @@ from ekfsim.filters.belief import Belief
 from ekfsim.geometry.ellipse import radius_factor
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.records import Reading, Step
-from ekfsim.views.picture.limits import Limits
+from ekfsim.views.picture.extent.limits import Limits
 from ekfsim.views.picture.sights import sight
 
 FINE = 0.01  # of its own size: by how much the reach must have grown to be kept anew

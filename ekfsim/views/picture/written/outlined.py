@@ -17,7 +17,7 @@ from matplotlib.transforms import Affine2D, Bbox, ScaledTranslation, Transform
 from numpy.typing import NDArray
 
 from ekfsim.geometry import Array
-from ekfsim.views.picture.lettering import drawable, families
+from ekfsim.views.picture.written.lettering import drawable, families
 
 SPACING = 1.45  # from line to line, in heights of the letters
 # vertices (n, 2) and codes (n,) of a path, FONT_SCALE units to the em

@@ -18,9 +18,9 @@ from matplotlib.transforms import Bbox
 
 from ekfsim.views.picture.artists import empty
 from ekfsim.views.picture.layout import COLUMN, ROW, Layout
-from ekfsim.views.picture.lettering import drawable, wrapped
-from ekfsim.views.picture.outlined import PER_POINT, OutlinedText
-from ekfsim.views.picture.samples import Handle, Sample, first, sample, style
+from ekfsim.views.picture.written.lettering import drawable, wrapped
+from ekfsim.views.picture.written.outlined import PER_POINT, OutlinedText
+from ekfsim.views.picture.written.samples import Handle, Sample, first, sample, style
 
 HANDLERS: dict[type, Any] = {
     tuple: HandlerTuple(ndivide=1),

@@ -18,8 +18,8 @@ import numpy as np
 from ekfsim.geometry import Array
 from ekfsim.records import Step
 from ekfsim.scene import Scene
-from ekfsim.views.picture.limits import LEAST, Limits
-from ekfsim.views.picture.reach import Reach
+from ekfsim.views.picture.extent.limits import LEAST, Limits
+from ekfsim.views.picture.extent.reach import Reach
 from ekfsim.views.playback.view import View
 from ekfsim.world import World
 
