@@ -37,7 +37,7 @@ ONE, ALL = 6, 4  # cells whose size is told
 SIXEL = 4  # among the attributes
 FILE = r"F(?![a-z])"  # among the features of iTerm2: it shows files that are images
 USUAL_CELL = 10, 20  # px, where a terminal that scales images does not tell
-COLOURS = 64  # of a sixel image at most, as of a GIF: more take longer and look the same
+COLOURS = 256  # of a sixel image, where the terminal does not tell of fewer
 
 
 class Protocol(Enum):
@@ -81,7 +81,7 @@ def means(read: bytes, size: tuple[int, int], pixels: tuple[int, int] = (0, 0)) 
     r"""What a terminal can draw, by what it answered. size, pixels : as of `ask`
 
     >>> means(b"\x1b[6;16;8t\x1b[?62;4c", (80, 24))
-    Means(protocol=<Protocol.SIXEL: 'sixel'>, cell=(8, 16), colours=64, largest=None)
+    Means(protocol=<Protocol.SIXEL: 'sixel'>, cell=(8, 16), colours=256, largest=None)
     """
     answers = [(one.lastgroup, one[one.lastgroup].decode(errors="replace"))
                for one in ANSWER.finditer(read) if one.lastgroup]  # fmt: skip

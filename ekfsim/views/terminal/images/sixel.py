@@ -8,6 +8,7 @@ that are painted. "!n" repeats the sign after it n times, "$" goes back to the s
 import numpy as np
 from PIL import Image
 
+from ekfsim.views.film.gif import palette
 from ekfsim.views.film.png import Pixels
 
 HIGH = 6  # rows of a band
@@ -16,19 +17,27 @@ REPEATED = 4  # signs from which on to repeat one is shorter
 
 
 def quantized(rgb: Pixels, colours: int) -> tuple[Pixels, Pixels]:
-    """Each pixel's colour by its number : (h, w), and the colours : (n, 3). rgb : (h, w, 3)"""
-    image = Image.fromarray(rgb).quantize(colours, dither=Image.Dither.NONE)
-    palette = np.asarray(image.getpalette(), np.uint8).reshape(-1, 3)
-    return np.asarray(image), palette
+    """Each pixel's colour by its number : (h, w), and the colours : (n, 3). rgb : (h, w, 3)
+
+    The colours are those of a GIF, or, where there may not be so many, what comes near the
+    picture's own.
+    """
+    image, own = Image.fromarray(rgb), palette()
+    if colours >= len(own.getpalette() or ()) // 3:
+        matched = image.quantize(palette=own, dither=Image.Dither.NONE)
+    else:
+        spread = Image.Quantize.MAXCOVERAGE  # the median cut has none for an ink of few pixels
+        matched = image.quantize(colours, spread, kmeans=1, dither=Image.Dither.NONE)
+    return np.asarray(matched), np.asarray(matched.getpalette(), np.uint8).reshape(-1, 3)
 
 
-def encoded(numbers: Pixels, palette: Pixels) -> str:
-    """A picture that paints every pixel, at the cursor."""
+def encoded(numbers: Pixels, colours: Pixels) -> str:
+    """A picture that paints every pixel, at the cursor. numbers, colours : as of `quantized`"""
     height, width = numbers.shape
-    shares = np.rint(palette / 255 * 100).astype(int)  # %
-    colours = "".join(f"#{n};2;{r};{g};{b}" for n, (r, g, b) in enumerate(shares.tolist()))
+    shares = np.rint(colours / 255 * 100).astype(int).tolist()  # %
+    inks = "".join("#{};2;{};{};{}".format(n, *shares[n]) for n in np.unique(numbers))
     bands = (_band(numbers[first : first + HIGH]) for first in range(0, height, HIGH))
-    return f'\x1bP0;1;0q"1;1;{width};{height}{colours}{"-".join(bands)}\x1b\\'
+    return f'\x1bP0;1;0q"1;1;{width};{height}{inks}{"-".join(bands)}\x1b\\'
 
 
 def _band(rows: Pixels) -> str:

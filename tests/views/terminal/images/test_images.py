@@ -3,11 +3,13 @@ import re
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from scenes import scene
 from sixels import decoded
 
 from ekfsim.commands import Move, Sense
 from ekfsim.localization import play
+from ekfsim.views.picture.artists import BLUE, GREEN, TRUTH
 from ekfsim.views.picture.extent import scope
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.picture.look import STANDARD, Paper
@@ -77,14 +79,19 @@ def test_iterm2_gets_the_frame_over_the_cells_of_the_box(frame):
     assert {"inline=1", "width=64", "height=30", f"size={len(png)}"} <= set(head.split(";"))
 
 
-@pytest.mark.parametrize("colours", [16, 64])
+@pytest.mark.parametrize("colours", [16, 256])
 def test_sixels_are_the_frame_in_few_colours(frame, colours):
     text = images(Protocol.SIXEL, colours=colours).draw(VIEWS[2], BOX)
     numbers, palette = quantized(frame.rgb(VIEWS[2]), colours)
     assert text.startswith("\x1b[3;4H")
     assert np.array_equal(decoded(text), np.rint(palette / 2.55)[numbers])
-    far = np.abs(palette[numbers] - frame.rgb(VIEWS[2]).astype(float)).max(axis=2) > 60
-    assert far.mean() < 0.02
+    pixels = frame.rgb(VIEWS[2]).astype(float)
+    away = np.abs(palette[numbers] - pixels).max(axis=2)
+    assert (away > 40).mean() < 0.001
+    for ink in BLUE, GREEN, TRUTH:
+        there = (pixels == np.rint(255 * np.array(to_rgb(ink)))).all(axis=2)
+        assert there.any()
+        assert away[there].max() <= (25 if colours == 16 else 0)
 
 
 def test_sixels_stay_within_their_cells_and_within_what_the_terminal_takes():
