@@ -18,6 +18,7 @@ from ekfsim.views.curves.marks import tell_lost
 from ekfsim.views.curves.panels import Panel, draw_panels, panels_of
 from ekfsim.views.curves.plot import figure_of
 from ekfsim.views.curves.series import Series
+from ekfsim.views.playback.given import steps_in
 
 GAP = 0.2  # of the height of a panel of errors, between two that share the place of one Axes
 
@@ -47,7 +48,7 @@ def plot_errors(
     ax : one Axes, whose place the panels share, or as many as they are; None: a new figure
     """
     named = steps if isinstance(steps, Mapping) else {"": steps}
-    runs = tuple(Series.of(own, name) for name, own in named.items())
+    runs = tuple(Series.of(steps_in(own), name) for name, own in named.items())
     if not runs or not all(len(run) for run in runs):
         raise UsageError("there are no steps to plot; a generator gives its steps once")
     if len({len(run) for run in runs}) > 1:

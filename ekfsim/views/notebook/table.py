@@ -12,6 +12,7 @@ from ekfsim.files.results.trajectories import columns_of, row_of
 from ekfsim.geometry import Array
 from ekfsim.printable import in_a_line
 from ekfsim.records import Step
+from ekfsim.views.playback.given import steps_in
 from ekfsim.views.words.text_table import aligned
 
 TEXTS = ("type", "sensor", "refused")  # columns of words, even where all of them are empty
@@ -55,9 +56,9 @@ def table(steps: Iterable[Step], confidence: float = 0.954) -> Any:
     pandas DataFrame where pandas is installed, else a dict of arrays.
 
     m, rad and their squares; nan where a number is undefined. confidence : of the ellipse.
-    Raises UsageError for steps of many runs side by side.
+    Raises UsageError for what holds no steps, and for those of many runs side by side.
     """
-    known = list(steps)
+    known = list(steps_in(steps))
     if any(step.posterior.mean.ndim > 1 for step in known):
         raise UsageError("a table is of one run: these steps hold many side by side")
     commanded = all(step.entry.t is None for step in known)

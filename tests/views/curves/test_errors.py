@@ -54,6 +54,9 @@ def test_what_cannot_be_plotted_is_told_in_a_sentence():
     list(steps)
     with pytest.raises(UsageError, match="no steps to plot; a generator gives its steps once"):
         plot_errors(steps)
+    for given in (rich(), "tour", 3, {"a": rich()}):
+        with pytest.raises(UsageError, match="holds no steps; give those of a run"):
+            plot_errors(given)
     with pytest.raises(UsageError, match="not as many steps"):
         plot_errors({"a": play(rich()), "b": play(scene(Move(1, 0)))})
     with pytest.raises(UsageError, match="there are 5 panels for 2 Axes; give one, or each"):
