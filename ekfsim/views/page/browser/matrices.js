@@ -1,11 +1,11 @@
 // The matrices that a view's numbers come from, as tables with symbols.
 
 const MEANT = {
-  P: "covariance of the estimate",
-  F: "∂f/∂x",
-  G: "∂f/∂u",
-  H: "∂h/∂x",
-  R: "covariance of the reading's noise",
+  P: "P  covariance of the estimate",
+  F: "F = ∂f/∂x",
+  G: "G = ∂f/∂u",
+  H: "H = ∂h/∂x",
+  R: "R  covariance of the reading's noise",
   S: "S = H P⁻ Hᵀ + R, covariance of the innovation",
   ν: "ν = z − h(x⁻), the innovation",
   K: "K = P⁻ Hᵀ S⁻¹, the gain",
@@ -27,7 +27,7 @@ function ask(part, symbol) {
   if (part instanceof SVGElement) {
     part.setAttribute("tabindex", "0");
     part.setAttribute("role", "button");
-    part.setAttribute("aria-label", `${symbol}: ${MEANT[symbol]}`);
+    part.setAttribute("aria-label", MEANT[symbol]);
   }
   for (const event of ["mouseenter", "focus", "click"])
     part.addEventListener(event, () => choose(symbol));
@@ -54,7 +54,7 @@ function table(symbol, belief, inputs = 1) {
   const made = document.createElement("table");
   const last =
     inputs > 1 && "FG".includes(symbol) ? `, of the last of ${inputs} motion inputs` : "";
-  made.createCaption().textContent = `${symbol}  ${MEANT[symbol]}${last}`;
+  made.createCaption().textContent = MEANT[symbol] + last;
   const head = made.createTHead().insertRow();
   for (const name of ["", ...across]) head.appendChild(heading(name, "col"));
   const body = made.createTBody();
