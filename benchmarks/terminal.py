@@ -25,7 +25,7 @@ from builds import HERE, Build
 from older import COMMIT, span
 
 COLUMNS, ROWS = 120, 40
-PICTURED = b"estimate"  # in the legend, which is drawn last
+PICTURED = b"\x1b[0m cone"  # of the legend, which is drawn last: no narrative has it in colour
 QUIET = 0.08  # s without a byte, after which the screen is drawn
 PRESSES = 40
 HEAD = f"{'play tour --show text, 120 × 40':44s} {'old':>9s} {'new':>9s} {'ratio':>6s} reach"

@@ -13,7 +13,6 @@ from ekfsim.records import Entry
 from ekfsim.scene import Scene
 from ekfsim.simulation.classroom import obey
 from ekfsim.simulation.draws import Draws
-from ekfsim.simulation.driven import drive
 
 __all__ = ["Draws", "simulate"]
 
@@ -21,4 +20,8 @@ __all__ = ["Draws", "simulate"]
 def simulate(scene: Scene, runs: Integers | None = None) -> Iterator[Entry]:
     """The log of the scene's run, or of N runs side by side. runs : (N,) numbers from 0"""
     draws = Draws(scene.seed, np.asarray(scene.run if runs is None else runs, dtype=np.int64))
-    return obey(scene, draws) if scene.drive is None else drive(scene, scene.drive, draws)
+    if scene.drive is None:
+        return obey(scene, draws)
+    from ekfsim.simulation.driven import drive  # no classroom waits for its import
+
+    return drive(scene, scene.drive, draws)
