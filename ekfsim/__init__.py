@@ -25,7 +25,7 @@ halves of `play`:
 `ekfsim.simulate(scene)` gives the Entries (what happened), `ekfsim.localize(entries, filter,
 belief)` the Steps (what a filter made of them), with `ekfsim.filter_of(scene)` and
 `ekfsim.first_belief(scene)` to begin with. A filter of your own is two functions, or a class, that
-`ekfsim.bring` makes one of them all (see docs/own-filter.md):
+`ekfsim.bring` makes one of them all (see docs/course/own-filter.md):
 
 >>> def predict(x, P, u, motion):
 ...     F, G = motion.F(x, u), motion.G(x, u)

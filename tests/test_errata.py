@@ -273,7 +273,9 @@ def test_erratum_mower_eq_12_and_eq_28_are_one_for_the_optimal_gain():
 
 @pytest.mark.parametrize("number", ["000", "001", "002", "003", "004"])
 def test_who_looks_a_document_up_finds_its_title_and_its_authors(number):
-    told = (Path(__file__).parents[1] / "docs" / "systems.md").read_text(encoding="utf-8")
+    told = (Path(__file__).parents[1] / "docs" / "reference" / "systems.md").read_text(
+        encoding="utf-8"
+    )
     row = next(line for line in told.splitlines() if line.startswith(f"| {number} |"))
     title, helped = row.split("*")[1], " ".join(DOCUMENTS.split())
     assert title in helped

@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 NAMED = re.compile(r"(?<![\w./-])(?:[\w.-]+/)*\w[\w-]*\.(?:py|md|cff)\b")
-PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
 MODULES = [
     path for path in sorted((ROOT / "ekfsim").rglob("*.py")) if "_packaged" not in path.parts
 ]
@@ -21,11 +21,14 @@ FILES = [
 ]
 OTHERS = {
     "ekfsim/figures/writing.py": {"captions.md"},  # written by `ekfsim figures`
-    "docs/systems.md": {"captions.md"},
+    "docs/reference/systems.md": {"captions.md"},
     # written by `ekfsim grade`, and by two students
-    "docs/grading.md": {"class.md", *(f"handed-in/{name}/filter.py" for name in ("anna", "bob"))},
+    "docs/course/grading.md": {
+        "class.md",
+        *(f"handed-in/{name}/filter.py" for name in ("anna", "bob")),
+    },
 }
-OTHERS["docs/course.md"] = {  # written by its commands, and by its reader
+OTHERS["docs/course/course.md"] = {  # written by its commands, and by its reader
     *("half.py", "filled.py", "derivative.py", "class.md"),
     *("grades/class.md", "grades/report-ben.md"),
     *(f"sheets/{name}.md" for name in ("ada", "ben", "ada-beams")),
@@ -64,7 +67,9 @@ def test_a_map_of_a_room_leaves_no_file_out(path):
 
 
 def test_it_is_said_what_every_room_is_for():
-    *_, block, _ = (ROOT / "docs/architecture.md").read_text(encoding="utf-8").split("```")
+    *_, block, _ = (
+        (ROOT / "docs/reference/architecture.md").read_text(encoding="utf-8").split("```")
+    )
     told = {place for line in block.splitlines() for place in line[:23].split()}
     assert {place for place in told if not (ROOT / place).exists()} == set()
     rooms = {f"ekfsim/{path.parent.name}/" for path in (ROOT / "ekfsim").glob("*/__init__.py")}

@@ -399,7 +399,7 @@ def test_position_and_heading_err_together():
     assert driven[1, 1] - driven[1, 2] ** 2 / driven[2, 2] == pytest.approx(0.1**2)
     # where the robot would stand, were the heading at the edge of its cone
     aside = driven[1, 2] / driven[2, 2] * 2 * σ
-    page = folder("commands").parent / "docs" / "position-and-heading.md"
+    page = folder("commands").parent / "docs" / "judging" / "position-and-heading.md"
     told = " ".join(page.read_text(encoding="utf-8").split())
     assert f"stand {aside:.2f} m further left (dashed)" in told
     (beam,) = senses("theta")

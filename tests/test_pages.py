@@ -14,7 +14,7 @@ from ekfsim.views.terminal.keys.help import HELP as PLAYED
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
 PAGES += sorted((ROOT / "docs").rglob("*.ipynb"))
-COMMANDS = (ROOT / "docs/commands.md").read_text(encoding="utf-8")
+COMMANDS = (ROOT / "docs/reference/commands.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(("name", "keys"), [("play", PLAYED), ("drive", DRIVEN)])
@@ -66,3 +66,8 @@ def test_every_link_of_a_page_leads_somewhere(page):
         if anchor:
             titles = re.findall(r"^#+ (.*)$", place.read_text(encoding="utf-8"), re.MULTILINE)
             assert anchor in map(slug, titles), link
+
+
+def test_no_folder_of_pages_is_crowded():
+    folders = [ROOT / "docs", *(path for path in (ROOT / "docs").iterdir() if path.is_dir())]
+    assert all(len([*folder.glob("*.md")]) <= 12 for folder in folders)

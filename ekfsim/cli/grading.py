@@ -38,7 +38,8 @@ from ekfsim.printable import in_a_line
     "--through",
     metavar="COMMAND",
     default="",
-    help="Begin students' code through a command, e.g. 'sudo -u nobody'; see docs/safety.md.",
+    help="Begin students' code through a command, e.g. 'sudo -u nobody'; "
+    "see docs/course/safety.md.",
 )
 @FORCE
 def grade(
@@ -74,7 +75,9 @@ def grade(
     lacks = () if through else lacking(landlock())
     if lacks:
         told = "; ".join(lacks)
-        warn([f"students' code is not kept from everything here: {told}; see docs/safety.md"])
+        warn(
+            [f"students' code is not kept from everything here: {told}; see docs/course/safety.md"]
+        )
     work = grading.work_of(out)
     with keeping.kept_in(work, out, checks_of(asked.keys)) as kept:
         with submissions_bar(len(found), work) as done:

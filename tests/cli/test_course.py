@@ -1,4 +1,4 @@
-"""The course of docs/course.md, from its first command to its last."""
+"""The course of docs/course/course.md, from its first command to its last."""
 
 import re
 import shlex
@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from program import ekfsim
 
-PAGE = (Path(__file__).parents[2] / "docs/course.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs/course/course.md").read_text(encoding="utf-8")
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FAILS = "# ends with status 1"
 MATHEMATICS = {"0.954", "86.5"}  # a probability in a formula; per cent within 2σ in the plane

@@ -269,7 +269,7 @@ def test_nothing_to_compare_is_no_agreement():
 
 
 def test_the_example_of_the_docs_is_what_is_said():
-    page = (Path(__file__).parents[2] / "docs/own-filter.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs/course/own-filter.md").read_text(encoding="utf-8")
     code = page.partition("```python\n")[2].partition("```")[0]
     told = page.partition("<!-- diff -->\n```\n")[2].partition("```")[0]
     assert "Guess: " in told

@@ -167,7 +167,7 @@ def test_the_help_tells_the_keys():
 
 
 def test_what_the_page_drives_is_lost_as_it_says():
-    page = (Path(__file__).parents[2] / "docs/scenarios.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs/judging/scenarios.md").read_text(encoding="utf-8")
     block = page.partition("## Drive until it is lost")[2].partition("```sh\n")[2]
     told, said = "", 0
     for line in block.partition("```")[0].splitlines():

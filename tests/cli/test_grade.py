@@ -168,7 +168,7 @@ def test_what_this_machine_cannot_keep_from_is_told_once(place, monkeypatch, fen
     told = ekfsim("grade", "steps.yaml", "cleo.py", "-o", "out", "--workers", "1")
     ways = "read and write", "connections", "signals"
     assert [way in told.err for way in ways] == [fenced == 0, fenced < 4, fenced < 6]
-    assert told.err.count("see docs/safety.md") == (fenced < 6)
+    assert told.err.count("see docs/course/safety.md") == (fenced < 6)
     through = ekfsim(
         "grade", "steps.yaml", "cleo.py", "-o", "out", "--force", "--through", "env A=B"
     )

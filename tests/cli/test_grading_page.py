@@ -1,4 +1,4 @@
-"""docs/grading.md: its commands do what the page says of them."""
+"""docs/course/grading.md: its commands do what the page says of them."""
 
 import csv
 import re
@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from program import ekfsim
 
-PAGE = Path(__file__).parents[2] / "docs/grading.md"
+PAGE = Path(__file__).parents[2] / "docs/course/grading.md"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="students' code needs a POSIX")

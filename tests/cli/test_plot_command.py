@@ -106,7 +106,7 @@ def test_that_a_log_holds_no_truth_is_said(place):
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = ROOT / "commands"
-PAGE = (ROOT / "docs/plots.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/pictures/plots.md").read_text(encoding="utf-8")
 
 
 def run_of(name, **settings):

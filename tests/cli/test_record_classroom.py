@@ -10,7 +10,7 @@ from program import ekfsim, left_in
 
 from ekfsim.files.packaged import packaged
 
-PAGE = Path(__file__).parents[2] / "docs" / "own-filter.md"
+PAGE = Path(__file__).parents[2] / "docs" / "course" / "own-filter.md"
 # all that may happen to a robot, and all that it may not know
 WORLD = """\
 name: a secret name

@@ -15,7 +15,7 @@ from ekfsim.files.packaged import packaged
 from ekfsim.filters.belief import Refused
 from ekfsim.localization import play
 
-SCENARIOS = Path(__file__).resolve().parents[2] / "docs" / "scenarios.md"
+SCENARIOS = Path(__file__).resolve().parents[2] / "docs" / "judging" / "scenarios.md"
 DIVERGE = [name for name in packaged("commands") if name.startswith("diverge-")]
 RUNS = 40
 

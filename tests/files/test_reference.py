@@ -1,4 +1,4 @@
-"""The tables of docs/formats.md are those of the schemas, by which files are checked."""
+"""The tables of docs/reference/formats.md are those of the schemas, by which files are checked."""
 
 import re
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 from ekfsim.files.yaml.reference import reference
 from ekfsim.files.yaml.schema import json_schema
 
-PAGE = (Path(__file__).parents[2] / "docs/formats.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs/reference/formats.md").read_text(encoding="utf-8")
 KINDS = ["world", "commands", "study", "homework"]
 
 

@@ -11,5 +11,5 @@
     answering.py   over there: who answers, whatever the code does
     calling.py     over there: the code, and what may be asked of it
 
-What this protects from, and what it does not: docs/safety.md.
+What this protects from, and what it does not: docs/course/safety.md.
 """

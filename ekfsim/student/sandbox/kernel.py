@@ -87,7 +87,7 @@ def fence(own: str, read: Sequence[str]) -> int:
 
 
 def lacking(fenced: int, linux: bool = LINUX) -> tuple[str, ...]:
-    """What a student's code is not kept from on this machine; see docs/safety.md.
+    """What a student's code is not kept from on this machine; see docs/course/safety.md.
 
     fenced : the version of Landlock that is around it, 0 for none
     """

@@ -36,7 +36,7 @@ class Sandboxed:
         file         in a folder, the file with the code
         name         of a class in it, "" for the one that is there
         provided     which equations of the models may be asked for; None: all
-        through      words of a command that the process is begun through; see docs/safety.md
+        through      words of a command that the process is begun through; see docs/course/safety.md
     """
 
     def __init__(
@@ -123,7 +123,7 @@ class Sandboxed:
 
     @property
     def lacks(self) -> tuple[str, ...]:
-        """What it is not kept from on this machine; see docs/safety.md."""
+        """What it is not kept from on this machine; see docs/course/safety.md."""
         return lacking((self._process or self._begun()).fenced)
 
     def close(self) -> None:

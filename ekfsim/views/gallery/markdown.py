@@ -12,7 +12,7 @@ INTRODUCTION = """\
 Every scenario that comes along and needs no recorded log: the last view of its run, what that run \
 comes to, and what many runs of it find. `ekfsim play NAME` steps through one, and `ekfsim gallery \
 -o site` makes a web site of them all, with a page for each that plays in a browser. \
-[scenarios.md](scenarios.md) holds the failures against each other, and tells their cures.
+[scenarios](judging/scenarios.md) holds the failures against each other, and tells their cures.
 
 {meaning}
 """

@@ -68,7 +68,7 @@ def test_functions_a_class_a_module_and_a_file_are_brought(tmp_path, scene):
 
 def test_the_page_on_filters_of_ones_own_does_what_it_says():
     """Its functions are the EKF, in the cell that it shows."""
-    page = Path(__file__).parents[3] / "docs/own-filter.md"
+    page = Path(__file__).parents[3] / "docs/course/own-filter.md"
     functions, notebook = re.findall(r"```python\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
     names = cell(notebook, cell(functions), 2)
     assert names["mine"] == "mine"

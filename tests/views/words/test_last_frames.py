@@ -82,7 +82,9 @@ def test_the_page_on_pictures_quotes_what_they_say():
     said = set()
     for view in views(play(scene)):
         said |= {judgement(view, scene, 0.954), *notes(view, scene, None)}
-    page = (Path(__file__).parents[3] / "docs" / "pictures.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "pictures" / "pictures.md").read_text(
+        encoding="utf-8"
+    )
     quoted = [line for block in page.split("```")[1::2] for line in block.strip().splitlines()]
     assert len(quoted) == 5
     assert {line.removeprefix("⚠ ") for line in quoted} <= said
