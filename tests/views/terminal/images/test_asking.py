@@ -38,7 +38,7 @@ def asked(arriving, pixels=(0, 0)):
         (TMUX, None),
         (b"\x1b_Gi=1;ENOTSUPPORTED:no\x1b\\" + TMUX, None),
         (b"\x1b]1337;Capabilities=T3FrSx\x07" + TMUX, None),  # Fr is another feature
-        (b"\x1b[?4c", None),  # the first is the terminal's level
+        (b"\x1b[6;20;9t\x1b[?4c", None),  # the first is the terminal's level
         (b"", None),
     ],
 )
