@@ -14,7 +14,7 @@ from ekfsim.views.notebook.cells import page
 from ekfsim.views.picture.extent.scope import of as scope_of
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.playback.playback import views
-from ekfsim.views.playback.view import View
+from ekfsim.views.playback.view import Judged, View
 from ekfsim.views.words.closing import conclude
 from ekfsim.views.words.narrative import narrate
 
@@ -46,7 +46,7 @@ def _seen(one: object) -> tuple[View | None, Scene | None]:
     """The view that is drawn of it, and the scene that it is of."""
     if isinstance(one, Scene):
         return next(views(play(one))), one
-    view = View(0, one) if isinstance(one, Step) else one
+    view = View(0, one, judged=Judged(one.nees)) if isinstance(one, Step) else one
     if not isinstance(view, View):
         return None, None
     scene = view.step.scene

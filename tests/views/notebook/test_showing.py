@@ -82,6 +82,8 @@ def test_the_picture_is_the_frame_of_the_view(monkeypatch):
     VIEWS[12]._repr_html_()
     VIEWS[12]._repr_png_()
     assert drawn == [VIEWS[12]]  # once for both
+    STEPS[6]._repr_png_()
+    assert drawn[1].judged.nees == STEPS[6].nees  # judged as the run judges it
 
 
 def test_a_summary_concludes():

@@ -67,7 +67,7 @@ def test_the_keyboard_reaches_every_shape(opened, pages):
             reached.add(page.evaluate(f"{focus}.getAttribute('aria-label') ?? {focus}.textContent"))
             if page.evaluate(f"{focus}.dataset.symbol") == "H":
                 assert captions(page) == ["H", "S", "ν"]
-        assert {told.partition(":")[0] for told in reached} >= {"P", "H", "K", "R", "H S ν"}
+        assert {told.partition(" = ")[0] for told in reached} >= {"P", "H", "K", "R", "H S ν"}
 
 
 def test_an_ellipse_is_a_polygon_of_the_points_that_a_picture_draws(opened, pages, views):
