@@ -39,6 +39,7 @@ NARROWEST = 1e-4  # m
 CORNERS = np.array([[-0.5, -0.5], [0.5, 0.5]])  # of a square about the origin, opposite ones
 FAR = 1e5  # m; from there on a number is so long that few of them stand side by side
 FEW = 4
+STEPS = (1, 2, 2.5, 5, 10)  # between the numbers, as matplotlib chooses them
 
 
 def reading(view: View, scene: Scene) -> Beam | Sight | None:
@@ -233,8 +234,10 @@ def in_metres(axes: Axes) -> None:
     the origin of its grid.
     """
     axes.set(xlabel="x (m)", ylabel="y (m)")
-    if max(map(abs, axes.get_xlim())) >= FAR:
-        axes.xaxis.set_major_locator(MaxNLocator(FEW))
+    far = max(map(abs, axes.get_xlim())) >= FAR
+    axes.xaxis.set_major_locator(  # one number alone where a map is too narrow for two
+        MaxNLocator(FEW) if far else MaxNLocator("auto", steps=STEPS, min_n_ticks=1)
+    )
     if max(map(abs, axes.get_ylim())) >= FAR:
         axes.tick_params(axis="y", labelrotation=90)
         axes.yaxis.set_major_locator(MaxNLocator(FEW))

@@ -2,6 +2,7 @@ import math
 import re
 from dataclasses import replace
 from io import BytesIO
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -278,6 +279,19 @@ def test_limits_stay_put_and_the_axes_are_equal():
         assert (picture.main.axes.get_xlim(), picture.main.axes.get_ylim()) == box
     assert picture.main.axes.get_aspect() == 1
     assert (picture.main.axes.get_xlabel(), picture.main.axes.get_ylabel()) == ("x (m)", "y (m)")
+
+
+def test_the_numbers_of_a_narrow_map_do_not_lie_on_one_another():
+    run = scene(boundary=np.array([[0, 0], [0.5, 0], [0.5, 1000], [0, 1000]]))
+    picture = Picture.on(Figure(), run, scopes.of(run, play(run)))
+    picture.show(next(iter(views(play(run)))))
+    picture.figure.canvas.draw()
+    axes = picture.main.axes
+    low, high = axes.get_xlim()
+    told = [label for label in axes.get_xticklabels() if low <= label.get_position()[0] <= high]
+    boxes = [label.get_window_extent() for label in told]
+    assert boxes
+    assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
 
 
 def test_no_artist_ever_holds_a_nan():
