@@ -21,7 +21,7 @@ from ekfsim.views.picture import frames, panels
 from ekfsim.views.picture.artists import VERMILLION
 from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.picture.frames import Frame, Picture
-from ekfsim.views.picture.look import Look
+from ekfsim.views.picture.look import Look, Paper
 from ekfsim.views.picture.panels import close_width
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.beams.beam import beam
@@ -283,10 +283,10 @@ def test_limits_stay_put_and_the_axes_are_equal():
 
 def test_the_numbers_of_a_narrow_map_do_not_lie_on_one_another():
     run = scene(boundary=np.array([[0, 0], [0.5, 0], [0.5, 1000], [0, 1000]]))
-    picture = Picture.on(Figure(), run, scopes.of(run, play(run)))
+    picture = Picture.on(Paper((900, 450)), run, scopes.of(run, play(run)))
     picture.show(next(iter(views(play(run)))))
-    picture.figure.canvas.draw()
     axes = picture.main.axes
+    axes.get_figure().canvas.draw()
     low, high = axes.get_xlim()
     told = [label for label in axes.get_xticklabels() if low <= label.get_position()[0] <= high]
     boxes = [label.get_window_extent() for label in told]
