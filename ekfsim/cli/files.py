@@ -129,11 +129,11 @@ def list_packaged(name: str | None, all_told: bool, worlds: bool) -> None:
         if all_told or group.name == "start":
             _tell_group(group.title, group.files)
         else:
-            names = "  ".join(group.files)
+            click.echo(f"{group.title}:")
             click.echo(
                 textwrap.fill(
-                    f"{group.title}: {names}", width() or 80, subsequent_indent="  ",
-                    break_on_hyphens=False, break_long_words=False,
+                    "  ".join(group.files), width() or 80, initial_indent="  ",
+                    subsequent_indent="  ", break_on_hyphens=False, break_long_words=False,
                 )
             )  # fmt: skip
     if not all_told:
