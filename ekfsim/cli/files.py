@@ -21,9 +21,7 @@ KINDS = ("world", "commands", "homework", "filter")  # of files to start from
 # in the name of a file, and what it then is
 WORDS = {"world": "world", "command": "commands", "homework": "homework"}
 
-MORE = """\
-ekfsim list GROUP ({}) tells what each is for,
-ekfsim list --all the same of all, ekfsim list NAME all that is said of one."""  # than is listed
+MORE = "ekfsim list GROUP ({}), NAME, or --all tells more"  # than is listed
 
 
 @click.command(short_help="Validate FILES: every mistake with its place, or ok.")
