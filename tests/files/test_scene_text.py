@@ -1,6 +1,7 @@
 """What is written is read again as it was, to the last digit."""
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -56,7 +57,7 @@ ROOM = load_scene("square")
 TENTHS = st.integers(-3600, 3600).map(lambda tenths: tenths / 10)
 DEGREES = st.floats(-360, 360) | st.integers(-720, 720).map(float) | TENTHS
 TEXTS = st.text(st.characters(codec="utf-8"), min_size=1, max_size=30).filter(
-    lambda text: not UNPRINTABLE.search(text)
+    lambda text: not re.search(UNPRINTABLE, text)
 )
 METRES = st.floats(-100, 100)
 
