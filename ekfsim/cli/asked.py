@@ -28,7 +28,7 @@ def scene_of(
     from typing import cast
 
     from ekfsim.files.packaged import resolve
-    from ekfsim.files.scenes.filter_checks import refuse_unread
+    from ekfsim.files.scenes.checking.filter_checks import refuse_unread
     from ekfsim.files.scenes.load import read_scene
     from ekfsim.files.scenes.settings import filters_in, particles_of, setting
 

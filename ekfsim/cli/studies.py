@@ -28,7 +28,7 @@ def study(
     """
     part_with()
     from ekfsim.files.scenes import load_study
-    from ekfsim.files.scenes.filter_checks import refuse_unread
+    from ekfsim.files.scenes.checking.filter_checks import refuse_unread
     from ekfsim.study.expectation import promised, verified
     from ekfsim.study.plan import Plan
     from ekfsim.study.running.doing import unkept

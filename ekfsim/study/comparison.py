@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
 from ekfsim.errors import UsageError
-from ekfsim.files.scenes.filter_checks import refuse_unread
+from ekfsim.files.scenes.checking.filter_checks import refuse_unread
 from ekfsim.files.scenes.load_study import FILTER, Request
 from ekfsim.files.scenes.settings import Setting, filters_in, setting
 from ekfsim.study.code import of_same_code

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import shapely
 
+from ekfsim.files.scenes.checking.polygons import FloorPlan, fault_of
 from ekfsim.files.scenes.load import check, load_scene
-from ekfsim.files.scenes.polygons import FloorPlan, fault_of
 from ekfsim.localization import play
 from ekfsim.raycast.walls import Walls
 from ekfsim.views.picture.extent import scope as scopes

@@ -16,7 +16,7 @@ from ekfsim.files.keys.world import NoiseKeys
 from ekfsim.files.logs.degrees import degrees
 from ekfsim.files.logs.formats.classroom import COLUMNS, ENTRIES, TRUTH, TRUTH_COLUMNS, WORLD
 from ekfsim.files.results.writing import whole_folder
-from ekfsim.files.scenes.polygons import FloorPlan
+from ekfsim.files.scenes.checking.polygons import FloorPlan
 from ekfsim.geometry import Array
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.provenance import told_in_a_line

@@ -1,1 +1,4 @@
-"""World, commands and study files → scenes; all mistakes at once."""
+"""World, commands and study files → scenes; all mistakes at once.
+
+checking/   what of them no schema can say
+"""

@@ -13,7 +13,7 @@ from ekfsim.files.keys.commands import is_filter
 from ekfsim.files.keys.study import StudyKeys
 from ekfsim.files.looking import is_file
 from ekfsim.files.packaged import packaged, resolve
-from ekfsim.files.scenes.filter_checks import alike, filter_beside, missing
+from ekfsim.files.scenes.checking.filter_checks import alike, filter_beside, missing
 from ekfsim.files.scenes.settings import (
     OF_COMMANDS,
     Setting,

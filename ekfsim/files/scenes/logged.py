@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ekfsim.errors import InputError, UsageError
 from ekfsim.files.keys.commands import LogFormat, RecordingKeys
 from ekfsim.files.packaged import source_name
-from ekfsim.files.scenes.checks import Sound
+from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.scenes.one_file import File, Loaded
 from ekfsim.scene import Scene
 

@@ -12,11 +12,11 @@ from ekfsim.files.given.given import Given
 from ekfsim.files.keys.commands import WAYS
 from ekfsim.files.keys.fields import aliases
 from ekfsim.files.keys.world import WorldKeys
-from ekfsim.files.scenes.checks import Sound, angle_warnings, check_commands, check_world
-from ekfsim.files.scenes.drive_checks import check_ways
+from ekfsim.files.scenes.checking.checks import Sound, angle_warnings, check_commands, check_world
+from ekfsim.files.scenes.checking.drive_checks import check_ways
+from ekfsim.files.scenes.checking.system_checks import check_system
 from ekfsim.files.scenes.overruling import overruled, pinned, remark
 from ekfsim.files.scenes.settings import Setting
-from ekfsim.files.scenes.system_checks import check_system
 from ekfsim.files.source import as_written
 from ekfsim.files.yaml.marked import Mark, Node
 from ekfsim.files.yaml.marked import Path as Route

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ekfsim.errors import UsageError
 from ekfsim.files.given.changes import OWN, scene_with, settings_of
-from ekfsim.files.scenes.filter_checks import refuse_unread
+from ekfsim.files.scenes.checking.filter_checks import refuse_unread
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.files.scenes.load_study import FILTER, Request
 from ekfsim.files.scenes.settings import Setting, distinct

@@ -6,7 +6,7 @@ import math
 import shlex
 from collections.abc import Sequence
 
-from ekfsim.files.scenes.filter_checks import unread
+from ekfsim.files.scenes.checking.filter_checks import unread
 from ekfsim.files.yaml.marked import scalar
 from ekfsim.printable import in_a_line
 from ekfsim.study.plan import Plan

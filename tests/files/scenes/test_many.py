@@ -6,8 +6,9 @@ import difflib
 import pytest
 
 from ekfsim.errors import MOST_TOLD, InputError, UsageError, first_of
-from ekfsim.files.scenes import check_study, polygons
+from ekfsim.files.scenes import check_study
 from ekfsim.files.scenes.check_study import check
+from ekfsim.files.scenes.checking import polygons
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.files.scenes.load_study import read_request
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import fields
 
 from ekfsim.errors import Mistake
-from ekfsim.files.scenes.checks import Sound
+from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.yaml.marked import Path
 from ekfsim.files.yaml.schema import schema_at
 from ekfsim.files.yaml.telling import at, example, meant
@@ -18,7 +18,7 @@ def check_system(file: Sound) -> Iterator[Mistake]:
         yield from check_classroom(file)
         if file.root.keys.keys().isdisjoint(("faults", "sensors")):
             return  # most are read without a word of the other systems
-    from ekfsim.files.scenes.driven_checks import check_driven, check_faults, check_sensors
+    from ekfsim.files.scenes.checking.driven_checks import check_driven, check_faults, check_sensors
 
     if system == "classroom":
         known = [fault.name for fault in fields(Faults)]
@@ -70,7 +70,7 @@ def system_warnings(file: Sound, world: World, logged: bool) -> Iterator[str]:
     """
     if not world.instruments:
         return
-    from ekfsim.files.scenes.driven_checks import doubts
+    from ekfsim.files.scenes.checking.driven_checks import doubts
 
     for index, instrument in enumerate(world.instruments):
         item = file.root.at(("sensors", index))

@@ -10,8 +10,8 @@ from typing import Any
 
 from ekfsim.errors import MOST_TOLD, Mistake
 from ekfsim.files.keys.commands import MAX_COMMANDS, CommandKeys
-from ekfsim.files.scenes import polygons
-from ekfsim.files.scenes.polygons import FloorPlan, Points
+from ekfsim.files.scenes.checking import polygons
+from ekfsim.files.scenes.checking.polygons import FloorPlan, Points
 from ekfsim.files.yaml.marked import Node, Path
 from ekfsim.files.yaml.telling import at, nearest
 from ekfsim.printable import quoted, short, some

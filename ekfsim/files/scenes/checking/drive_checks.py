@@ -10,7 +10,7 @@ from ekfsim.errors import Mistake
 from ekfsim.files.keys.commands import SYSTEM_OF, WAYS, CommandsKeys
 from ekfsim.files.keys.fields import aliases
 from ekfsim.files.scenes.building import drive_of
-from ekfsim.files.scenes.checks import Sound
+from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.yaml.telling import meant
 from ekfsim.systems.drive import Drive
 from ekfsim.world import World

@@ -19,7 +19,7 @@ from ekfsim.files.keys.system import (
     not_carried,
     robot_fields,
 )
-from ekfsim.files.scenes.checks import Sound, check_items
+from ekfsim.files.scenes.checking.checks import Sound, check_items
 from ekfsim.files.yaml.marked import Path
 from ekfsim.files.yaml.telling import one_of
 from ekfsim.systems import SYSTEMS
