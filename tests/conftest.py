@@ -1,3 +1,4 @@
+from browsing import browser, opened, pages  # noqa: F401 (fixtures, for all who ask)
 from hypothesis import settings
 
 settings.register_profile("steady", deadline=None, derandomize=True, max_examples=60)
