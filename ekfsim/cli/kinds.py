@@ -101,7 +101,7 @@ class Gate(Probability):
         return value if value == "off" else super().convert(value, param, ctx)
 
 
-class Area(click.ParamType):  # type: ignore[type-arg]
+class Area(click.ParamType):  # type: ignore[type-arg]  # takes one in newer clicks alone
     """A rectangle of the plane."""
 
     name = "area"
@@ -129,7 +129,7 @@ class Area(click.ParamType):  # type: ignore[type-arg]
         return area
 
 
-class StepNumber(click.ParamType):  # type: ignore[type-arg]
+class StepNumber(click.ParamType):  # type: ignore[type-arg]  # as above
     """The number of a step; with a b for the beam of a reading."""
 
     name = "step"

@@ -44,6 +44,11 @@ class Walls:
     line: Integers  # (W,) edges of one polygon on one straight line share a number
     names: tuple[str, ...]  # of the polygons
 
+    def __post_init__(self) -> None:
+        """Every step of a run hands out the same walls: nobody may move them."""
+        for numbers in (self.segments, self.normals, self.polygon, self.edge, self.line):
+            numbers.flags.writeable = False
+
     @classmethod
     def of(cls, rings: Mapping[str, Array]) -> Self:
         """Collect the edges of all rings, given by name as (n, 2) points in m, closed or not.

@@ -156,8 +156,8 @@ def _put_legend(ax: Axes, drawn: Drawn, wanted: bool) -> None:
     """
     figure = ax.get_figure(root=True)
     assert figure is not None
-    if ax.get_legend() is not None:
-        ax.get_legend().remove()  # type: ignore[union-attr]
+    if (before := ax.get_legend()) is not None:
+        before.remove()
     managed = figure.get_layout_engine() is not None
     if not managed:
         ax.set_position(drawn.place)

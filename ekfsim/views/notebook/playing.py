@@ -5,6 +5,7 @@ Whatever stays in the program takes them from `localization` and `simulation`, a
 
 from collections.abc import Iterable, Iterator
 from copy import deepcopy
+from dataclasses import fields, is_dataclass
 
 import numpy as np
 
@@ -63,6 +64,7 @@ def _held(step: Step) -> Step:
         _fast(c.predicted, c.innovation, c.R, c.S, c.H, c.K, c.nis, c.refused, c.settled)
     if (nees := step.nees) is not None:
         _fast(nees.value, nees.dof, nees.impossible)
+    _hold_fields(step.remark)
     return step
 
 
@@ -75,10 +77,18 @@ def _hold(belief: Belief) -> None:
 def _hold_entry(entry: Entry) -> None:
     _fast(entry.truth, entry.bump, entry.fix)
     match entry.given:
-        case Control(_, u):
+        case Control(motion, u):
             _fast(u)
-        case Reading(_, z):
+            _hold_fields(motion)
+        case Reading(sensor, z):
             _fast(z)
+            _hold_fields(sensor)
+
+
+def _hold_fields(record: object) -> None:
+    """The numbers of a model, or of what it remarks; those of its walls are held from the first."""
+    if is_dataclass(record):
+        _fast(*(getattr(record, field.name) for field in fields(record)))
 
 
 def _fast(*numbers: object) -> None:

@@ -19,14 +19,14 @@ RUNS = (
 
 
 def arrays(one):
-    """Every array of a step, by its path; models and scenes hold none of its numbers."""
+    """Every array of a step, those of its models and of what they remark among them."""
     if isinstance(one, np.ndarray):
         yield one
     elif isinstance(one, tuple):
         for part in one:
             yield from arrays(part)
     elif dataclasses.is_dataclass(one):
-        left_out = {"motion", "sensor", "scene", "layout", "command", "remark"}
+        left_out = {"scene", "layout", "command"}
         for field in dataclasses.fields(one):
             if field.name not in left_out:
                 yield from arrays(getattr(one, field.name))
