@@ -17,9 +17,9 @@ from ekfsim.files.keys.fields import (
     Seed,
     Share,
     Strict,
-    SystemName,
     Text,
 )
+from ekfsim.files.keys.recording import RecordingKeys
 from ekfsim.filters.tuning import MOST_PARTICLES, CrossCovariances, RangeVariance, Tuning
 
 if TYPE_CHECKING:
@@ -31,17 +31,6 @@ MAX_COMMANDS = 1_000_000
 # of a filter, in a schema: FILE.py, FILE.py:Name or package.module:Name
 PLACE = r"^(.*\.py(:\w*)?|[^\W\d][\w.]*:[^\W\d][\w.]*)$"
 MOVE: JsonDict = {"distance": 1.75, "angle": 90}
-LogFormat = Literal["pylon", "gnss", "mower", "mrclam", "ranges", "pioneer", "classroom"]
-SYSTEM_OF: dict[str, SystemName] = {  # the system that each format of a log records
-    "pylon": "pylon",
-    "gnss": "gnss",
-    "mower": "mower",
-    "mrclam": "landmarks",
-    "ranges": "ranges",
-    "pioneer": "pioneer",
-    "classroom": "classroom",
-}
-WITH_LANDMARKS = ("mower", "mrclam", "ranges")  # formats that tell what stands where
 WAYS = ("commands", "drive", "recording")  # exactly one of them makes a file a commands file
 ONE_WAY: JsonDict = {"oneOf": [{"required": [way]} for way in WAYS]}
 ONE_COMMAND: JsonDict = {"minProperties": 1, "maxProperties": 1, "examples": [{"move": MOVE}]}
@@ -213,18 +202,6 @@ class TuningKeys(Strict):
         description="Whether σ_xθ and σ_yθ are kept in the classroom's P, or (a counter-example) "
         "dropped after every step. Not of the pf, which has no P.",
         examples=["dropped"],
-    )
-
-
-class RecordingKeys(Strict):
-    """A recorded log."""
-
-    format: LogFormat = Field(description="Who wrote the log.", examples=["pylon"])
-    path: Name | None = Field(
-        None,
-        description="The log, a file or a folder as its format has it, relative to this file; "
-        "--log wins. That of a classroom brings its world, where the file names none.",
-        examples=["../logs/square.csv"],
     )
 
 

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ekfsim.errors import UsageError
+from ekfsim.files.keys.recording import SYSTEM_OF, RecordingKeys
+from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.formats.classroom import read_classroom
 from ekfsim.files.logs.formats.gnss import read_gnss
 from ekfsim.files.logs.formats.mower import read_mower
@@ -18,7 +20,7 @@ from ekfsim.world import World
 
 __all__ = ["FORMATS", "SYSTEM_OF", "WRITERS", "Recorded", "read_log", "write_log"]
 
-Reader = Callable[[Path, World, DocumentReading, list[str]], Recorded]
+Reader = Callable[[Asked], Recorded]
 FORMATS: dict[str, Reader] = {
     "pylon": read_pylon,
     "gnss": read_gnss,
@@ -28,11 +30,10 @@ FORMATS: dict[str, Reader] = {
     "pioneer": read_pioneer,
     "classroom": read_classroom,
 }
-SYSTEM_OF = {**{name: name for name in FORMATS}, "mrclam": "landmarks"}  # whose logs they are
 
 
 def read_log(
-    format: str,
+    recording: RecordingKeys,
     path: Path,
     world: World,
     reading: DocumentReading,
@@ -44,8 +45,9 @@ def read_log(
     a mistake, too. Raises UsageError where a file is missing or the world is another system's,
     InputError with what is wrong in a file.
     """
-    system = SYSTEM_OF[format]
+    format, system = recording.format, SYSTEM_OF[recording.format]
     if world.system != system:
         wrong = f"a log of the format {format} belongs to a world with system: {system}"
         raise UsageError(f"{path}: {wrong}; {world.name!r} has system: {world.system}")
-    return FORMATS[format](path, world, reading, [] if warnings is None else warnings)
+    found = [] if warnings is None else warnings
+    return FORMATS[format](Asked(path, world, reading, recording, found))

@@ -9,10 +9,9 @@ from ekfsim.errors import Mistake, UsageError
 from ekfsim.files.given.given import Given, given_in
 from ekfsim.files.keys.commands import (
     WAYS,
-    WITH_LANDMARKS,
     CommandsKeys,
-    RecordingKeys,
 )
+from ekfsim.files.keys.recording import WITH_LANDMARKS, RecordingKeys
 from ekfsim.files.keys.world import WorldKeys
 from ekfsim.files.packaged import packaged, resolve, source_name, world_beside
 from ekfsim.files.scenes.building import scene_of, world_of

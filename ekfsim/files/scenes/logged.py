@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ekfsim.errors import InputError, UsageError
-from ekfsim.files.keys.commands import LogFormat, RecordingKeys
+from ekfsim.files.keys.recording import LogFormat, RecordingKeys
 from ekfsim.files.packaged import source_name
 from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.scenes.one_file import File, Loaded
@@ -16,9 +16,9 @@ CLASSROOM: LogFormat = "classroom"  # whose logs bring their world
 
 
 class LogGiven(NamedTuple):
-    """Where a log was read from."""
+    """Where a log was read from, and as what."""
 
-    format: LogFormat
+    recording: RecordingKeys
     source: str
 
 
@@ -41,7 +41,7 @@ def with_log(
     source = os.path.normpath(log if log is not None else path.parent / (recording.path or ""))
     warnings = list(loaded.warnings)
     try:
-        scene = read_into(scene, recording.format, source, warnings)
+        scene = read_into(scene, recording, source, warnings)
     except InputError as error:
         return replace(loaded, mistakes=list(error.mistakes), warnings=warnings)
     except UsageError as error:
@@ -54,15 +54,16 @@ def with_log(
     return replace(loaded, value=scene, warnings=warnings)
 
 
-def read_into(scene: Scene, format: LogFormat, source: str, warnings: list[str]) -> Scene:
+def read_into(scene: Scene, recording: RecordingKeys, source: str, warnings: list[str]) -> Scene:
     """A scene with the log that lies there, and with the landmarks that it tells.
 
     Raises UsageError where there is no such log, InputError with what is wrong in it.
     """
     from ekfsim.files.logs import read_log
 
-    found, world = read_log(format, Path(source), scene.world, scene.reading, warnings), scene.world
-    object.__setattr__(found.log, "given", LogGiven(format, source))
+    world = scene.world
+    found = read_log(recording, Path(source), world, scene.reading, warnings)
+    object.__setattr__(found.log, "given", LogGiven(recording, source))
     if found.landmarks is not None:
         world = replace(world, landmarks=found.landmarks)
         object.__setattr__(world, "given", scene.world.given)

@@ -18,6 +18,7 @@ from ekfsim.filters.place import absolute, is_place, label, stem
 OF_COMMANDS = ("gate", "guard")  # the rest belongs to the world
 # filter.particles=… is a commands file's filterSettings
 OF_FILTERS, FILTER_SETTINGS = "filter", "filterSettings"
+OF_LOGS = "recording"  # recording.timeUnit=…
 OF_WORLDS = ("noise", "belief", "faults", "start", "robot", "sensors")
 
 
@@ -127,7 +128,8 @@ def filter_in(name: str, option: str, brought: Sequence[str] = ()) -> str:
 
 def kind_of(one: Setting) -> Kind:
     """Which of the two files a setting overrules."""
-    return "commands" if one.key in OF_COMMANDS or one.key.split(".")[0] == OF_FILTERS else "world"
+    own = one.key in OF_COMMANDS or one.key.split(".")[0] in (OF_FILTERS, OF_LOGS)
+    return "commands" if own else "world"
 
 
 def path_of(one: Setting) -> Route:
@@ -175,7 +177,7 @@ def fault_of(one: Setting, is_told: bool = True) -> tuple[str, str] | None:
 def _known(kind: Kind, path: Route) -> list[str]:
     """The keys that stand under a path, as settings name them; of a sensor by its kind."""
     if not path:
-        return [*OF_WORLDS, *OF_COMMANDS, OF_FILTERS]
+        return [*OF_WORLDS, *OF_COMMANDS, OF_FILTERS, OF_LOGS]
     return list(keys_at(kind, ("sensors", 0) if path == ("sensors",) else indexed(path, 0)))
 
 

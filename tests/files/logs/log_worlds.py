@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scenes import SILENT
 
-from ekfsim.files.logs import SYSTEM_OF, read_log
+from ekfsim.files.keys.recording import SYSTEM_OF, RecordingKeys
+from ekfsim.files.logs import read_log
 from ekfsim.filters.belief import posed
 from ekfsim.geometry.angles import wrap
 from ekfsim.localization import play
@@ -42,14 +43,17 @@ def world(format, landmarks=(), instruments=None, robot=None, floor=Map(), start
 
 def read(format, path, place=None, reading="corrected"):
     return read_log(
-        format, path, place or world(format, PYLON if format == "pylon" else ()), reading
+        RecordingKeys(format=format),
+        path,
+        place or world(format, PYLON if format == "pylon" else ()),
+        reading,
     )
 
 
 def steps_of(format, path, place=None, reading="corrected", **settings):
     """The steps of a filter on a log, the scene, and the warnings."""
     place = place or world(format, PYLON if format == "pylon" else ())
-    found = read_log(format, path, place, reading)
+    found = read_log(RecordingKeys(format=format), path, place, reading)
     if found.landmarks is not None:
         place = replace(place, landmarks=found.landmarks)
     scene = Scene(place, log=found.log, reading=reading, **settings)

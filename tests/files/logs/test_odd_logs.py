@@ -9,6 +9,7 @@ import pytest
 from log_worlds import MARKS, lay, read, table, world
 
 from ekfsim.errors import InputError, UsageError
+from ekfsim.files.keys.recording import RecordingKeys
 from ekfsim.files.logs import read_log
 from ekfsim.files.packaged import resolve
 from ekfsim.files.scenes.load import read_scene
@@ -268,7 +269,7 @@ def test_stamps_of_another_unit_are_told_though_nothing_is_left_to_localize(log,
     )
     warnings = []
     with pytest.raises(InputError) as refused:
-        read_log("gnss", LOG, world("gnss"), "corrected", warnings)
+        read_log(RecordingKeys(format="gnss"), LOG, world("gnss"), "corrected", warnings)
     assert warnings == [
         "log: no groundtruth*.csv in it: the truth is unknown, and so are the errors",
         *(f"log/wheelspeeds-1.csv:{line}: t: {told}: this row is left out" for line in (2, 3, 4)),

@@ -8,6 +8,7 @@ import pytest
 from log_worlds import CLOSET, MARKS, PYLON, read, world
 
 from ekfsim.errors import UsageError
+from ekfsim.files.keys.recording import RecordingKeys
 from ekfsim.files.logs import WRITERS, read_log, write_log
 from ekfsim.localization import play
 from ekfsim.records import Control
@@ -54,7 +55,7 @@ SCENES = {
 
 def again(scene, folder):
     """The scene whose log the folder holds, and the warnings of its reader."""
-    found = read_log(scene.world.system, folder, scene.world, scene.reading)
+    found = read_log(RecordingKeys(format=scene.world.system), folder, scene.world, scene.reading)
     place = (
         scene.world if found.landmarks is None else replace(scene.world, landmarks=found.landmarks)
     )

@@ -18,9 +18,9 @@ from ekfsim.files.keys import fields
 from ekfsim.files.keys import sensors as sensor_file
 from ekfsim.files.keys import system as system_file
 from ekfsim.files.keys import world as world_file
-from ekfsim.files.keys.commands import SYSTEM_OF, LogFormat
 from ekfsim.files.keys.faults import FaultySensorsKeys
 from ekfsim.files.keys.fields import SystemName, aliases, whole
+from ekfsim.files.keys.recording import SYSTEM_OF, LogFormat
 from ekfsim.files.keys.sensors import SENSORS, SensorKeys
 from ekfsim.files.keys.system import RobotKeys, fields_of, robot_fields
 from ekfsim.files.keys.told import ToldSensorsKeys
@@ -587,7 +587,7 @@ SCENES = {
         [
             "2:21: recording.format: 'mowr' is not known here; did you mean 'mower'?",
             "2:33: recording.path: 5 is a number where text belongs; write it in quotes: '5'",
-            "2:36: recording: unknown key 'file'; known keys here: format, path",
+            "2:36: recording: unknown key 'file'; known keys here: format, path, robot, timeUnit, angleUnit",
         ],
     ),
     "no format": (

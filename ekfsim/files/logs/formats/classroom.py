@@ -17,6 +17,7 @@ import numpy as np
 from ekfsim.commands import Sense, Untold
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.keys.fields import FAR, FARTHEST
+from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.degrees import radians
 from ekfsim.files.logs.folder import find, find_any, folder_of
 from ekfsim.files.logs.header import places_of, separator_of
@@ -29,8 +30,6 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.records import Control, Entry, Log, Reading
-from ekfsim.systems.document import DocumentReading
-from ekfsim.world import World
 
 ENTRIES, WORLD, TRUTH = "entries.csv", "world.yaml", "truth.csv"
 HOLDS = f"{ENTRIES}, {WORLD} and, where it is known, {TRUTH}"
@@ -41,13 +40,12 @@ MAY_BE_EMPTY = "range"  # no echo
 LARGEST = {"x": FARTHEST, "y": FARTHEST}  # m; of all others it is FAR
 
 
-def read_classroom(
-    path: Path, world: World, reading: DocumentReading, warnings: list[str]
-) -> Recorded:
+def read_classroom(asked: Asked) -> Recorded:
     """A log without a clock. What was commanded is not told, but where the laser looked.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
+    path, world, reading, _, warnings = asked
     folder = folder_of(path, HOLDS)
     rows = _entries(find(folder, "what was measured", ENTRIES))
     file = find_any(folder, "the true poses", TRUTH)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import find, find_any, folder_of
 from ekfsim.files.logs.formats.targets import only
 from ekfsim.files.logs.ordering import in_order, tell_gaps, tell_repeated
@@ -13,16 +14,14 @@ from ekfsim.files.logs.timeline import Motions, Sample, Timeline
 from ekfsim.files.logs.truth import Truth, truth_of
 from ekfsim.geometry import Array
 from ekfsim.records import Reading
-from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.instruments import Gnss
-from ekfsim.world import World
 
 TIME = ("t", "time")
 HEADING = ("heading", "phi", "theta")
 HOLDS = "wheelspeeds*.csv, gnss*.csv and, where it is known, groundtruth*.csv"
 
 
-def read_gnss(path: Path, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
+def read_gnss(asked: Asked) -> Recorded:
     """Each row of wheel speeds tells the speeds since the row before it; the first is the start.
 
     `coded` has all rows and all fixes, whatever their stamps, as the authors' program has: no fix
@@ -30,6 +29,7 @@ def read_gnss(path: Path, world: World, reading: DocumentReading, warnings: list
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
+    path, world, reading, _, warnings = asked
     folder = folder_of(path, HOLDS)
     wheels_file = find(folder, "the wheel speeds", "wheelspeeds*.csv")
     fixes_file = find(folder, "the satellite fixes", "gnss*.csv")

@@ -3,11 +3,11 @@ poselog, angles and map, text files of bare numbers.
 """
 
 import math
-from pathlib import Path
 
 import numpy as np
 
 from ekfsim.errors import InputError, Mistake, Place
+from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import find, folder_of
 from ekfsim.files.logs.formats.targets import of_landmarks
 from ekfsim.files.logs.ordering import tell_back, tell_gaps, tell_repeated
@@ -31,7 +31,7 @@ MAP = Wanted(("marker", "x", "y"), (0, 1, 2), range(3, 1000))
 MUCH_LATER = 10  # steps dT from which on it is told that a picture has to wait so long for its row
 
 
-def read_mower(path: Path, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
+def read_mower(asked: Asked) -> Recorded:
     """Every row of the poselog, the first too, is one time update of dT; then the markers that
     belong to it are taken.
 
@@ -40,6 +40,7 @@ def read_mower(path: Path, world: World, reading: DocumentReading, warnings: lis
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
+    path, world, reading, _, warnings = asked
     folder = folder_of(path, HOLDS)
     files = (
         find(folder, "the positions", "marker-001-poselog.txt", "*poselog.txt"),

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ekfsim.errors import InputError, Mistake, Place
+from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import find, find_any, folder_of
 from ekfsim.files.logs.formats.targets import landmarks_of, of_landmarks
 from ekfsim.files.logs.ordering import in_order, tell_gaps, tell_repeated
@@ -32,13 +33,12 @@ BARCODES = Wanted(("subject", "barcode"), (0, 1), range(2, 3))
 LANDMARKS = Wanted(("subject", "x", "y"), (0, 1, 2), range(3, 6))
 
 
-def read_mrclam(
-    path: Path, world: World, reading: DocumentReading, warnings: list[str]
-) -> Recorded:
+def read_mrclam(asked: Asked) -> Recorded:
     """A row of the odometry holds until the next. Errors are counted at its instants.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
+    path, world, reading, _, warnings = asked
     folder = folder_of(path, HOLDS)
     odometry_file = find(folder, "the odometry", "Robot*_Odometry.dat")
     robot = odometry_file.name.removesuffix("_Odometry.dat")

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ekfsim.errors import UsageError
+from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import find, find_any, folder_of
 from ekfsim.files.logs.formats.gnss import TIME, read_truth
 from ekfsim.files.logs.formats.targets import by_name
@@ -33,14 +34,13 @@ FILES = {  # each file's columns, beside t; the yaws in rad
 }
 
 
-def read_pioneer(
-    path: Path, world: World, reading: DocumentReading, warnings: list[str]
-) -> Recorded:
+def read_pioneer(asked: Asked) -> Recorded:
     """Each row of the odometry tells the ways since the row before it; the first is the start. A
     compass or a gyro of the world has a file of its own, t and yaw.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
+    path, world, reading, _, warnings = asked
     folder = folder_of(path, HOLDS)
     odometry_file = find(folder, "the odometry", "odometry*.csv")
     columns = TIME, ("left",), ("right",)

@@ -2,11 +2,11 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
 from ekfsim.errors import InputError, Mistake, Place
+from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import table_file
 from ekfsim.files.logs.formats.targets import only
 from ekfsim.files.logs.ordering import tell_gaps, tell_repeated
@@ -20,9 +20,7 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.models.sensors.lidar import LidarOffset
 from ekfsim.models.sensors.offset import to_global
 from ekfsim.records import Control, Entry, Log, Reading
-from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.instruments import Lidar, Pylon
-from ekfsim.world import World
 
 COLUMNS = ("X", "Y", "Latitude", "Longitude", "Yaw", "AccelX", "AccelY")
 PLACES = (0, 1, 4, 5, 6, 9, 10)
@@ -31,11 +29,12 @@ CLOCK = 1 << 32  # µs after which the stamps' clock starts again
 EARTH_RADIUS = 6.3781e6  # m
 
 
-def read_pylon(path: Path, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
+def read_pylon(asked: Asked) -> Recorded:
     """Each row is one motion and, where the lidar saw the pylon, one reading. No truth is known.
 
     Raises UsageError where there is no such file, InputError with what is wrong in it.
     """
+    path, world, reading, _, warnings = asked
     lines = lines_of(table_file(path, "the CSV file of the lidar and the inertial unit", ".csv"))
     wanted = Wanted(COLUMNS, PLACES, range(12, 13), frozenset({"X", "Y", "Latitude", "Longitude"}))
     rows = some(numbers_of(lines, wanted, ",", warnings), "lidar and accelerations")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import find, folder_of
 from ekfsim.files.logs.formats.gnss import TIME, read_truth
 from ekfsim.files.logs.formats.targets import landmarks_of, of_landmarks
@@ -27,13 +28,12 @@ HOLDS = "odometry.csv, ranges.csv, nodes.csv and, where it is known, groundtruth
 FIRST_METRES = 2.0  # of travel, by which a stored heading is found to point ahead or back
 
 
-def read_ranges(
-    path: Path, world: World, reading: DocumentReading, warnings: list[str]
-) -> Recorded:
+def read_ranges(asked: Asked) -> Recorded:
     """Each row of the odometry is a stride that ends at its time. Errors are counted there.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
+    path, world, reading, _, warnings = asked
     folder = folder_of(path, HOLDS)
     odometry_file = find(folder, "the odometry", "odometry*.csv")
     ranges_file = find(folder, "the ranges", "ranges*.csv")

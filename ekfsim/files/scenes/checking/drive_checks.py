@@ -7,8 +7,9 @@ import math
 from collections.abc import Iterator
 
 from ekfsim.errors import Mistake
-from ekfsim.files.keys.commands import SYSTEM_OF, WAYS, CommandsKeys
+from ekfsim.files.keys.commands import WAYS, CommandsKeys
 from ekfsim.files.keys.fields import aliases
+from ekfsim.files.keys.recording import SYSTEM_OF
 from ekfsim.files.scenes.building import drive_of
 from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.yaml.telling import meant

@@ -1,0 +1,54 @@
+"""The keys of a commands file that tell of a recorded log."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from ekfsim.files.keys.fields import Name, Strict, SystemName
+
+TimeUnit = Literal["s", "ms", "us", "ns"]
+AngleUnit = Literal["radians", "degrees"]
+LogFormat = Literal["pylon", "gnss", "mower", "mrclam", "ranges", "pioneer", "classroom"]
+SYSTEM_OF: dict[str, SystemName] = {  # the system that each format of a log records
+    "pylon": "pylon",
+    "gnss": "gnss",
+    "mower": "mower",
+    "mrclam": "landmarks",
+    "ranges": "ranges",
+    "pioneer": "pioneer",
+    "classroom": "classroom",
+}
+WITH_LANDMARKS = ("mower", "mrclam", "ranges")  # formats that tell what stands where
+
+
+class RecordingKeys(Strict):
+    """A recorded log."""
+
+    format: LogFormat = Field(description="Who wrote the log.", examples=["pylon"])
+    path: Name | None = Field(
+        None,
+        description="The log, a file or a folder as its format has it, relative to this file; "
+        "--log wins. That of a classroom brings its world, where the file names none.",
+        examples=["../logs/square.csv"],
+    )
+    robot: int | None = Field(
+        None,
+        description="Which robot of a folder with several; mrclam names its files Robot2_….",
+        ge=0,
+        le=1_000_000,
+        examples=[2],
+    )
+    time_unit: TimeUnit | None = Field(
+        None,
+        alias="timeUnit",
+        description="What one of a stamp is: s, ms, us or ns. Where absent, found by what the "
+        "numbers can be.",
+        examples=["ms"],
+    )
+    angle_unit: AngleUnit | None = Field(
+        None,
+        alias="angleUnit",
+        description="What bearings and headings are in: radians or degrees. Where absent, as the "
+        "format has them.",
+        examples=["degrees"],
+    )
