@@ -32,18 +32,50 @@ class Obstacle:
 
 
 @dataclass(frozen=True)
+class WallLine:
+    """Walls that stand free: they stop robots and beams, and have no inside. points : (n, 2) m"""
+
+    name: str
+    points: Array
+
+
+def wall_name(index: int) -> str:
+    """What a wall that was given no name is called, by its place in the list.
+
+    >>> wall_name(0)
+    'wall 1'
+    """
+    return f"wall {index + 1}"
+
+
+@dataclass(frozen=True)
 class Map:
     """A floor plan: the true one, or the one that the filter believes."""
 
     boundary: Array | None = None  # (n, 2) m
     obstacles: tuple[Obstacle, ...] = ()
+    lines: tuple[WallLine, ...] = ()
 
     def rings(self) -> Iterator[tuple[str, Array]]:
-        """Every outline with its name, the boundary first."""
+        """Every polygon with its name, the boundary first : (n, 2) m each, not closed."""
         if self.boundary is not None:
             yield BOUNDARY, self.boundary
         for obstacle in self.obstacles:
             yield obstacle.name, obstacle.points
+
+    def outlines(self) -> Iterator[tuple[str, Array]]:
+        """All walls with their names, as lines to be drawn : (n, 2) m each; where one is closed, it
+        ends where it begins.
+        """
+        for name, ring in self.rings():
+            yield name, np.vstack([ring, ring[:1]])
+        for line in self.lines:
+            yield line.name, line.points
+
+    def named_lines(self) -> Iterator[WallLine]:
+        """The walls that stand free and were given a name of their own."""
+        numbered = (wall_name(index) for index in range(len(self.lines)))
+        return (line for line, name in zip(self.lines, numbered, strict=True) if line.name != name)
 
     @cached_property
     def areas(self) -> "tuple[Polygon | None, tuple[Polygon, ...]]":
@@ -56,7 +88,7 @@ class Map:
     @cached_property
     def walls(self) -> Walls:
         """All edges, ready for ray casting; built once."""
-        return Walls.of(dict(self.rings()))
+        return Walls.of(dict(self.rings()), {line.name: line.points for line in self.lines})
 
 
 @dataclass(frozen=True)
@@ -136,6 +168,7 @@ class World:
         name: str = "world",
         boundary: object = None,
         obstacles: object = None,
+        walls: object = None,
         landmarks: object = None,
         sigma: object = None,
         belief: object = None,
@@ -151,6 +184,7 @@ class World:
             World.of(
                 boundary=[[0, 0], [10, 0], [10, 8], [0, 8]],
                 obstacles={"desk": [[4, 3], [5, 3], [5, 4], [4, 4]]},
+                walls=[[[7, 0], [7, 5]]],
                 start=(1, 1, 90),
                 noise={"executionDstSigmaRatio": 0.05, …},  # all five, or a Noise
             )
@@ -163,9 +197,9 @@ class World:
 
         told = {
             "name": name, "description": description, "system": system, "boundary": boundary,
-            "obstacles": obstacles, "landmarks": landmarks, "start": start, "sigma": sigma,
-            "noise": noise, "robot": robot, "sensors": sensors, "expectedPath": expected_path,
-            "belief": belief, "faults": faults,
+            "obstacles": obstacles, "walls": walls, "landmarks": landmarks, "start": start,
+            "sigma": sigma, "noise": noise, "robot": robot, "sensors": sensors,
+            "expectedPath": expected_path, "belief": belief, "faults": faults,
         }  # fmt: skip
         return world_of(told)
 

@@ -8,6 +8,7 @@ from a wall meets is told in rules.py.
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import Self
 
 import numpy as np
@@ -33,16 +34,17 @@ class Hit:
 
 @dataclass(frozen=True, eq=False)
 class Walls:
-    """Every edge of every polygon of one map."""
+    """Every edge of every polygon of one map, and of every line of walls that stands free."""
 
     segments: Array  # (W, 2, 2) m: the ends of each wall
     # (W, 2) unit normal of each wall, to the left on the way from its first end to its second
     normals: Array
-    polygon: Integers  # (W,) which polygon the wall belongs to
+    polygon: Integers  # (W,) which polygon, or line of walls, the wall belongs to
     # (W,) which edge of it: edge j joins points j and j + 1, the last closes the ring
     edge: Integers
     line: Integers  # (W,) edges of one polygon on one straight line share a number
-    names: tuple[str, ...]  # of the polygons
+    names: tuple[str, ...]  # of the polygons, then of the lines of walls
+    polygons: int  # how many of the names are polygons: the others have no inside
 
     def __post_init__(self) -> None:
         """Every step of a run hands out the same walls: nobody may move them."""
@@ -50,14 +52,16 @@ class Walls:
             numbers.flags.writeable = False
 
     @classmethod
-    def of(cls, rings: Mapping[str, Array]) -> Self:
-        """Collect the edges of all rings, given by name as (n, 2) points in m, closed or not.
+    def of(cls, rings: Mapping[str, Array], lines: Mapping[str, Array] | None = None) -> Self:
+        """Collect the edges of all rings, closed or not, and of all lines of walls, which stay
+        open: both given by name as (n, 2) points in m.
 
         Edges of no length are no walls; the others keep their number in the ring.
         """
+        lines = lines or {}
         polygon, edge, segments = [], [], []
-        for number, points in enumerate(rings.values()):
-            ends = _edges(points)
+        edges = chain(map(_edges, rings.values()), map(_open_edges, lines.values()))
+        for number, ends in enumerate(edges):
             kept = np.flatnonzero(np.hypot(*(ends[:, 1] - ends[:, 0]).T))
             polygon.append(np.full(len(kept), number))
             edge.append(kept)
@@ -73,11 +77,12 @@ class Walls:
             numbers,
             np.concatenate([none, *edge]),
             _lines(ends, numbers),
-            tuple(rings),
+            (*rings, *lines),
+            len(rings),
         )
 
     def name(self, wall: int) -> tuple[str, int]:
-        """The polygon that a wall belongs to, and which edge of it: ("desk", 2)."""
+        """The polygon or line that a wall belongs to, and which edge of it: ("desk", 2)."""
         return self.names[self.polygon[wall]], int(self.edge[wall])
 
     @twinned
@@ -110,9 +115,10 @@ class Walls:
     @cached_property
     def ground(self) -> Ground:
         """Where a robot can stand among these walls."""
+        areas = self.polygon < self.polygons
         return Ground.of(
-            self.segments,
-            self.polygon,
+            self.segments[areas],
+            self.polygon[areas],
             self.names.index(BOUNDARY) if BOUNDARY in self.names else -1,
         )
 
@@ -135,6 +141,12 @@ def _edges(points: Array) -> Array:
     if len(points) > 1 and (points[0] == points[-1]).all():
         points = points[:-1]
     return np.stack([points, np.roll(points, -1, axis=0)], 1)
+
+
+def _open_edges(points: Array) -> Array:
+    """(n − 1, 2, 2): the edges of a line, from each point to the next."""
+    points = np.asarray(points, float).reshape(-1, 2)
+    return np.stack([points[:-1], points[1:]], 1)
 
 
 def _lines(segments: Array, polygon: Integers) -> Integers:

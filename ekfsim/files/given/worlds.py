@@ -7,7 +7,7 @@ import numpy as np
 
 from ekfsim.files.given.given import Given
 from ekfsim.files.keys.world import NoiseKeys
-from ekfsim.world import Noise, Obstacle, World
+from ekfsim.world import Noise, Obstacle, WallLine, World
 
 OF = "World.of"  # how messages name what was handed over
 POSE = ("x", "y", "theta")
@@ -42,13 +42,15 @@ def _as_in_a_file(key: str, value: Any) -> Any:
             return dict(zip(POSE, value, strict=True))
         case "obstacles", Mapping():
             return [{"name": name, "points": points} for name, points in value.items()]
-        case "obstacles", list() | tuple():
-            return [_obstacle(one) if isinstance(one, Obstacle) else one for one in value]
+        case "walls", Mapping():
+            return [{"name": name, "points": points} for name, points in value.items()]
+        case (("obstacles" | "walls"), list() | tuple()):
+            named = Obstacle | WallLine
+            return [
+                {"name": one.name, "points": one.points} if isinstance(one, named) else one
+                for one in value
+            ]
         case "noise", Noise():
             aliases = {name: field.alias for name, field in NoiseKeys.model_fields.items()}
             return {alias: getattr(value, name) for name, alias in aliases.items()}
     return value
-
-
-def _obstacle(one: Obstacle) -> dict[str, Any]:
-    return {"name": one.name, "points": one.points}

@@ -153,6 +153,7 @@ Point = Annotated[
 Polygon = Annotated[
     list[Point], Field(title="a polygon", min_length=3, examples=[[[4, 3], [5, 3], [5, 4]]])
 ]
+Line = Annotated[list[Point], Field(title="a wall", min_length=2, examples=[[[7, 0], [7, 5]]])]
 Way = Annotated[
     list[Point], Field(title="a way", min_length=2, examples=[[[0, 0], [10, 0], [10, -10]]])
 ]

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Discriminator, Field, Tag
 from pydantic.config import JsonDict
 
 from ekfsim.files.keys.fields import (
@@ -10,6 +10,7 @@ from ekfsim.files.keys.fields import (
     Coordinate,
     Degrees,
     Late,
+    Line,
     Name,
     Polygon,
     Pose,
@@ -37,6 +38,8 @@ SEE = "See noise."
 POSE = {"x": 1.0, "y": 1.0, "theta": 90}
 SIGMA = {"x": 0.1, "y": 0.1, "theta": 5}
 DESK: JsonDict = {"name": "desk", "points": [[4, 3], [5, 3], [5, 4], [4, 4]]}
+WALL = [[7, 0], [7, 5]]
+PANEL: JsonDict = {"name": "panel", "points": [[7, 0], [7, 5]]}
 LANDMARK: JsonDict = {"id": 3, "x": 5.0, "y": -5.0}
 ROOM = [[0, 0], [10, 0], [10, 8], [0, 8]]
 SQUARE = [[0, 0], [10, 0], [10, -10], [0, -10]]
@@ -124,6 +127,34 @@ class ObstacleKeys(Strict):
     )
 
 
+class LineKeys(Strict):
+    """Walls that stand free: they stop robots and beams, and have no inside."""
+
+    model_config = ConfigDict(title="a wall", json_schema_extra={"examples": [PANEL]})
+
+    name: Name = Field(
+        description="What messages and pictures call it; no wall and no obstacle shares it.",
+        examples=["panel"],
+    )
+    points: Line = Field(
+        description="From end to end, [x, y] in m; it stays open, and may cross itself."
+    )
+
+
+def kind_of_wall(wall: Any) -> str | None:
+    """Which way a wall is written: its points alone, or a name as well; None for neither."""
+    if isinstance(wall, list):
+        return "points"
+    return "named" if isinstance(wall, dict | LineKeys) else None
+
+
+WallKeys = Annotated[
+    Annotated[Line, Tag("points")] | Annotated[LineKeys, Tag("named")],
+    Discriminator(kind_of_wall),
+    Field(title="a wall", examples=[WALL]),
+]
+
+
 class LandmarkKeys(Strict):
     """A point that a sensor can tell apart from all others."""
 
@@ -167,12 +198,19 @@ class BeliefKeys(Strict):
         examples=[{"markers": {"azimuthSigma": 5}}],
     )
     missing: list[Name] | None = Field(
-        None, description="Names of the obstacles that the filter's map lacks.", examples=[["desk"]]
+        None,
+        description="Names of the obstacles and walls that the filter's map lacks.",
+        examples=[["desk"]],
     )
     obstacles: list[ObstacleKeys] | None = Field(
         None,
         description="The filter's whole list of obstacles, in place of the true one.",
         examples=[[DESK]],
+    )
+    walls: list[WallKeys] | None = Field(
+        None,
+        description="The filter's whole list of walls that stand free, in place of the true one.",
+        examples=[[WALL]],
     )
     boundary: Polygon | None = Field(
         None, description="The filter's own idea of the boundary.", examples=[ROOM]
@@ -209,6 +247,13 @@ class WorldKeys(Strict):
         description="Polygons that stop robots and beams; they may overlap, and cross the "
         "boundary.",
         examples=[[DESK]],
+    )
+    walls: list[WallKeys] = Field(
+        [],
+        description="Walls that stand free, each a line from point to point, [x, y] in m: they "
+        "stop robots and beams, and have no inside. One with a name is {name: panel, points: [[7, "
+        "0], [7, 5]]}; the others are called wall 1, wall 2, … by their places in the list.",
+        examples=[[WALL]],
     )
     landmarks: list[LandmarkKeys] = Field(
         [], description="Points for the sensors that see landmarks.", examples=[[LANDMARK]]

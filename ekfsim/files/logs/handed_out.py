@@ -86,6 +86,11 @@ def _world(told: Told) -> Iterator[str]:
     for obstacle in told.map.obstacles:
         name = json.dumps(obstacle.name, ensure_ascii=False)
         yield f"  - {{name: {name}, points: {_points(obstacle.points)}}}\n"
+    if told.map.lines:
+        yield "walls:\n"
+    for line in told.map.lines:
+        name = json.dumps(line.name, ensure_ascii=False)
+        yield f"  - {{name: {name}, points: {_points(line.points)}}}\n"
     sigma = f", sigma: {{{_pose(told.sigma)}}}" if told.sigma.any() else ""
     yield f"start: {{{_pose(told.start)}{sigma}}}\nnoise:\n"
     for name, key in aliases(NoiseKeys).items():
@@ -103,10 +108,8 @@ def _pose(pose: Array) -> str:
 
 def _refuse_start(scene: Scene, told: Told) -> None:
     """Raise UsageError where no world file can have the start that the filter is told."""
-    named = [(obstacle.name, obstacle.points.tolist()) for obstacle in told.map.obstacles]
-    boundary = None if told.map.boundary is None else told.map.boundary.tolist()
     x, y, _ = told.start.tolist()
-    for wrong in FloorPlan(boundary, named).in_the_way(x, y):
+    for wrong in FloorPlan.of(told.map).in_the_way(x, y):
         raise UsageError(
             f"{scene.commands_source}: cannot be recorded: the filter is told a start at {wrong} "
             "of its own map; tell it one where the robot can stand"

@@ -11,7 +11,13 @@ import numpy as np
 from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.files.keys.commands import CommandKeys, CommandsKeys, ExpectKeys
 from ekfsim.files.keys.fields import PartKeys, Pose, aliases
-from ekfsim.files.keys.world import BeliefKeys, ObstacleKeys, SigmaKeys, WorldKeys
+from ekfsim.files.keys.world import (
+    BeliefKeys,
+    LineKeys,
+    ObstacleKeys,
+    SigmaKeys,
+    WorldKeys,
+)
 from ekfsim.filters.tuning import Tuning
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
@@ -20,7 +26,7 @@ from ekfsim.systems.drive import Drive
 from ekfsim.systems.faults import DriveFaults, SensorFaults
 from ekfsim.systems.instrument import Instrument
 from ekfsim.systems.robot import Robot
-from ekfsim.world import Faults, Landmark, Map, Noise, Obstacle, Told, World
+from ekfsim.world import Faults, Landmark, Map, Noise, Obstacle, Told, WallLine, World, wall_name
 
 if TYPE_CHECKING:
     from ekfsim.files.keys.drive import PathKeys, StretchKeys
@@ -33,7 +39,7 @@ NO_NOISE = Noise(0.0, 0.0, 0.0, 0.0, 0.0)  # of the classroom's robot, where ano
 
 def world_of(keys: WorldKeys) -> World:
     """The world that a file describes."""
-    floor_plan = Map(array(keys.boundary), obstacles_of(keys.obstacles))
+    floor_plan = Map(array(keys.boundary), obstacles_of(keys.obstacles), lines_of(keys.walls))
     start, noise = pose(keys.start), Noise(**dict(keys.noise)) if keys.noise else NO_NOISE
     return World(
         name=keys.name,
@@ -163,7 +169,8 @@ def told_map(belief: BeliefKeys, floor_plan: Map) -> Map:
     """The filter's map: the true one itself where nothing differs,
     so that its walls are built once.
     """
-    if belief.boundary is None and belief.obstacles is None and not belief.missing:
+    own = (belief.boundary, belief.obstacles, belief.walls)
+    if all(one is None for one in own) and not belief.missing:
         return floor_plan
     missing = belief.missing or []
     return Map(
@@ -171,12 +178,25 @@ def told_map(belief: BeliefKeys, floor_plan: Map) -> Map:
         obstacles=obstacles_of(belief.obstacles)
         if belief.obstacles is not None
         else tuple(obstacle for obstacle in floor_plan.obstacles if obstacle.name not in missing),
+        lines=lines_of(belief.walls)
+        if belief.walls is not None
+        else tuple(line for line in floor_plan.lines if line.name not in missing),
     )
 
 
 def obstacles_of(obstacles: Iterable[ObstacleKeys]) -> tuple[Obstacle, ...]:
     """Obstacles with their corners as arrays."""
     return tuple(Obstacle(keys.name, array(keys.points)) for keys in obstacles)
+
+
+def lines_of(walls: Iterable[list[list[float]] | LineKeys]) -> tuple[WallLine, ...]:
+    """Walls that stand free; those without a name are called by their places in the list."""
+    return tuple(
+        WallLine(keys.name, array(keys.points))
+        if isinstance(keys, LineKeys)
+        else WallLine(wall_name(index), array(keys))
+        for index, keys in enumerate(walls)
+    )
 
 
 @overload

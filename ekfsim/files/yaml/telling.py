@@ -21,6 +21,8 @@ NOUNS = {
     "array": "a list",
     "object": "a mapping 'key: value'",
 }
+EACH = "[]"  # of a list
+OF_TWO_KINDS = (("drive",), ("walls", EACH), ("belief", "walls", EACH))
 
 
 def tell(error: ValidationError, kind: Kind, root: Node, file: str) -> list[Mistake]:
@@ -52,13 +54,19 @@ def mark_of(detail: ErrorDetails, root: Node) -> Mark:
 
 
 def details_of(error: ValidationError) -> list[ErrorDetails]:
-    """All that a model found, each at the path of the file: a drive's way begins with which of the
-    two kinds it is.
+    """All that a model found, each at the path of the file: in those of a drive's way and of a
+    wall stands which of the two kinds it is.
     """
     details = error.errors(include_url=False, include_input=False, include_context=False)
     for detail in details:
-        if detail["loc"][:1] == ("drive",):
-            detail["loc"] = (*detail["loc"][:1], *detail["loc"][2:])
+        path = detail["loc"]
+        for kind in OF_TWO_KINDS:
+            depth = len(kind)
+            if len(path) > depth and all(
+                part == key or (key == EACH and isinstance(part, int))
+                for part, key in zip(path, kind, strict=False)
+            ):
+                detail["loc"] = (*path[:depth], *path[depth + 1 :])
     return details
 
 
@@ -155,6 +163,7 @@ def wrong_length(node: Node, schema: Schema) -> tuple[str, str]:
             f"{values} stand{'s' if count == 1 else ''} where {noun(schema)} belongs",
             f"write e.g. {example(schema)}",
         )
+    schema = next((one for one in schema.get("oneOf", ()) if "items" in one), schema)
     points = values.replace("value", "point")
     least = {2: "two", 3: "three"}[schema["minItems"]]
     what = noun(schema).removeprefix("a ")

@@ -147,7 +147,7 @@ def _alike(one: Scene, other: Scene) -> bool:
 
 
 def _rings(floor: Map) -> list[tuple[str, list[list[float]]]]:
-    return [(name, points.tolist()) for name, points in floor.rings()]
+    return [(name, points.tolist()) for name, points in floor.outlines()]
 
 
 def _put_legend(ax: Axes, drawn: Drawn, wanted: bool) -> None:

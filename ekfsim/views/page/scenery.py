@@ -21,7 +21,7 @@ from ekfsim.views.picture.look import Look
 from ekfsim.views.picture.sight_artists import FIX, OTHERWISE, recorded_fixes
 from ekfsim.views.picture.written.lettering import shortened
 from ekfsim.views.words.captions import conditioned_label, cone_label, ellipse_label
-from ekfsim.world import Map
+from ekfsim.world import Map, WallLine
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -127,7 +127,19 @@ def _map(floor: Map, origin: Array) -> dict[str, Any]:
         }
         for each, area in zip(floor.obstacles, areas, strict=True)
     ]
-    return {"boundary": room, "obstacles": obstacles}
+    lines = [points(line.points, origin) for line in floor.lines]
+    names = [
+        {"name": in_a_line(shortened(line.name, 20)), "at": points(_middle_of(line), origin)}
+        for line in floor.named_lines()
+    ]
+    return {"boundary": room, "obstacles": obstacles, "walls": lines, "names": names}
+
+
+def _middle_of(line: WallLine) -> Array:
+    """The middle of a line's longest part, where its name stands : (1, 2) m"""
+    a, b = line.points[:-1], line.points[1:]
+    middles: Array = (a + b) / 2
+    return middles[[np.argmax(np.linalg.norm(b - a, axis=-1))]]
 
 
 def _middle(area: "Polygon") -> Array:

@@ -57,9 +57,12 @@ class WorldArtists:
         )  # fmt: skip
         axes.add_collection(self.obstacles, autolim=False)
         room = [] if floor.boundary is None else [closed(floor.boundary)]
-        self.boundary = _rings(axes, room, "boundary", "wall", 1.1, "#222222", 1.6)
-        believed = [] if told is floor else [closed(ring) for _, ring in told.rings()]
-        self.told = _rings(axes, believed, "told-map", "filter's map", 1.2, BLUE, 1.3)
+        self.boundary = _lines(axes, room, "boundary", "wall", 1.1, "#222222", 1.6)
+        self.lines = _lines(
+            axes, [each.points for each in floor.lines], "walls", "wall", 1.1, "#222222", 1.6
+        )
+        believed = [] if told is floor else [line for _, line in told.outlines()]
+        self.told = _lines(axes, believed, "told-map", "filter's map", 1.2, BLUE, 1.3)
         self.told.set_linestyle((0, (4, 3)))
         self.meant = line(
             axes, "expected-path", "way that was meant", 1.25, MEANT, 1.2, (0, (5, 3))
@@ -181,10 +184,10 @@ def ray(pose: Array, length: float, far: float = 0.0) -> Array:
     )
 
 
-def _rings(
+def _lines(
     axes: Axes, rings: list[Array], gid: str, label: str, zorder: float, color: str, width: float
 ) -> LineCollection:
-    """Closed outlines : (n, 2) m each"""
+    """Lines that stand still : (n, 2) m each"""
     made = LineCollection(
         rings, colors=color, linewidths=width, zorder=zorder, gid=gid, label=label
     )

@@ -100,12 +100,14 @@ class Canvas:
         self._set(_nearest(dots), pen)
 
     def polygons(self, rings: Sequence[Array], pen: Pen) -> None:
-        """Draw the closed lines through points : (n, 2) each, thousands of them as fast as one."""
-        if rings:
-            lift = np.full((1, 2), np.nan)  # between two rings
-            self.polyline(
-                np.concatenate([part for ring in rings for part in (ring, ring[:1], lift)]), pen
-            )
+        """Draw the closed lines through points : (n, 2) each."""
+        self.polylines([np.concatenate([ring, ring[:1]]) for ring in rings], pen)
+
+    def polylines(self, lines: Sequence[Array], pen: Pen) -> None:
+        """Draw lines through points : (n, 2) each, thousands of them as fast as one."""
+        if lines:
+            lift = np.full((1, 2), np.nan)  # between two lines
+            self.polyline(np.concatenate([part for line in lines for part in (line, lift)]), pen)
 
     def text(self, point: ArrayLike, text: str, colour: str = "") -> None:
         """Write a text, or a single marker, with its middle on a point : (2,);

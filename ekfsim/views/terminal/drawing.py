@@ -123,7 +123,7 @@ def _draw_world(canvas: Canvas, world: World) -> list[Item]:
     """Walls, with their names where there is room;
     those on one map only, the true one or the filter's, are broken.
     """
-    true, told = dict(world.map.rings()), dict(world.told.map.rings())
+    true, told = dict(world.map.outlines()), dict(world.told.map.outlines())
     both = {
         name
         for name, ring in true.items()
@@ -131,9 +131,9 @@ def _draw_world(canvas: Canvas, world: World) -> list[Item]:
     }
     unknown = [ring for name, ring in true.items() if name not in both]
     imagined = [ring for name, ring in told.items() if name not in both]
-    canvas.polygons(imagined, IMAGINED_WALL)
-    canvas.polygons(unknown, UNKNOWN_WALL)
-    canvas.polygons([true[name] for name in both], WALL)
+    canvas.polylines(imagined, IMAGINED_WALL)
+    canvas.polylines(unknown, UNKNOWN_WALL)
+    canvas.polylines([true[name] for name in both], WALL)
     for obstacle in world.map.obstacles:
         name = printable(obstacle.name, canvas.ascii)
         place = _place(obstacle.points, canvas.cell * np.array([len(name) + 2, 4]))

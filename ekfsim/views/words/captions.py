@@ -198,9 +198,9 @@ def watching(scene: Scene) -> list[str]:
 def texts(scene: Scene) -> Iterator[str]:
     """Whatever of a person's own words a scene's pictures show."""
     yield from (scene.world.name, *scene.watching)
-    yield from (
-        obstacle.name for obstacle in (*scene.world.map.obstacles, *scene.world.told.map.obstacles)
-    )
+    for floor in (scene.world.map, scene.world.told.map):
+        yield from (obstacle.name for obstacle in floor.obstacles)
+        yield from (line.name for line in floor.named_lines())
     yield from _said(scene.commands)
 
 

@@ -90,6 +90,10 @@ def _map(scene: Scene) -> str:
         f"{name}: {' '.join(point(x, y) for x, y in ring.tolist())}"
         for name, ring in scene.world.told.map.rings()
     ]
+    rings += [
+        f"{line.name}: {' '.join(point(x, y) for x, y in line.points.tolist())} (open)"
+        for line in scene.world.told.map.lines
+    ]
     return _fenced(rings or ["there is no wall"])
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import ekfsim
 from ekfsim.errors import InputError, UsageError
-from ekfsim.world import Obstacle
+from ekfsim.world import Obstacle, WallLine
 
 RATIOS = ("executionDst", "executionAng", "odometryDst", "odometryAng", "range")
 NOISE = {f"{name}SigmaRatio": 0.02 for name in RATIOS}
@@ -53,6 +53,28 @@ def test_python_text_and_dict_make_the_world_of_the_file(tmp_path):
         pairs = zip(arrays(world), arrays(worlds[0]), strict=True)
         assert all(np.array_equal(ours, theirs) for ours, theirs in pairs)
     assert np.array_equal(worlds[0].told.start, [1.2, 1, np.radians(80)])
+
+
+def test_walls_are_the_same_by_text_dict_and_python():
+    hook, panel = [[7, 0], [7, 5]], [[2, 6], [4, 6], [4, 7]]
+    named = {"name": "panel", "points": panel}
+    text = FILE.replace("missing: [desk]", "missing: [wall 1]")
+    worlds = [
+        ekfsim.load_world(text + f"walls: [{hook}, {{name: panel, points: {panel}}}]\n"),
+        lab(walls=[np.array(hook), named], belief={"missing": ["wall 1"]}),
+        lab(walls={"wall 1": hook, "panel": np.array(panel)}, belief={"missing": ["wall 1"]}),
+        lab(walls=[WallLine("wall 1", np.array(hook)), WallLine("panel", np.array(panel))],
+            belief={"walls": [named]}),
+    ]  # fmt: skip
+    for world in worlds:
+        assert [line.name for line in world.map.lines] == ["wall 1", "panel"]
+        assert [line.name for line in world.told.map.lines] == ["panel"]
+        assert [line.points.tolist() for line in world.map.lines] == [hook, panel]
+        assert [line.name for line in world.map.named_lines()] == ["panel"]
+    assert (world.map.walls.first(6.0, 1.0, 0.0), world.told.map.walls.first(6.0, 1.0, 0.0)) == (
+        (1.0, 8),
+        (4.0, 1),
+    )
 
 
 def test_a_scene_is_the_same_by_file_text_and_dict(tmp_path):

@@ -187,7 +187,7 @@ WORLDS = {
     "touching": (
         HEAD + "belief: {boundary: [[0, 0], [4, 0], [2, 2], [4, 4], [0, 4], [2, 2]]}\n",
         ["4:20: belief.boundary: the outline crosses or touches itself at [2, 2]; give the "
-         "corners in order, around it"],
+         "corners in order, around it; the rim of a hole, or a spike, may stand by itself under 'walls'"],
     ),
     "no area": (
         HEAD + "obstacles:\n  - {name: a, points: [[0.1, 0.1], [0.2, 0.2], [0.3, 0.3]]}\n",
@@ -202,6 +202,55 @@ WORLDS = {
     "repeated point": (
         HEAD + "boundary: [[0, 0], [9, 0], [9, 0], [9, 9]]\n",
         ["4:28: boundary[2]: the point [9, 0] repeats the one before it; delete one of them"],
+    ),
+    "walls that are none": (
+        HEAD + "walls:\n - [[7, 0]]\n - [[7, 0], [7, 0]]\n - 7\n - [1, 2]\n - []\n"
+        " - {name: panel, point: [[2, 6], [4, 6]]}\n - {name: a, points: [[2, x], [4]]}\n"
+        " - {points: [[2, 3], [4, .inf]]}\n",
+        [
+            "5:4: walls[0]: 1 point makes no wall; write at least two, e.g. [[7, 0], [7, 5]]",
+            "6:13: walls[1][1]: the point [7, 0] repeats the one before it; delete one of them",
+            "7:4: walls[2]: 7 is a number where a wall belongs; write e.g. [[7, 0], [7, 5]]",
+            "8:5: walls[3][0]: 1 is a number where a point [x, y] belongs; write e.g. [4, 3]",
+            "8:8: walls[3][1]: 2 is a number where a point [x, y] belongs; write e.g. [4, 3]",
+            "9:4: walls[4]: an empty list stands here; write e.g. [[7, 0], [7, 5]]",
+            "10:18: walls[5]: unknown key 'point'; did you mean 'points'?",
+            "11:27: walls[6].points[0][1]: 'x' is text where a number belongs; write e.g. 1.5",
+            "11:31: walls[6].points[1]: 1 value stands where a point [x, y] belongs; write e.g. [4, 3]",
+            "12:4: walls[7].name: the key is missing; write name: panel",
+            "12:26: walls[7].points[1][1]: .inf is not a finite number; write e.g. 1.5",
+        ],
+    ),
+    "walls of one name": (
+        HEAD + "obstacles:\n" + DESK + "walls:\n - {name: desk, points: [[7, 0], [7, 5]]}\n"
+        " - [[2, 0], [2, 5]]\n - {name: wall 2, points: [[7, 0], [7, 5]]}\n"
+        " - {name: boundary, points: [[7, 0], [7, 5]]}\n",
+        [
+            "7:11: walls[0].name: 'desk' is already the name of the obstacle on line 5; choose another name",
+            "8:4: walls[1]: 'wall 2' is already the name of the wall on line 9; choose another name",
+            "10:11: walls[3].name: 'boundary' is the name of the room's own wall; choose another name",
+        ],
+    ),
+    "a wall of the belief": (
+        HEAD + "belief: {walls: [[[1, 2]], [[1, 2], [1, 2]]]}\n",
+        [
+            "4:18: belief.walls[0]: 1 point makes no wall; write at least two, e.g. [[7, 0], [7, 5]]",
+            "4:37: belief.walls[1][1]: the point [1, 2] repeats the one before it; delete one of them",
+        ],
+    ),
+    "start on a wall": (
+        HEAD + "walls: [[[0, 1], [3, 1], [3, 0]], [[0, 2], [9, 2]]]\n",
+        ["2:8: start: the robot starts at [1, 1], on the wall 'wall 1'; start it where it can move"],
+    ),
+    "a missing wall that is not there": (
+        HEAD + "walls: [[[0, 2], [9, 2]], {name: panel, points: [[0, 3], [9, 3]]}]\n"
+        "belief: {missing: [wall 1, pannel]}\n",
+        ["5:28: belief.missing[1]: no obstacle or wall is named 'pannel'; did you mean 'panel'?"],
+    ),
+    "missing walls of two lists": (
+        HEAD + "walls: [[[0, 2], [9, 2]]]\nbelief: {missing: [wall 1], walls: []}\n",
+        ["5:19: belief.missing: belief.walls lists all that the filter's map holds; delete either "
+         "'missing' or 'walls'"],
     ),
     "one name": (
         HEAD + "obstacles:\n" + DESK + DESK,
@@ -277,7 +326,7 @@ WORLDS = {
             "start it where it can move",
             "5:32: start.theta: 'x' is text where a number belongs; write e.g. 90",
             "7:1: unknown key 'size'; known keys here: name, description, system, boundary, "
-            "obstacles, landmarks, start, "
+            "obstacles, walls, landmarks, start, "
             "noise, robot, sensors, expectedPath, belief, faults",
             "9:1: the key 'name' is given twice, first on line 8; delete one",
         ],
@@ -468,7 +517,7 @@ def test_mistakes_of_the_world_follow_those_of_the_scene(tmp_path):
     assert lines_of(tmp_path, "seed: x\ncommands: []\nworld: ./room.yaml\n") == [
         "f.yaml:1:7: seed: 'x' is text where a whole number belongs; write e.g. 7",
         "room.yaml:4:1: unknown key 'size'; known keys here: name, description, system, boundary, "
-        "obstacles, landmarks, "
+        "obstacles, walls, landmarks, "
         "start, noise, robot, sensors, expectedPath, belief, faults",
     ]
 

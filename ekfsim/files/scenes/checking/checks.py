@@ -15,8 +15,9 @@ from ekfsim.files.scenes.checking.polygons import FloorPlan, Points
 from ekfsim.files.yaml.marked import Node, Path
 from ekfsim.files.yaml.telling import at, nearest
 from ekfsim.printable import quoted, short, some
-from ekfsim.world import BOUNDARY, Map, World
+from ekfsim.world import BOUNDARY, Map, World, wall_name
 
+WALLED, UNWALLED = ("obstacle or wall", "obstacles and walls"), ("obstacle", "obstacles")
 COMMANDS = list(CommandKeys.model_fields)
 
 
@@ -68,7 +69,8 @@ def check_world(file: Sound) -> Iterator[Mistake]:
     yield from check_missing(file)
     x, y = file.value("start", "x"), file.value("start", "y")
     if x is not None and y is not None:
-        for wrong in FloorPlan(file.value("boundary"), sound_obstacles(file)).in_the_way(x, y):
+        plan = FloorPlan(file.value("boundary"), sound_obstacles(file), sound_walls(file))
+        for wrong in plan.in_the_way(x, y):
             yield file.mistake(
                 ("start",), f"the robot starts at {wrong}", "start it where it can move"
             )
@@ -82,15 +84,47 @@ def sound_obstacles(file: Sound) -> Iterator[tuple[str, Points]]:
             yield file.value("obstacles", index, "name") or f"obstacles[{index}]", points
 
 
+def sound_walls(file: Sound) -> Iterator[tuple[str, Points]]:
+    """The walls that stand free and whose points are right, with their names."""
+    for index in range(file.count("walls")):
+        points = file.value(*wall_points(file, ("walls", index)))
+        if points is not None:
+            yield name_of_wall(file, ("walls", index)) or f"walls[{index}]", points
+
+
+def wall_points(file: Sound, wall: Path) -> Path:
+    """Where the points of a wall stand: it may be a list of them, or have a name as well."""
+    node = file.root.at(wall)
+    return (*wall, "points") if node is not None and isinstance(node.value, dict) else wall
+
+
+def name_of_wall(file: Sound, wall: Path) -> str | None:
+    """What a wall is called; None where its name is wrong."""
+    node = file.root.at(wall)
+    if node is not None and isinstance(node.value, dict):
+        name: str | None = file.value(*wall, "name")
+        return name
+    return wall_name(int(wall[-1]))
+
+
 def check_polygons(file: Sound) -> Iterator[Mistake]:
-    """Polygons that are none. Each is known as wrong from here on."""
-    for path in polygon_paths(file):
+    """Polygons and lines that are none. Each is known as wrong from here on."""
+    faults = [(path, polygons.fault_of) for path in polygon_paths(file)]
+    faults += [(path, polygons.fault_of_line) for path in line_paths(file)]
+    for path, fault_of in faults:
         points = file.value(*path)
-        if points is not None and (fault := polygons.fault_of(points)):
+        if points is not None and (fault := fault_of(points)):
             index, wrong, right = fault
             place = path if index is None else (*path, index)
             yield file.mistake(place, wrong, right)
             file.give_up(path)
+
+
+def line_paths(file: Sound) -> Iterator[Path]:
+    """Where a world file holds lines of walls."""
+    for owner in ((), ("belief",)):
+        for index in range(file.count(*owner, "walls")):
+            yield wall_points(file, (*owner, "walls", index))
 
 
 def polygon_paths(file: Sound) -> Iterator[Path]:
@@ -102,24 +136,41 @@ def polygon_paths(file: Sound) -> Iterator[Path]:
 
 
 def check_names(file: Sound, owner: Path) -> Iterator[Mistake]:
-    """Two obstacles of one name, and an obstacle named like the boundary."""
-    seen: dict[str, int] = {}
-    for index in range(file.count(*owner, "obstacles")):
-        path = (*owner, "obstacles", index, "name")
-        name = file.value(*path)
+    """Two obstacles or walls of one name, and one that is named like the boundary."""
+    seen: dict[str, tuple[str, Path]] = {}
+    for path, what, name in named(file, owner):
         if name == BOUNDARY:
             yield file.mistake(
                 path, f"'{BOUNDARY}' is the name of the room's own wall", "choose another name"
             )
         elif name in seen:
-            line = file.root.nearest((*owner, "obstacles", seen[name], "name")).mark[0]
+            other, place = seen[name]
+            line = file.root.nearest(place).mark[0]
             yield file.mistake(
                 path,
-                f"{quoted(name)} is already the name of the obstacle on line {line}",
+                f"{quoted(name)} is already the name of the {other} on line {line}",
                 "choose another name",
             )
         elif name is not None:
-            seen[name] = index
+            seen[name] = what, path
+
+
+def named(file: Sound, owner: Path) -> Iterator[tuple[Path, str, str | None]]:
+    """The names of one map, each with its place and with what it is the name of: those that were
+    written, then those that walls have by their places in the list.
+    """
+    unnamed = list[tuple[Path, str, str | None]]()
+    for index in range(file.count(*owner, "obstacles")):
+        path = (*owner, "obstacles", index, "name")
+        yield path, "obstacle", file.value(*path)
+    for index in range(file.count(*owner, "walls")):
+        wall = (*owner, "walls", index)
+        name = name_of_wall(file, wall)
+        if wall_points(file, wall) == wall:
+            unnamed.append((wall, "wall", name))
+        else:
+            yield (*wall, "name"), "wall", name
+    yield from unnamed
 
 
 def check_landmarks(file: Sound) -> Iterator[Mistake]:
@@ -140,28 +191,30 @@ def check_landmarks(file: Sound) -> Iterator[Mistake]:
 
 
 def check_missing(file: Sound) -> Iterator[Mistake]:
-    """Obstacles that the filter cannot lack."""
+    """Obstacles and walls that the filter cannot lack."""
     belief = file.root.at(("belief",))
-    if belief and belief.get("missing") and belief.get("obstacles"):
-        wrong = "belief.obstacles lists all that the filter's map holds"
-        yield file.mistake(("belief", "missing"), wrong, "delete either 'missing' or 'obstacles'")
-        return
-    count = file.count("obstacles")
-    names = [file.value("obstacles", index, "name") for index in range(count)]
+    for key in ("obstacles", "walls"):
+        if belief and belief.get("missing") and belief.get(key):
+            wrong = f"belief.{key} lists all that the filter's map holds"
+            yield file.mistake(("belief", "missing"), wrong, f"delete either 'missing' or '{key}'")
+            return
+    given = [name for _, _, name in named(file, ())]
+    names = [name for name in given if name is not None]
     known, told = set(names), 0
-    if None in known or ("obstacles",) in file.wrong:
+    if len(names) < len(given) or {("obstacles",), ("walls",)} & file.wrong:
         return
     for index in range(file.count("belief", "missing")):
         path = ("belief", "missing", index)
         name = file.value(*path)
         if name is not None and name not in known:
             near = nearest(name, names) if told < MOST_TOLD else ""
+            one, all_of_them = WALLED if file.count("walls") else UNWALLED
             right = (
                 f"did you mean {quoted(near)}?"
                 if near
-                else f"the obstacles are: {some(names) or 'none'}"
+                else f"the {all_of_them} are: {some(names) or 'none'}"
             )
-            yield file.mistake(path, f"no obstacle is named {quoted(name)}", right)
+            yield file.mistake(path, f"no {one} is named {quoted(name)}", right)
             told += 1
 
 
@@ -240,8 +293,7 @@ def angle_warnings(file: Sound) -> Iterator[Mistake]:
 
 def kidnap_warnings(file: Sound, floor_plan: Map) -> Iterator[str]:
     """Kidnaps to where no robot can stand."""
-    rings = [(obstacle.name, obstacle.points) for obstacle in floor_plan.obstacles]
-    plan = FloorPlan(floor_plan.boundary, rings)
+    plan = FloorPlan.of(floor_plan)
     for path, node in file.root.walk():
         if path[-1:] == ("kidnap",) and (target := file.value(*path)) is not None:
             for wrong in plan.in_the_way(target["x"], target["y"]):

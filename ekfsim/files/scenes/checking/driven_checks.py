@@ -189,10 +189,10 @@ def doubts(instrument: Instrument, world: World, logged: bool) -> Iterator[tuple
             f"the sensor '{name}' sees landmarks, and the world has none",
             "list them under 'landmarks'",
         )
-    if name in BEAMS and not any(world.map.rings()):
+    if name in BEAMS and not any(world.map.outlines()):
         yield (
             f"the sensor '{name}' sees walls, and the world has none",
-            "write a 'boundary' or 'obstacles'",
+            "write a 'boundary', 'obstacles' or 'walls'",
         )
     if isinstance(instrument, LOOKING) and np.abs(instrument.views).max() < math.radians(NARROW):
         yield (

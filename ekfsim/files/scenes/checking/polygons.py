@@ -2,13 +2,14 @@
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import shapely
 
 from ekfsim.geometry import Array
 from ekfsim.printable import quoted
+from ekfsim.world import Map
 
 Points = Sequence[Sequence[float]] | Array
 Fault = tuple[int | None, str, str]  # the point it is about, what is wrong, what would be right
@@ -16,9 +17,8 @@ Fault = tuple[int | None, str, str]  # the point it is about, what is wrong, wha
 
 def fault_of(points: Sequence[Sequence[float]]) -> Fault | None:
     """Why points are no simple polygon; None where they are one."""
-    for index, point in enumerate(points):
-        if index and point == points[index - 1]:
-            return index, f"the point {pair(point)} repeats the one before it", "delete one of them"
+    if fault := fault_of_line(points):
+        return fault
     if points[0] == points[-1]:
         return (
             len(points) - 1,
@@ -33,11 +33,16 @@ def fault_of(points: Sequence[Sequence[float]]) -> Fault | None:
         )
     polygon = shapely.Polygon(points)
     if not polygon.is_valid:
-        return (
-            None,
-            f"the outline crosses or touches itself{crossing(polygon)}",
-            "give the corners in order, around it",
-        )
+        reason = shapely.is_valid_reason(polygon)
+        return None, f"the outline crosses or touches itself{crossing(reason)}", cure_of(reason)
+    return None
+
+
+def fault_of_line(points: Sequence[Sequence[float]]) -> Fault | None:
+    """Why points are no line from one to the next; None where they are one."""
+    for index, point in enumerate(points):
+        if index and point == points[index - 1]:
+            return index, f"the point {pair(point)} repeats the one before it", "delete one of them"
     return None
 
 
@@ -56,9 +61,19 @@ def without_area(points: Sequence[Sequence[float]]) -> bool:
     return bool(shapely.MultiPoint(list(zip(x, y, strict=True))).convex_hull.area <= least)
 
 
-def crossing(polygon: shapely.Polygon) -> str:
-    """Where an outline crosses itself, as the end of a sentence."""
-    found = re.search(r"\[(\S+) (\S+)\]", shapely.is_valid_reason(polygon))
+def cure_of(reason: str) -> str:
+    """What would be right in place of an outline that is none, for what Shapely says of it: one
+    that only touches itself may be meant to hold a hole.
+    """
+    right = "give the corners in order, around it"
+    if reason.startswith("Ring Self-intersection"):
+        return f"{right}; the rim of a hole, or a spike, may stand by itself under 'walls'"
+    return right
+
+
+def crossing(reason: str) -> str:
+    """Where an outline crosses itself by what Shapely says of it, as the end of a sentence."""
+    found = re.search(r"\[(\S+) (\S+)\]", reason)
     return f" at {pair([float(found[1]), float(found[2])])}" if found else ""
 
 
@@ -77,13 +92,34 @@ MOST_IN_THE_WAY = 5  # obstacles that are told of one place
 
 
 class FloorPlan:
-    """Where a robot cannot stand: outside a boundary, inside an obstacle, on the wall of either."""
+    """Where a robot cannot stand: outside a boundary, inside an obstacle, on the wall of either, on
+    a wall that stands free.
+    """
 
-    def __init__(self, boundary: Points | None, obstacles: Iterable[tuple[str, Points]]) -> None:
+    def __init__(
+        self,
+        boundary: Points | None,
+        obstacles: Iterable[tuple[str, Points]],
+        lines: Iterable[tuple[str, Points]] = (),
+    ) -> None:
         self._boundary = None if boundary is None else shapely.Polygon(boundary)
-        self._named = list(obstacles)
+        areas, walls = list(obstacles), list(lines)
+        self._told = [f"inside the obstacle {quoted(name)} or on its wall" for name, _ in areas]
+        self._told += [f"on the wall {quoted(name)}" for name, _ in walls]
         self._tree = shapely.STRtree(
-            _shapes([np.asarray(points, dtype=float) for _, points in self._named])
+            [
+                *_shapes([np.asarray(points, dtype=float) for _, points in areas]),
+                *(shapely.LineString(points) for _, points in walls),
+            ]
+        )
+
+    @classmethod
+    def of(cls, floor: Map) -> Self:
+        """That of a map."""
+        return cls(
+            floor.boundary,
+            [(obstacle.name, obstacle.points) for obstacle in floor.obstacles],
+            [(line.name, line.points) for line in floor.lines],
         )
 
     def in_the_way(self, x: float, y: float) -> Iterator[str]:
@@ -94,7 +130,7 @@ class FloorPlan:
         for index in sorted(self._tree.query(point, predicate="intersects").tolist())[
             :MOST_IN_THE_WAY
         ]:
-            yield f"{where} inside the obstacle {quoted(self._named[index][0])} or on its wall"
+            yield f"{where} {self._told[index]}"
 
 
 def _shapes(outlines: list[Array]) -> list[Any]:

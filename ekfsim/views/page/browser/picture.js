@@ -85,10 +85,13 @@ class Picture {
     world.obstacles.forEach((each, i) => this.line("obstacle" + i, "obstacle", each.ring, true));
     if (meant) this.line("meant", "meant", meant, true);
     if (world.boundary.length) this.line("boundary", "boundary", world.boundary, true);
-    if (told)
+    world.walls.forEach((line, i) => this.line("wall" + i, "boundary", line));
+    if (told) {
       [told.boundary, ...told.obstacles.map(each => each.ring)].forEach((ring, i) =>
         this.line("told" + i, "told", ring, true),
       );
+      told.walls.forEach((line, i) => this.line("told-wall" + i, "told", line));
+    }
     this.landmarks = landmarks.flatMap(([x, y]) => [x, y]);
   }
 
@@ -301,6 +304,10 @@ class Picture {
         room = [-half, half].every(by => inside(ring, [at[0] + by, at[1]]));
       const place = this.pixel(at);
       if (room) write([place[0], place[1] + 4], name, { class: "name" });
+    }
+    for (const { name, at } of lesson.world.names) {
+      const [a, b] = this.pixel(at);
+      write([a + 6, b - 5], name, { class: "tick" });
     }
     this.words.appendChild(element("rect", { class: "frame", ...this.box }));
   }

@@ -193,8 +193,8 @@ def _ways(view: View) -> Iterator[Array]:
 def _standing(world: World) -> Iterator[Array]:
     """Everything that stands in either map : (n, 2) m each"""
     for floor in (world.map, world.told.map):
-        for _, ring in floor.rings():
-            yield ring
+        for _, line in floor.outlines():
+            yield line
     for landmark in world.landmarks:
         yield np.array([[landmark.x, landmark.y]])
     if world.expected_path is not None:

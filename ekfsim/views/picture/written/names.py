@@ -104,7 +104,8 @@ class Names:
         spots = [to_pixels((mark.x, mark.y)) for mark in self._world.landmarks]
         marks = [_box(spot, np.full(2, MARK)) for spot in spots]
         walls = [] if floor.boundary is None else [shapely.LinearRing(to_pixels(floor.boundary))]
-        taken = shapely.STRtree([*shapes, *marks, *walls])
+        lines = [shapely.LineString(to_pixels(line.points)) for line in floor.lines]
+        taken = shapely.STRtree([*shapes, *marks, *walls, *lines])
         room = None if floor.boundary is None else shapely.Polygon(to_pixels(floor.boundary))
 
         def beside(shape: BaseGeometry, size: Array) -> list[Array]:
@@ -120,6 +121,10 @@ class Names:
                 *beside(shapes[i], size),
             ]
             yield [Name(text, POINTS, place, size) for place in places]
+        for line in list(floor.named_lines())[:MOST]:
+            text = drawable(shortened(line.name, 20))
+            size, wall = self._size(text, POINTS), shapely.LineString(to_pixels(line.points))
+            yield [Name(text, POINTS, place, size) for place in beside(wall, size)]
         for mark, shape in zip(self._world.landmarks, marks, strict=True):
             if len(marks) <= MOST_NUMBERS:
                 text = str(mark.id)
