@@ -48,7 +48,9 @@ def starting_from(name: str, copy: Path) -> str:
         raise UsageError(f"{name!r} is no packaged commands file; see `ekfsim list`")
     path = packaged("commands")[name]
     text = as_written(path, str(path))
-    (world,) = WORLD.findall(text)
+    if not (found := WORLD.findall(text)):  # its log brings one
+        return text
+    (world,) = found
     with read_from(copy):
         taken = is_file(copy.parent / world)
     if taken:

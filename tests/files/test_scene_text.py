@@ -23,9 +23,7 @@ from ekfsim.twins import taking
 
 WRITTEN = "commands", "seed", "filter", "tuning", "gate", "guard", "description", "world_source"
 MADE = [
-    name
-    for name in packaged("commands")
-    if not name.endswith("_log") and load_scene(name).commanded
+    name for name in packaged("commands") if not name.endswith("log") and load_scene(name).commanded
 ]
 
 

@@ -8,8 +8,9 @@ from ekfsim.files.keys.fields import Name, Strict, SystemName
 
 TimeUnit = Literal["s", "ms", "us", "ns"]
 AngleUnit = Literal["radians", "degrees"]
-LogFormat = Literal["pylon", "gnss", "mower", "mrclam", "ranges", "pioneer", "classroom"]
-SYSTEM_OF: dict[str, SystemName] = {  # the system that each format of a log records
+LogFormat = Literal["pylon", "gnss", "mower", "mrclam", "ranges", "pioneer", "classroom", "log"]
+ANY: LogFormat = "log"  # of any robot that is driven
+SYSTEM_OF: dict[str, SystemName] = {  # the system that each other format of a log records
     "pylon": "pylon",
     "gnss": "gnss",
     "mower": "mower",
@@ -18,7 +19,14 @@ SYSTEM_OF: dict[str, SystemName] = {  # the system that each format of a log rec
     "pioneer": "pioneer",
     "classroom": "classroom",
 }
-WITH_LANDMARKS = ("mower", "mrclam", "ranges")  # formats that tell what stands where
+WITH_LANDMARKS = ("mower", "mrclam", "ranges", ANY)  # formats that tell what stands where
+
+
+def misfit(format: LogFormat, system: str) -> str | None:
+    """The system of the world that a log of this format belongs to; None where it fits."""
+    if format == ANY:
+        return None if system != "classroom" else "landmarks"
+    return None if SYSTEM_OF[format] == system else SYSTEM_OF[format]
 
 
 class RecordingKeys(Strict):

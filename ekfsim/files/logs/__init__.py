@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.recording import SYSTEM_OF, RecordingKeys
+from ekfsim.files.keys.recording import SYSTEM_OF, RecordingKeys, misfit
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.formats.classroom import read_classroom
 from ekfsim.files.logs.formats.gnss import read_gnss
@@ -13,6 +13,7 @@ from ekfsim.files.logs.formats.mrclam import read_mrclam
 from ekfsim.files.logs.formats.pioneer import read_pioneer
 from ekfsim.files.logs.formats.pylon import read_pylon
 from ekfsim.files.logs.formats.ranges import read_ranges
+from ekfsim.files.logs.named.log import read_named
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.written import WRITERS, write_log
 from ekfsim.systems.document import DocumentReading
@@ -29,6 +30,7 @@ FORMATS: dict[str, Reader] = {
     "ranges": read_ranges,
     "pioneer": read_pioneer,
     "classroom": read_classroom,
+    "log": read_named,
 }
 
 
@@ -45,8 +47,8 @@ def read_log(
     a mistake, too. Raises UsageError where a file is missing or the world is another system's,
     InputError with what is wrong in a file.
     """
-    format, system = recording.format, SYSTEM_OF[recording.format]
-    if world.system != system:
+    format = recording.format
+    if (system := misfit(format, world.system)) is not None:
         wrong = f"a log of the format {format} belongs to a world with system: {system}"
         raise UsageError(f"{path}: {wrong}; {world.name!r} has system: {world.system}")
     found = [] if warnings is None else warnings

@@ -172,14 +172,18 @@ def scene_in(
     sound, keys = file.sound, file.keys
     if sound is None:  # nothing can be read in it, not even its world
         return Loaded(mistakes=file.mistakes)
+    told, along = list[str](), None
     if world is None and sound.root.at(("world",)) is None:
-        world = world_of_log(sound, path, log)
+        along = world_of_log(sound, path, log, told)
     logged = sound.value("recording", "format") in WITH_LANDMARKS
     missing, found = list[Mistake](), Loaded[World]()
     if isinstance(world, World):
         source, found = called(world), overruled(world, settings, logged)
     elif world is not None:
         source, found = source_name(world), read_world(world, None, logged, settings)
+    elif along is not None:
+        source = along.shown if isinstance(along, Given) else source_name(along)
+        found = read_world(along, None, logged, settings)
     else:
         beside = world_beside(path, sound.value("world") or "")
         source, missing = source_name(beside), list(missing_world(sound, beside))
@@ -192,7 +196,7 @@ def scene_in(
         misfits += check_fit(sound, keys, found.value)
         misfits += check_filter_settings(sound, keys, found.value)
     own = sorted([*missing, *file.mistakes, *misfits], key=in_order_of_place)
-    mistakes, warnings = [*own, *found.mistakes], [*file.warnings, *kidnaps, *found.warnings]
+    mistakes, warnings = [*own, *found.mistakes], [*file.warnings, *told, *kidnaps, *found.warnings]
     if mistakes or found.value is None or not isinstance(keys, CommandsKeys):
         return Loaded(None, mistakes, warnings)
     scene = scene_of(keys, found.value, source, source_name(path))

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ekfsim.errors import InputError, UsageError
-from ekfsim.files.keys.recording import LogFormat, RecordingKeys
+from ekfsim.files.given.given import Given
+from ekfsim.files.keys.recording import ANY, LogFormat, RecordingKeys
 from ekfsim.files.packaged import source_name
 from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.scenes.one_file import File, Loaded
@@ -70,12 +71,25 @@ def read_into(scene: Scene, recording: RecordingKeys, source: str, warnings: lis
     return replace(scene, commands=(), world=world, log=found.log, log_source=source_name(source))
 
 
-def world_of_log(sound: Sound, path: Path, log: str | Path | None) -> Path | None:
-    """The world that a log brings, None where it brings none, or no log is named."""
-    named = sound.value("recording", "path")
-    if sound.value("recording", "format") != CLASSROOM or (log is None and named is None):
+def world_of_log(
+    sound: Sound, path: Path, log: str | Path | None, warnings: list[str]
+) -> Path | Given | None:
+    """The world that a log brings, or that is made for it, as `warnings` tell; None where there is
+    neither, or no log is named.
+    """
+    format, named = sound.value("recording", "format"), sound.value("recording", "path")
+    if format == ANY and log is None and named is None:
+        from ekfsim.files.logs.named.made_world import any_world
+
+        return any_world()
+    if format not in (CLASSROOM, ANY) or (log is None and named is None):
         return None
-    return brought(Path(os.path.normpath(log if log is not None else path.parent / named)))
+    place = Path(os.path.normpath(log if log is not None else path.parent / named))
+    if format == CLASSROOM:
+        return brought(place)
+    from ekfsim.files.logs.named.made_world import world_brought
+
+    return world_brought(place, warnings)
 
 
 def brought(log: Path) -> Path:

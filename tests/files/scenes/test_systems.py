@@ -159,7 +159,7 @@ def test_every_key_has_its_part_and_every_part_its_key():
         *(name for way in DRIVES.values() for name in fields_of(way)),
     }
     assert set(get_args(drive_file.PathKeys.model_fields["path"].annotation)) == set(DRIVES)
-    assert set(get_args(LogFormat)) == set(SYSTEM_OF)
+    assert set(get_args(LogFormat)) == {*SYSTEM_OF, "log"}
     assert options.READINGS == READINGS
 
 

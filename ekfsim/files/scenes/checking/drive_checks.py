@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from ekfsim.errors import Mistake
 from ekfsim.files.keys.commands import WAYS, CommandsKeys
 from ekfsim.files.keys.fields import aliases
-from ekfsim.files.keys.recording import SYSTEM_OF
+from ekfsim.files.keys.recording import misfit
 from ekfsim.files.scenes.building import drive_of
 from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.yaml.telling import meant
@@ -83,7 +83,7 @@ def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake
             )
         elif file.value("drive") is not None:
             yield from check_length(file, drive_of(keys.drive), world.robot.rate)
-    elif keys.recording is not None and system != (wanted := SYSTEM_OF[keys.recording.format]):
+    elif keys.recording is not None and (wanted := misfit(keys.recording.format, system)):
         wrong = (
             f"a '{keys.recording.format}' log is of the system '{wanted}', the world of the "
             f"system '{system}'"
