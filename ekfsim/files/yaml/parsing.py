@@ -10,13 +10,14 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
-from typing import Any
+from typing import Any, NoReturn
 
 import yaml
 
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.source import character, unprintable
 from ekfsim.files.yaml.marked import NOTHING, Mark, Node, field_of, scalar
+from ekfsim.files.yaml.numbers import Cut
 from ekfsim.files.yaml.syntax import syntax_mistake
 from ekfsim.printable import quoted
 
@@ -54,6 +55,9 @@ def _parsed(text: str, file: str) -> tuple[Node, tuple[Mistake, ...]]:
     """The same, remembered: a study reads its files for each of its cells.
     Nobody changes a tree.
     """
+    with without_collection():
+        if (root := quickly(text, file)) is not None:
+            return root, ()
     tree = Tree(file)
     try:
         with without_collection():
@@ -76,6 +80,29 @@ def _parsed(text: str, file: str) -> tuple[Node, tuple[Mistake, ...]]:
     return tree.root, tuple(tree.mistakes)
 
 
+def quickly(text: str, file: str) -> Node | None:
+    """The tree of a long text whose lists of numbers are read in one go each; None of one that is
+    not long, or in which anything is wrong.
+    """
+    cut = Cut(text)
+    if not cut.places:
+        return None
+    tree = Tree(file, cut)
+    try:
+        tree.grow(cut.text, LOADER)
+    except (yaml.YAMLError, InputError):
+        return None
+    return None if tree.mistakes else tree.root
+
+
+def grown(text: str, file: str) -> Node:
+    """The tree of a text in which nothing is wrong."""
+    tree = Tree(file)
+    tree.grow(text, LOADER)
+    assert tree.root is not None
+    return tree.root
+
+
 @contextmanager
 def without_collection() -> Iterator[None]:
     """No search for cycles while a tree grows, which has none:
@@ -93,8 +120,9 @@ def without_collection() -> Iterator[None]:
 class Tree:
     """A tree that grows with the events of a YAML text; nothing here recurses."""
 
-    def __init__(self, file: str) -> None:
+    def __init__(self, file: str, cut: Cut | None = None) -> None:
         self.file = file
+        self.cut = cut  # what was cut out of the text
         self.root: Node | None = None
         self.mistakes: list[Mistake] = []
         self.open: list[Open] = []
@@ -139,6 +167,9 @@ class Tree:
         what is rare is seen in a word before it is looked into.
         """
         if isinstance(event, yaml.ScalarEvent):
+            if self.cut is not None and self.cut.sign in event.value:
+                self.put_back(event)
+                return
             text, quoted = event.value, not event.implicit[0]
             if self.came_back:
                 text = text.translate(self.came_back)
@@ -163,6 +194,19 @@ class Tree:
             self.attach(done.node)
         elif isinstance(event, yaml.AliasEvent):
             self.attach(self.alias(event))
+
+    def put_back(self, event: yaml.ScalarEvent) -> None:
+        """Grow by a list that was cut out of the text.
+        Refuses what is none, so that the text is read as it stands.
+        """
+        assert self.cut is not None
+        node = self.cut.numbers(event.value, mark_of(event), lambda text: grown(text, self.file))
+        if node is None or event.tag is not None or not event.implicit[0]:
+            self.give_up(mark_of(event), "no list of numbers", "")
+        self.check_levels(node)
+        if event.anchor is not None:
+            self.anchors[event.anchor] = node
+        self.attach(node)
 
     def attach(self, node: Node) -> None:
         """Put a finished value where it belongs: at the top, into a list, or into a mapping as a
@@ -263,7 +307,7 @@ class Tree:
                 path.append(above.key[0])
         self.mistakes.append(Mistake(Place(self.file, *mark), field_of(path), wrong, right))
 
-    def give_up(self, mark: Mark, wrong: str, right: str) -> None:
+    def give_up(self, mark: Mark, wrong: str, right: str) -> NoReturn:
         """Raises InputError with every mistake so far."""
         raise InputError([*self.mistakes, Mistake(Place(self.file, *mark), "", wrong, right)])
 
