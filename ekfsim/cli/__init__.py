@@ -16,6 +16,7 @@ MODULES = {
     "runs": ("play", "render", "plot", "run", "record"),
     "driving": ("drive",),
     "files": ("check", "schema", "list_packaged", "show", "new", "figures"),
+    "maps": ("world",),
     "studies": ("study", "compare"),
     "gallery": ("gallery",),
     "comparing": ("diff",),

@@ -30,6 +30,7 @@ def check(files: tuple[str, ...]) -> None:
     """Validate world and command FILES, and filters of your own: every mistake with its place,
     or `ok`.
     """
+    from ekfsim.files.maps.reading import plan_in
     from ekfsim.files.packaged import packaged, resolve
     from ekfsim.files.scenes.check_study import check as mistakes_in
     from ekfsim.filters.place import is_place
@@ -39,6 +40,10 @@ def check(files: tuple[str, ...]) -> None:
     for file in files:
         if is_place(file):
             status = max(status, _check_filter(file))
+            continue
+        if (plan := plan_in(Path(file), file)) is not None:
+            say(plan)
+            status = UsageError.status
             continue
         try:
             found = mistakes_in(

@@ -1,0 +1,133 @@
+"""The cells of a map → what stands in the room that a robot is in."""
+
+import math
+
+import numpy as np
+import shapely
+from scipy import ndimage
+
+from ekfsim.errors import UsageError
+from ekfsim.files.maps.pixels.cells import Reading
+from ekfsim.files.maps.pixels.image import Grey
+from ekfsim.files.maps.pixels.straight import corners
+from ekfsim.files.maps.pixels.tracing import outlines, without_corners
+from ekfsim.files.maps.plan import Asked, Outline, Plan, Scan, Start
+from ekfsim.geometry import Array, Booleans
+
+NOT_SEEN = 205 / 255  # how bright map savers draw what nobody has seen
+
+
+def plan_of(
+    name: str,
+    grey: Grey,
+    reading: Reading,
+    resolution: float,
+    origin: Start,
+    asked: Asked,
+    told: list[str],
+    shown: str,
+) -> Plan:
+    """The plan of a picture. resolution : m, a cell's side; origin : of its lower left corner
+
+    Where unknown cells are walls, it is the room that the start lies in, or else the largest.
+    """
+    occupied, free = (cells[::-1] for cells in reading.cells(grey))  # row 0 at the bottom
+    told += _grey_that_is_free(grey, free[::-1], reading)
+    lying = _Lying(resolution, origin)
+    if asked.unknown == "free":
+        free = without_corners(~occupied)
+        return Plan(
+            name, None, _things(outlines(~free), lying), told=tuple(told), scan=lying.scan(grey)
+        )
+    free = without_corners(free)
+    inside = _room(free, lying, asked, told, shown)
+    room, *holes = sorted(outlines(inside), key=_area, reverse=True)
+    things = _things([hole[::-1] for hole in holes], lying)
+    return Plan(name, lying.placed(corners(room)), things, told=tuple(told), scan=lying.scan(grey))
+
+
+class _Lying:
+    """How the cells lie in the world."""
+
+    def __init__(self, resolution: float, origin: Start) -> None:
+        self.resolution, self.origin = resolution, origin
+        yaw = math.radians(origin[2])
+        self.turn = np.array([[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]])
+
+    def placed(self, points: Array) -> Array:
+        """Cells (…, 2), counted from the lower left corner, → m."""
+        turned = np.matvec(self.turn, self.resolution * points)
+        return np.asarray(np.array(self.origin[:2]) + turned)
+
+    def cell(self, place: Start) -> tuple[int, int]:
+        """The row from the bottom and the column in which a place lies."""
+        away = np.array(place[:2]) - np.array(self.origin[:2])
+        column, row = np.floor(np.matvec(self.turn.T, away) / self.resolution).tolist()
+        return int(row), int(column)
+
+    def scan(self, grey: Grey) -> Scan:
+        """The picture, as it is drawn below the walls."""
+        return Scan(grey.bright, self.resolution, self.origin)
+
+
+def _room(free: Booleans, lying: _Lying, asked: Asked, told: list[str], shown: str) -> Booleans:
+    """The cells of the room that is wanted. Raises UsageError where there is none."""
+    rooms, number = ndimage.label(free)
+    if not number:
+        raise UsageError(f"{shown}: no cell of this map is free")
+    sizes = np.bincount(rooms.ravel())[1:]
+    wanted = int(np.argmax(sizes)) + 1
+    if asked.start is not None:
+        row, column = lying.cell(asked.start)
+        inside = 0 <= row < free.shape[0] and 0 <= column < free.shape[1]
+        if not inside or not (wanted := int(rooms[row, column])):
+            x, y, _ = asked.start
+            raise UsageError(f"--start: ({x:g}, {y:g}) is not free in {shown}")
+    if others := int(sizes.sum() - sizes[wanted - 1]):
+        area = others * lying.resolution**2
+        told.append(
+            f"{number - 1} other free {'place' if number == 2 else 'places'}, {area:.3g} m² "
+            "together, cannot be reached from this room, and are left out; --start in one of them "
+            "takes that"
+        )
+    return np.asarray(rooms == wanted)
+
+
+def _things(rings: list[Array], lying: _Lying) -> tuple[Outline, ...]:
+    """What takes up room: outlines, counter-clockwise, with the holes in them, clockwise."""
+    shapes = [shapely.Polygon(ring) for ring in rings]
+    solid = [k for k, ring in enumerate(rings) if _area(ring) > 0]
+    tree = shapely.STRtree([shapes[k] for k in solid])
+    holes: dict[int, list[Array]] = {k: [] for k in solid}
+    for k, ring in enumerate(rings):
+        if _area(ring) < 0:
+            around = [solid[n] for n in tree.query(shapes[k], predicate="covered_by").tolist()]
+            holes[min(around, key=lambda n: shapes[n].area)].append(corners(ring))
+    return tuple(
+        Outline(
+            f"thing {number}",
+            lying.placed(corners(rings[k])),
+            tuple(lying.placed(hole) for hole in holes[k]),
+        )
+        for number, k in enumerate(solid, 1)
+    )
+
+
+def _area(ring: Array) -> float:
+    """The area within an outline, negative where that runs clockwise."""
+    (x, y), (u, v) = ring.T, np.roll(ring, -1, axis=0).T
+    return float((x * v - u * y).sum() / 2)
+
+
+def _grey_that_is_free(grey: Grey, free: Booleans, reading: Reading) -> list[str]:
+    """What is to be said where pixels are free that map savers draw so for unknown."""
+    if reading.mode == "raw" or reading.negate:
+        return []
+    pixels = int(np.count_nonzero(free & (np.abs(grey.bright - NOT_SEEN) < 1e-9)))
+    if not pixels:
+        return []
+    return [
+        f"{pixels} {'pixel' if pixels == 1 else 'pixels'} of grey 205, by which map savers mean "
+        f"unknown, are free by free_thresh {reading.free:g}; write free_thresh: 0.196 in the map "
+        "where they are not"
+    ]
