@@ -281,8 +281,8 @@ def test_two_robots_in_a_folder_are_not_guessed_between(place):
     ended = ekfsim("run", "mrclam_log.yaml")
     assert (ended.status, ended.out) == (2, "")
     assert (
-        "mrclam_log.yaml:2:35: recording.path: mrclam-log: several files 'Robot*_Odometry.dat' in "
-        "it" in ended.err
+        "mrclam_log.yaml:2:35: recording.path: mrclam-log: the odometry of 2 robots is in it; name "
+        "one of " in ended.err
     )
 
 

@@ -8,6 +8,9 @@ from ekfsim.files.keys.fields import Name, Strict, SystemName
 
 TimeUnit = Literal["s", "ms", "us", "ns"]
 AngleUnit = Literal["radians", "degrees"]
+Targets = Literal["barcodes", "subjects"]
+TurnTruth = Literal["auto", "never", "always"]
+SameTime = Literal["share", "add", "first", "last"]
 LogFormat = Literal["pylon", "gnss", "mower", "mrclam", "ranges", "pioneer", "classroom", "log"]
 ANY: LogFormat = "log"  # of any robot that is driven
 SYSTEM_OF: dict[str, SystemName] = {  # the system that each other format of a log records
@@ -59,4 +62,27 @@ class RecordingKeys(Strict):
         description="What bearings and headings are in: radians or degrees. Where absent, as the "
         "format has them.",
         examples=["degrees"],
+    )
+    targets: Targets | None = Field(
+        None,
+        description="What the measurements of mrclam name: barcodes, as they are distributed, or "
+        "subjects, the numbers of the landmarks themselves. Where absent, found by what the "
+        "numbers can be.",
+        examples=["subjects"],
+    )
+    turn_truth: TurnTruth = Field(
+        "auto",
+        alias="turnTruth",
+        description="Whether half a turn is added to the true headings of ranges: auto where they "
+        "point against the first metres of travel as the odometry counts them, never or always.",
+        examples=["never"],
+    )
+    same_time: SameTime | None = Field(
+        None,
+        alias="sameTime",
+        description="What rows of one time and different numbers mean for the odometry of mrclam, "
+        "ranges, gnss and pioneer: they share the time evenly, are to be added up, or the first or "
+        "the last of them holds. Where absent, added up where one says 0 of what the other tells, "
+        "else shared.",
+        examples=["share"],
     )

@@ -26,8 +26,8 @@ from ekfsim.files.scenes.checking.filter_checks import (
 from ekfsim.files.scenes.checking.system_checks import system_warnings
 from ekfsim.files.scenes.logged import CLASSROOM, brought, with_log, world_of_log
 from ekfsim.files.scenes.one_file import File, Loaded, in_order_of_place, read
-from ekfsim.files.scenes.overruling import idle_on_log, of_log, refusal
-from ekfsim.files.scenes.settings import Setting, kind_of
+from ekfsim.files.scenes.overruling import idle_on_log, is_about, of_log, refusal
+from ekfsim.files.scenes.settings import OF_LOGS, Setting, kind_of
 from ekfsim.files.source import bytes_of
 from ekfsim.files.yaml.telling import nearest
 from ekfsim.printable import quoted
@@ -118,6 +118,11 @@ def read_scene(
     or where the settings make a mistake of what was none.
     """
     loaded = _read_scene(path, world, log, reading)
+    of_recording = tuple(one for one in settings if one.key.startswith(f"{OF_LOGS}."))
+    if of_recording and (loaded.mistakes or loaded.refusal):  # a log that is read as they say
+        loaded = _read_scene(path, world, log, reading, of_recording)
+        if any(is_about(mistake, of_recording) for mistake in loaded.mistakes):
+            raise refusal(loaded.mistakes, of_recording)
     if not settings or loaded.mistakes or loaded.refusal:
         return loaded
     on_log = loaded.value is not None and loaded.value.log is not None

@@ -154,6 +154,11 @@ def refusal(mistakes: Iterable[Mistake], settings: Sequence[Setting]) -> UsageEr
     return InputError(list(placed)) if len(placed) == len(lines) else UsageError(*lines)
 
 
+def is_about(mistake: Mistake, settings: Sequence[Setting]) -> bool:
+    """Whether a mistake is of a key that one of the settings sets."""
+    return any(_about(mistake.field, one) for one in settings)
+
+
 def remark(warning: Mistake, settings: Sequence[Setting]) -> str:
     """How a warning is told: at its place in the file, or by the setting that it is about."""
     told = next((one.told for one in settings if _about(warning.field, one)), None)

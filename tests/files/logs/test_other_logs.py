@@ -177,22 +177,9 @@ def test_what_the_worlds_instrument_sees_of_mrclam(tmp_path):
         read("mrclam", folder, world("mrclam", instruments=(Ultrasonic(),)))
 
 
-def test_rows_of_mrclam_that_share_a_time_are_told(tmp_path):
-    odometry = "100.1 9 9\n100.1 8 8\n100.1 1 0\n100.2 0.5 0.2\n100.3 7 7\n100.3 0 0\n"
-    found = read("mrclam", lay(tmp_path / "log", **{**MRCLAM, "Robot3_Odometry.dat": odometry}))
-    same = (
-        "the time 100.1 is that of the row above, too, and so do 2 more: the last row of one "
-        "time holds"
-    )
-    assert told(found)[0] == f"/Robot3_Odometry.dat:2: {same}"
-    np.testing.assert_allclose([e.given.u[:2] for e in controls(found)][-1], [0.5, 0.2])
-
-
 @pytest.mark.parametrize(
     ("file", "text", "wrong"),
     [
-        ("Robot4_Odometry.dat", "1 0 0\n", "several files 'Robot*_Odometry.dat' in it: "
-                                           "Robot3_Odometry.dat, Robot4"),
         ("Barcodes.dat", "1 5\n3 14\n7 63\n8 63\n",
          "Barcodes.dat:4:1: the subject 7 has the barcode 63 already"),
         ("Barcodes.dat", "1 5\n3 14.5\n7 63\n",
@@ -232,14 +219,6 @@ def test_a_range_of_nothing_is_left_out_and_told(tmp_path, number):
     assert near.warnings == [
         f"{tmp_path}/plaza/ranges.csv:3: range: {number} is no range: this row is left out"
     ]
-
-
-def test_mrclam_wants_the_files_of_one_robot(tmp_path):
-    files = {name.replace("3_M", "2_M"): text for name, text in MRCLAM.items()}
-    with pytest.raises(
-        UsageError, match=r"no file 'Robot3_Measurement\.dat' in it; it would hold the measurements"
-    ):
-        read("mrclam", lay(tmp_path / "log", **files))
 
 
 # ranges
@@ -284,7 +263,9 @@ def test_the_true_heading_points_where_the_robot_goes(tmp_path, backwards):
     against = (
         "the true headings point against the first metres of travel as the odometry counts them"
     )
-    assert told(found) == [f": {against}: half a turn is added"] * bool(backwards)
+    assert told(found) == [
+        f": {against}: half a turn is added (otherwise: --set recording.turnTruth=never)"
+    ] * bool(backwards)
 
 
 @pytest.mark.parametrize("backwards", [0.0, math.pi])

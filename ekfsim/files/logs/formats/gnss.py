@@ -7,7 +7,7 @@ import numpy as np
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import find, find_any, folder_of
 from ekfsim.files.logs.formats.targets import only
-from ekfsim.files.logs.ordering import in_order, tell_gaps, tell_repeated
+from ekfsim.files.logs.ordering import apart, in_order, tell_gaps, tell_repeated
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.table import Rows, named_table, some
 from ekfsim.files.logs.timeline import Motions, Sample, Timeline
@@ -29,27 +29,25 @@ def read_gnss(asked: Asked) -> Recorded:
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    path, world, reading, _, warnings = asked
+    path, world, reading, recording, warnings = asked
     folder = folder_of(path, HOLDS)
     wheels_file = find(folder, "the wheel speeds", "wheelspeeds*.csv")
     fixes_file = find(folder, "the satellite fixes", "gnss*.csv")
     truth = read_truth(folder, warnings)
-    wheels = some(
-        in_order(named_table(wheels_file, (TIME, ("vl",), ("vr",)), warnings), warnings),
-        "wheel speeds",
-    )
-    tell_repeated(wheels, warnings)
+    wheels = some(named_table(wheels_file, (TIME, ("vl",), ("vr",)), warnings), "wheel speeds")
+    if reading == "coded":
+        wheels = in_order(wheels, warnings)
+        tell_repeated(wheels, warnings)
+    else:
+        wheels = apart(wheels, warnings, recording.same_time)
     tell_gaps(wheels, warnings)
     fixes = in_order(named_table(fixes_file, (TIME, ("x",), ("y",)), warnings), warnings)
     tell_gaps(fixes, warnings)
-    dt = np.diff(wheels.t)
-    # of two rows of one time the second tells nothing, but moves the recipe
-    moved = (dt > 0) | (reading == "coded")
-    u = np.column_stack([wheels.values[1:, 1:], dt])[moved]
+    u = np.column_stack([wheels.values[1:, 1:], np.diff(wheels.t)])
     motions = Motions(
         world.believed_robot.motion(reading),
-        wheels.t[:-1][moved],
-        wheels.t[1:][moved],
+        wheels.t[:-1],
+        wheels.t[1:],
         u,
         np.array([False, False, True]),
     )

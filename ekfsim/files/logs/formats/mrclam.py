@@ -2,15 +2,17 @@
 commanded speeds, and landmarks seen by a camera.
 """
 
-from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from ekfsim.errors import InputError, Mistake, Place
+from ekfsim.errors import InputError, Mistake, Place, UsageError
+from ekfsim.files.keys.recording import Targets
 from ekfsim.files.logs.asked import Asked
-from ekfsim.files.logs.folder import find, find_any, folder_of
+from ekfsim.files.logs.formats.mrclam_files import BARCODES as BARCODES_FILE
+from ekfsim.files.logs.formats.mrclam_files import RobotFiles, files_of
 from ekfsim.files.logs.formats.targets import landmarks_of, of_landmarks
-from ekfsim.files.logs.ordering import in_order, tell_gaps, tell_repeated
+from ekfsim.files.logs.ordering import apart, in_order, tell_gaps
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.table import Rows, Wanted, bare_table, some
 from ekfsim.files.logs.timeline import Motions, Sample, Timeline
@@ -22,8 +24,8 @@ from ekfsim.systems.instrument import Instrument, Landmark
 from ekfsim.systems.instruments import Bearings, RangeBearings, Ranges
 from ekfsim.world import World
 
-HOLDS = "Robot*_Odometry.dat, Robot*_Measurement.dat, Barcodes.dat and Landmark_Groundtruth.dat"
 ROBOTS = range(1, 6)  # the subjects that move
+ALL_BUT_ODD = 0.99  # of the numbers of the measurements
 ODOMETRY = Wanted(("t", "speed", "turn rate"), (0, 1, 2), range(3, 4))
 MEASUREMENT = Wanted(
     ("t", "barcode", "range", "bearing"), (0, 1, 2, 3), range(4, 5), ranges=frozenset({"range"})
@@ -33,34 +35,34 @@ BARCODES = Wanted(("subject", "barcode"), (0, 1), range(2, 3))
 LANDMARKS = Wanted(("subject", "x", "y"), (0, 1, 2), range(3, 6))
 
 
+class Names(NamedTuple):
+    """Which subject each number of the measurements means."""
+
+    subject_of: dict[int, int]
+    kind: str  # of those numbers, as messages call it
+
+
 def read_mrclam(asked: Asked) -> Recorded:
     """A row of the odometry holds until the next. Errors are counted at its instants.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    path, world, reading, _, warnings = asked
-    folder = folder_of(path, HOLDS)
-    odometry_file = find(folder, "the odometry", "Robot*_Odometry.dat")
-    robot = odometry_file.name.removesuffix("_Odometry.dat")
-    seen_file = find(folder, "the measurements", f"{robot}_Measurement.dat")
-    barcodes = bare_table(find(folder, "the barcodes", "Barcodes.dat"), BARCODES, warnings)
-    places = bare_table(
-        find(folder, "the landmarks", "Landmark_Groundtruth.dat"), LANDMARKS, warnings
-    )
-    landmarks = landmarks_of(places)
-    odometry = some(in_order(bare_table(odometry_file, ODOMETRY, warnings), warnings), "odometry")
-    tell_repeated(odometry, warnings, ": the last row of one time holds")
+    path, world, reading, recording, warnings = asked
+    files = files_of(path, recording.robot)
+    landmarks = landmarks_of(bare_table(files.landmarks, LANDMARKS, warnings))
+    odometry = some(bare_table(files.odometry, ODOMETRY, warnings), "odometry")
+    odometry = apart(odometry, warnings, recording.same_time, until_next=True)
     tell_gaps(odometry, warnings)
-    seen = in_order(bare_table(seen_file, MEASUREMENT, warnings), warnings)
-    truth = _truth(folder, robot, warnings)
-    samples = _samples(seen, _subjects(barcodes), landmarks, world, reading, warnings)
+    seen = in_order(bare_table(files.measurement, MEASUREMENT, warnings), warnings)
+    truth = _truth(files, warnings)
+    names = _names(seen, files, landmarks, recording.targets, warnings)
+    samples = _samples(seen, names, landmarks, world, reading, warnings)
     u = np.column_stack([odometry.values[:-1, 1:], np.diff(odometry.t)])
-    held = u[:, 2] > 0  # of several rows of one time the last
     motions = Motions(
         world.believed_robot.motion(reading),
-        odometry.t[:-1][held],
-        odometry.t[1:][held],
-        u[held],
+        odometry.t[:-1],
+        odometry.t[1:],
+        u,
         np.array([False, False, True]),
     )
     timeline = Timeline(
@@ -69,15 +71,57 @@ def read_mrclam(asked: Asked) -> Recorded:
     return timeline.recorded(world, reading, warnings)
 
 
-def _truth(folder: Path, robot: str, warnings: list[str]) -> Truth | None:
-    file = find_any(folder, "the true poses", f"{robot}_Groundtruth.dat")
-    if file is None:
+def _truth(files: RobotFiles, warnings: list[str]) -> Truth | None:
+    if files.truth is None:
+        name = files.odometry.name.replace("Odometry", "Groundtruth")
         warnings.append(
-            f"{folder}: no {robot}_Groundtruth.dat in it: the truth is unknown, and so are "
-            "the errors"
+            f"{files.odometry.parent}: no {name} in it: the truth is unknown, and so are the errors"
         )
         return None
-    return truth_of(bare_table(file, GROUNDTRUTH, warnings), warnings)
+    return truth_of(bare_table(files.truth, GROUNDTRUTH, warnings), warnings)
+
+
+def _names(
+    seen: Rows,
+    files: RobotFiles,
+    landmarks: tuple[Landmark, ...],
+    targets: Targets | None,
+    warnings: list[str],
+) -> Names:
+    """The subject that each number of the measurements means: by its barcode, or itself.
+
+    Raises UsageError where there are no barcodes, and the numbers are no subjects.
+    """
+    given = (
+        list[Rows]() if files.barcodes is None else [bare_table(files.barcodes, BARCODES, warnings)]
+    )
+    subject_of = _subjects(given[0]) if given else {}
+    subjects = {*ROBOTS, *subject_of.values(), *(mark.id for mark in landmarks)}
+    themselves = Names({subject: subject for subject in subjects}, "landmark")
+    numbers = seen.values[:, 1]
+    are_subjects = np.count_nonzero(np.isin(numbers, list(subjects)))
+    are_barcodes = np.count_nonzero(np.isin(numbers, list(subject_of)))
+    if targets is not None and (targets == "subjects" or given):
+        return themselves if targets == "subjects" else Names(subject_of, "barcode")
+    if not given:
+        if 2 * are_subjects < len(seen):
+            raise UsageError(
+                f"{files.measurement}: {len(seen) - are_subjects} of {len(seen)} numbers are no "
+                f"landmark's; if they are barcodes, put {BARCODES_FILE} beside this file"
+            )
+        warnings.append(
+            f"{files.measurement.parent}: no {BARCODES_FILE} in it: the numbers of the "
+            "measurements are taken for those of the landmarks"
+        )
+        return themselves
+    if 2 * are_barcodes < len(seen) and are_subjects >= ALL_BUT_ODD * len(seen):
+        warnings.append(
+            f"{files.measurement}: {len(seen) - are_barcodes} of {len(seen)} numbers are no "
+            "barcode, but all are subjects: read as those of the landmarks themselves "
+            "(otherwise: --set recording.targets=barcodes)"
+        )
+        return themselves
+    return Names(subject_of, "barcode")
 
 
 def _subjects(barcodes: Rows) -> dict[int, int]:
@@ -105,7 +149,7 @@ def _subjects(barcodes: Rows) -> dict[int, int]:
 
 def _samples(
     seen: Rows,
-    subject_of: dict[int, int],
+    names: Names,
     landmarks: tuple[Landmark, ...],
     world: World,
     reading: DocumentReading,
@@ -116,11 +160,11 @@ def _samples(
     known, samples = {mark.id for mark in landmarks}, list[Sample]()
     left_out: dict[str, list[int]] = {
         "of another robot": [],
-        "of no known barcode": [],
+        f"of no known {names.kind}": [],
         "of no known landmark": [],
     }
     for row, (t, barcode, r, φ) in enumerate(seen.values.tolist()):
-        subject = subject_of.get(int(barcode)) if barcode == int(barcode) else None
+        subject = names.subject_of.get(int(barcode)) if barcode == int(barcode) else None
         if subject in known:
             for instrument, targets in instruments:
                 target = targets[subject]
@@ -128,7 +172,7 @@ def _samples(
                     Sample(t, Reading(target.sensor, _reading(instrument, r, φ), target.name))
                 )
         elif subject is None:
-            left_out["of no known barcode"].append(row)
+            left_out[f"of no known {names.kind}"].append(row)
         else:
             left_out["of another robot" if subject in ROBOTS else "of no known landmark"].append(
                 row

@@ -11,7 +11,7 @@ from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import find, find_any, folder_of
 from ekfsim.files.logs.formats.gnss import TIME, read_truth
 from ekfsim.files.logs.formats.targets import by_name
-from ekfsim.files.logs.ordering import in_order, tell_gaps, tell_repeated
+from ekfsim.files.logs.ordering import apart, in_order, tell_gaps
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.table import Rows, named_table, some
 from ekfsim.files.logs.timeline import Motions, Sample, Timeline
@@ -40,14 +40,14 @@ def read_pioneer(asked: Asked) -> Recorded:
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    path, world, reading, _, warnings = asked
+    path, world, reading, recording, warnings = asked
     folder = folder_of(path, HOLDS)
     odometry_file = find(folder, "the odometry", "odometry*.csv")
     columns = TIME, ("left",), ("right",)
-    odometry = some(in_order(named_table(odometry_file, columns, warnings), warnings), "odometry")
+    odometry = some(named_table(odometry_file, columns, warnings), "odometry")
+    odometry = apart(odometry, warnings, recording.same_time)
     if np.any(odometry.values[0, 1:]):
         warnings.append(f"{odometry.at(0)}: the first row is the start: its ways count for nothing")
-    tell_repeated(odometry, warnings)
     tell_gaps(odometry, warnings)
     truth = read_truth(folder, warnings)
     samples = _samples(folder, world, reading, warnings)

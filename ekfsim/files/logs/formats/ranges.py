@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
+from ekfsim.files.keys.recording import TurnTruth
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import find, folder_of
 from ekfsim.files.logs.formats.gnss import TIME, read_truth
 from ekfsim.files.logs.formats.targets import landmarks_of, of_landmarks
-from ekfsim.files.logs.ordering import in_order, step_of, tell_gaps, tell_repeated
+from ekfsim.files.logs.ordering import apart, in_order, step_of, tell_gaps
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.table import Rows, named_table, some
 from ekfsim.files.logs.timeline import Motions, Sample, Timeline
@@ -33,7 +34,7 @@ def read_ranges(asked: Asked) -> Recorded:
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    path, world, reading, _, warnings = asked
+    path, world, reading, recording, warnings = asked
     folder = folder_of(path, HOLDS)
     odometry_file = find(folder, "the odometry", "odometry*.csv")
     ranges_file = find(folder, "the ranges", "ranges*.csv")
@@ -42,11 +43,11 @@ def read_ranges(asked: Asked) -> Recorded:
     )
     truth = read_truth(folder, warnings)
     columns = TIME, ("distance",), ("dheading",)
-    odometry = some(in_order(named_table(odometry_file, columns, warnings), warnings), "odometry")
-    tell_repeated(odometry, warnings)
+    odometry = some(named_table(odometry_file, columns, warnings), "odometry")
+    odometry = apart(odometry, warnings, recording.same_time)
     tell_gaps(odometry, warnings)
     if truth is not None:
-        truth = _ahead(truth, odometry, folder, warnings)
+        truth = _ahead(truth, odometry, recording.turn_truth, folder, warnings)
     measured = named_table(
         ranges_file, (TIME, ("node",), ("range",)), warnings, frozenset({"range"})
     )
@@ -76,9 +77,27 @@ def _start(odometry: Rows, truth: Truth | None) -> float:
     return start
 
 
-def _ahead(truth: Truth, odometry: Rows, folder: Path, warnings: list[str]) -> Truth:
+def _ahead(
+    truth: Truth, odometry: Rows, turn: TurnTruth, folder: Path, warnings: list[str]
+) -> Truth:
     """The truth with headings that point where the robot goes when its odometry counts up:
-    logs of this kind differ.
+    logs of this kind differ; or turned about as it was asked.
+    """
+    if turn == "never" or (turn == "auto" and not _points_back(truth, odometry)):
+        return truth
+    if turn == "auto":
+        told = "the true headings point against the first metres of travel as the odometry counts"
+        warnings.append(
+            f"{folder}: {told} them: half a turn is added "
+            "(otherwise: --set recording.turnTruth=never)"
+        )
+    poses = truth.poses.copy()
+    poses[:, 2] = np.unwrap(wrap(poses[:, 2] + math.pi))
+    return replace(truth, poses=poses)
+
+
+def _points_back(truth: Truth, odometry: Rows) -> bool:
+    """Whether the true headings point against where the robot goes as its odometry counts.
 
     The first metres decide: Σ d_odometry (d_truth · heading) < 0 is back.
     Driven in reverse, both factors are negative.
@@ -89,13 +108,7 @@ def _ahead(truth: Truth, odometry: Rows, folder: Path, warnings: list[str]) -> T
     along = d * (steps[:, 0] * np.cos(θ) + steps[:, 1] * np.sin(θ))
     known = np.isfinite(along)
     first = int(np.searchsorted(np.cumsum(np.abs(d[known])), FIRST_METRES)) + 1
-    if np.sum(along[known][:first]) >= 0:
-        return truth
-    told = "the true headings point against the first metres of travel as the odometry counts them"
-    warnings.append(f"{folder}: {told}: half a turn is added")
-    poses = truth.poses.copy()
-    poses[:, 2] = np.unwrap(wrap(poses[:, 2] + math.pi))
-    return replace(truth, poses=poses)
+    return bool(np.sum(along[known][:first]) < 0)
 
 
 def _samples(
