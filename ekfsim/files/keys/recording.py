@@ -81,7 +81,7 @@ class RecordingKeys(Strict):
         None,
         alias="sameTime",
         description="What rows of one time and different numbers mean for the odometry of mrclam, "
-        "ranges, gnss and pioneer: they share the time evenly, are to be added up, or the first or "
+        "ranges, gnss, pioneer and log: they share the time evenly, are added up, or the first or "
         "the last of them holds. Where absent, added up where one says 0 of what the other tells, "
         "else shared.",
         examples=["share"],

@@ -114,6 +114,35 @@ def test_strides_of_one_time_are_all_made(tmp_path):
     np.testing.assert_allclose(driven("ranges", folder), [2.75, 0.4])
 
 
+@pytest.mark.parametrize("same_time", [None, "share", "add"])
+def test_a_log_of_ones_own_loses_no_way(tmp_path, same_time):
+    folder = lay(
+        tmp_path / "log",
+        **{
+            "motion.csv": "t,distance,turn\n0,0,0\n1,2,0.1\n1,0,0.3\n2.2,1,0\n2.2,1.5,0\n",
+            "readings.csv": "t,target,range,bearing\n1.5,4,2,0\n",
+            "landmarks.csv": "id,x,y\n4,1,2\n",
+        },
+    )
+    keys = {} if same_time is None else {"sameTime": same_time}
+    found = read_log(
+        RecordingKeys(format="log", **keys), folder, world("ranges"), "corrected", []
+    ).log
+    us = [e.given.u for e in found.entries if isinstance(e.given, Control)]
+    np.testing.assert_allclose(np.sum(us, axis=0)[:2], [4.5, 0.4])
+
+
+def test_a_log_of_one_instant_goes_nowhere(tmp_path):
+    odometry = "100 1 0\n100 2 0\n100 1 1\n"
+    files = {
+        "Odometry.dat": odometry,
+        "Measurement.dat": "100 63 1 0\n",
+        "Barcodes.dat": "7 63\n",
+        "Landmark_Groundtruth.dat": "7 1 0 0 0\n",
+    }
+    np.testing.assert_allclose(driven("mrclam", lay(tmp_path / "log", **files)), [0, 0])
+
+
 # the logs at hand, their stamps made worse on purpose: what is right was known before
 
 

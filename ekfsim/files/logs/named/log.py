@@ -24,7 +24,7 @@ def read_named(asked: Asked) -> Recorded:
     motion = named(motion_file(folder), MOTION)
     landmarks = landmarks_in(folder, warnings)
     truth = truth_in(folder, warnings)
-    motions = motions_of(motion, world, reading, truth, warnings)
+    motions = motions_of(motion, asked, truth)
     fittings = fittings_of(world, reading, world.landmarks if landmarks is None else landmarks)
     samples = [
         sample

@@ -4,17 +4,16 @@ from typing import Literal
 
 import numpy as np
 
+from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.named.tables import Table
-from ekfsim.files.logs.ordering import in_order, step_of, tell_gaps, tell_repeated
+from ekfsim.files.logs.ordering import apart, step_of, tell_gaps
 from ekfsim.files.logs.table import Rows, some
 from ekfsim.files.logs.timeline import Motions
 from ekfsim.files.logs.truth import Truth
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.protocols import Motion
-from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.robot import Robot, Tick
-from ekfsim.world import World
 
 Form = Literal["speeds", "wheels", "way", "inertial", "pose"]
 COLUMNS: dict[Form, tuple[str, ...]] = {  # that tell a motion; the first that are there count
@@ -35,26 +34,26 @@ def form_of(table: Table) -> Form:
     raise table.lacks("as a motion's are", f"write {WANTED}")
 
 
-def motions_of(
-    table: Table, world: World, reading: DocumentReading, truth: Truth | None, warnings: list[str]
-) -> Motions:
+ADDABLE = ("speeds", "wheels", "way")  # 0 is standstill in each column
+
+
+def motions_of(table: Table, asked: Asked, truth: Truth | None) -> Motions:
     """The motion inputs, each over its time: v and omega hold until the next row, wheels, ways and
     accelerations are since the row before.
 
     Raises InputError with what is wrong in the table.
     """
+    _, world, reading, recording, warnings = asked
     form = form_of(table)
-    rows = some(
-        in_order(table.rows(("t", *COLUMNS[form]), warnings), warnings), "what the robot did"
-    )
-    tell_repeated(rows, warnings)
+    rows = some(table.rows(("t", *COLUMNS[form]), warnings), "what the robot did")
+    meant = recording.same_time or (None if form in ADDABLE else "share")
+    rows = apart(rows, warnings, meant, until_next=form == "speeds")
     tell_gaps(rows, warnings)
     begin, end, values = _spans(form, rows, truth)
     robot = world.believed_robot
     motion = robot.motion(reading)
     u = inputs_of(form, values, end - begin, robot, motion)
-    moved = end > begin
-    return Motions(motion, begin[moved], end[moved], u[moved], amounts_of(motion))
+    return Motions(motion, begin, end, u, amounts_of(motion))
 
 
 def amounts_of(motion: Motion) -> Booleans:
