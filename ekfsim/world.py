@@ -113,6 +113,10 @@ class Faults:
     odometry_angle_scale: float = 1.0
 
 
+Axes = tuple[bool, bool, bool]  # whether something holds of x, of y, of θ
+NOTHING_SAID: Axes = (False, False, False)
+
+
 @dataclass(frozen=True)
 class Told:
     """What the filter is told: its first belief, noise and map. The truth may differ in each."""
@@ -123,6 +127,10 @@ class Told:
     map: Map
     robot: Robot | None = None  # None: as it is
     instruments: tuple[Instrument, ...] | None = None  # None: as they are
+    # of which entries of its start the filter is told by itself, not by the world's own start
+    start_said: Axes = NOTHING_SAID
+    # of which of them somebody says how sure they are; None: of all where any sigma is more than 0
+    sigma_said: Axes | None = None
 
 
 @dataclass(frozen=True, repr=False)
@@ -257,11 +265,20 @@ class World:
         told = self.told
         if self.told_robot is None:
             return Gaussian(told.start, np.diag(told.sigma**2))
-        P = self.told_robot.first_covariance(reading).copy()
-        if np.any(told.sigma):
-            places = np.array(self.layout.places)
-            P[places[:, None], places] = np.diag(told.sigma**2)
-        return Gaussian(self.layout.state(told.start), P)
+        return Gaussian(self.layout.state(told.start), self.first_covariance(reading))
+
+    def first_covariance(self, reading: DocumentReading) -> Array:
+        """P₀ : (n, n) of a robot that is driven or was recorded: the document's own, but for the
+        entries of the pose of which somebody says how sure they are.
+        """
+        told, P = self.told, self.believed_robot.first_covariance(reading).copy()
+        said = told.sigma_said or (bool(told.sigma.any()),) * 3
+        for place, sigma in zip(
+            np.array(self.layout.places)[list(said)], told.sigma[list(said)], strict=True
+        ):
+            P[place, :] = P[:, place] = 0
+            P[place, place] = sigma**2
+        return P
 
     def targets(self, reading: DocumentReading) -> list[tuple[Instrument, Target]]:
         """Everything that the instruments may read, with the sensors as the filter is told."""

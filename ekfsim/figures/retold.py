@@ -28,5 +28,5 @@ def retold(scene: Scene, reading: DocumentReading) -> Scene:
                 return replace(entry, given=Reading(sensors[name], z, name))
         return entry
 
-    first = Gaussian(scene.log.first.mean, robot.first_covariance(reading))
+    first = Gaussian(scene.log.first.mean, world.first_covariance(reading))
     return replace(scene, reading=reading, log=Log(tuple(map(told, scene.log.entries)), first))

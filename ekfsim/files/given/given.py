@@ -8,10 +8,12 @@ from typing import Self
 
 from ekfsim.errors import Mistake
 from ekfsim.files.given.tree import tree_of
+from ekfsim.files.packaged import source_name
 from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.source import as_written, readable
 from ekfsim.files.yaml.marked import Node
 from ekfsim.files.yaml.parsing import parse
+from ekfsim.world import World
 
 TEXT, VALUES = "text", "dict"  # how messages name what has no file
 FIRST_KEY = re.compile(r"\s*(\{|[A-Za-z]\w*\s*:(\s|$))")  # which no name of a file begins with
@@ -65,3 +67,9 @@ def given_in(what: object) -> Given | None:
     if isinstance(what, str):
         return Given.text(what) if "\n" in what or FIRST_KEY.match(what) else None
     return Given.values(what) if isinstance(what, Mapping) else None
+
+
+def called(world: World) -> str:
+    """How outputs name a world that was handed over: by its file, else by its own name."""
+    given = world.given
+    return source_name(given.shown if isinstance(given, Given) and given.is_file else world.name)

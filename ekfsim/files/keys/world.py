@@ -67,7 +67,7 @@ class StartKeys(Pose):
         None,
         description="Standard deviations from which the true start of each run is drawn, x and y "
         "in m, theta in degrees. The first belief has the same, unless `belief` says otherwise. 0 "
-        "where nothing is said.",
+        "where nothing is said. On a log of the first belief alone.",
         examples=[SIGMA],
     )
 
@@ -165,17 +165,31 @@ class LandmarkKeys(Strict):
     y: Coordinate = Field(description="m")
 
 
+class BelievedStartKeys(Strict):
+    """Where the filter believes the robot to start; what is left out is as in `start`, and on a log
+    as the log tells it.
+    """
+
+    x: Coordinate | None = Field(None, description="m, to the east", examples=[1.2])
+    y: Coordinate | None = Field(None, description="m, to the north", examples=[1.0])
+    theta: Degrees | None = Field(
+        None,
+        description="Heading in degrees, counter-clockwise from +x: 90 looks north.",
+        examples=[80],
+    )
+
+
 class BeliefKeys(Strict):
     """What the filter is told, where that differs from the truth."""
 
-    start: Pose | None = Field(
+    start: BelievedStartKeys | None = Field(
         None, description="Where the filter believes the robot to start.", examples=[POSE]
     )
     sigma: SigmaKeys | None = Field(
         None,
         description="Standard deviations of the first belief, x and y in m, theta in degrees; "
-        "each left out is that of start.sigma, and 0 where nothing is said. Moves nothing in "
-        "the truth.",
+        "each left out is that of start.sigma, and where nothing is said 0 in the classroom, of a "
+        "robot that is driven or was recorded its document's. Moves nothing in the truth.",
         examples=[SIGMA],
     )
     noise: ToldNoiseKeys | None = Field(

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ekfsim.errors import UsageError
 from ekfsim.files.logs.recorded import Recorded
+from ekfsim.files.logs.start.belief import assumed, at_truth
+from ekfsim.files.logs.start.instant import first_known, refuse_apart, span, tell_unknown
 from ekfsim.files.logs.truth import Truth
-from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion
 from ekfsim.records import Control, Entry, Log, Reading
@@ -69,40 +69,33 @@ class Timeline:
 
     def recorded(self, world: World, reading: DocumentReading, warnings: list[str]) -> Recorded:
         """The log.
-        It starts at the truth's first instant where that comes later, and at the true pose.
+        It starts at the first instant at which the truth is known, where nobody told the start.
         """
-        start, motions = self.start, self.motions
-        if self.truth is not None and not self.truth.t[0] <= start <= self.truth.t[-1]:
-            if start > self.truth.t[-1] or not np.any(motions.end > self.truth.t[0]):
-                told = (
-                    f"the truth is of {_span(self.truth.t)}, the motion of "
-                    f"{_span([start, motions.end[-1]])}"
-                )
-                raise UsageError(
-                    f"{self.name}: the truth and the motion have no instant in common: {told}"
-                )
-            start = float(self.truth.t[0])
-            told = f"{self.name}: starts at {start:.12g} s, where the truth begins"
-            warnings.append(f"{told}: what was before is left out")
-            motions = motions.since(start)
-        if (
-            self.truth is not None
-            and (after := float(motions.end[-1] - self.truth.t[-1])) > self.truth.longest
-        ):
-            told = f"the truth ends {after:.3g} s before the motion: errors are counted until then"
-            warnings.append(f"{self.name}: {told}")
+        truth, start, ends = self.truth, self.start, self.motions.end
+        if truth is not None:
+            refuse_apart(truth, start, ends, self.name)
+            if not all(world.told.start_said):
+                known = first_known(truth, start, ends, self.name, warnings)
+                truth, start = (None, start) if known is None else (truth, known)
+        motions = self.motions.since(start)
+        if truth is not None:
+            tell_unknown(truth, start, ends, self.name, warnings)
         happened = [
             (start, None, True),
             *_merged(motions, self._within(start, motions, warnings), self.between),
         ]
-        truths = _truths(self.truth, np.array([t for t, _, _ in happened]))
+        truths = _truths(truth, np.array([t for t, _, _ in happened]))
         entries = tuple(
             Entry(index, given, truth, t=t, judged=judged)
             for index, ((t, given, judged), truth) in enumerate(zip(happened, truths, strict=True))
         )
-        return Recorded(
-            Log(entries, beginning(world, reading, truths[0])), self.landmarks, warnings
+        pose = truths[0]
+        first = (
+            assumed(world, reading, self.name, warnings)
+            if pose is None
+            else at_truth(world, reading, pose)
         )
+        return Recorded(Log(entries, first), self.landmarks, warnings)
 
     def _within(self, start: float, motions: Motions, warnings: list[str]) -> list[Sample]:
         """The readings that the motions reach, by time."""
@@ -115,18 +108,13 @@ class Timeline:
         ]
         if missed := len(self.samples) - len(kept):
             readings = "1 reading lies" if missed == 1 else f"{missed} readings lie"
-            spans = f"readings are of {_span(times)}, the motion of {_span(edges)}"
+            spans = f"readings are of {span(times)}, the motion of {span(edges)}"
             warnings.append(
                 f"{self.name}: {readings} before or after the motion: left out; {spans}"
             )
         if not kept:
             warnings.append(f"{self.name}: no reading is left: the filter follows the motion alone")
         return kept
-
-
-def _span(t: Array | list[float]) -> str:
-    """The first and the last of some instants; of two clocks it shows how far they are apart."""
-    return f"{np.min(t):.12g} to {np.max(t):.12g} s"
 
 
 def _snapped(t: Array, edges: Array) -> Array:
@@ -139,14 +127,6 @@ def _snapped(t: Array, edges: Array) -> Array:
         np.abs(edges[after] - t) < np.abs(edges[before] - t), edges[after], edges[before]
     )
     return np.where(np.abs(nearest - t) <= SAME, nearest, t)
-
-
-def beginning(world: World, reading: DocumentReading, pose: Array | None) -> Gaussian:
-    """The first belief: at the true pose,
-    or where the world file says, as uncertain as the robot's document has it.
-    """
-    pose = world.told.start if pose is None else pose
-    return Gaussian(world.layout.state(pose), world.believed_robot.first_covariance(reading))
 
 
 # t, what the filter is given, whether errors are counted

@@ -90,12 +90,9 @@ def _differences(scene: Scene, run: Run) -> list[str]:
     starts_elsewhere = system in ("gnss", "pioneer") and not np.array_equal(told.start, run.truth)
     if not starts_elsewhere and not np.any(told.sigma):
         return []
-    belief = "with the covariance of its document" + (
-        ", at the true pose" if starts_elsewhere else ""
-    )
     return [
-        f"the filter of a recorded log begins {belief}: this run began otherwise, and its numbers "
-        "will differ"
+        "the filter of this run began otherwise than the log says: its numbers come again only in "
+        "a world with the same belief.start and belief.sigma"
     ]
 
 

@@ -13,6 +13,7 @@ from ekfsim.files.keys.commands import CommandKeys, CommandsKeys, ExpectKeys
 from ekfsim.files.keys.fields import PartKeys, Pose, aliases
 from ekfsim.files.keys.world import (
     BeliefKeys,
+    BelievedStartKeys,
     LineKeys,
     ObstacleKeys,
     SigmaKeys,
@@ -26,7 +27,18 @@ from ekfsim.systems.drive import Drive
 from ekfsim.systems.faults import DriveFaults, SensorFaults
 from ekfsim.systems.instrument import Instrument
 from ekfsim.systems.robot import Robot
-from ekfsim.world import Faults, Landmark, Map, Noise, Obstacle, Told, WallLine, World, wall_name
+from ekfsim.world import (
+    Axes,
+    Faults,
+    Landmark,
+    Map,
+    Noise,
+    Obstacle,
+    Told,
+    WallLine,
+    World,
+    wall_name,
+)
 
 if TYPE_CHECKING:
     from ekfsim.files.keys.drive import PathKeys, StretchKeys
@@ -154,8 +166,10 @@ def told(keys: WorldKeys, floor_plan: Map, start: Array, noise: Noise) -> Told:
     """What the filter is told: the truth, except where `belief` differs."""
     belief = keys.belief or BeliefKeys.model_construct()
     return Told(
-        start=pose(belief.start) if belief.start else start,
+        start=start if belief.start is None else told_start(belief.start, keys.start),
         sigma=sigma(belief.sigma, keys.start.sigma),
+        start_said=said(belief.start),
+        sigma_said=said(belief.sigma, keys.start.sigma),
         noise=replace(noise, **{name: value for name, value in belief.noise if value is not None})
         if belief.noise
         else noise,
@@ -224,6 +238,20 @@ def ring(points: list[list[float]] | None) -> Array | None:
 def pose(keys: Pose) -> Array:
     """x, y, θ : (3,) m, m, rad in (−π, π]"""
     return still(np.array([keys.x, keys.y, float(wrap(np.radians(keys.theta)))]))
+
+
+def told_start(told: BelievedStartKeys, start: Pose) -> Array:
+    """x, y, θ : (3,) m, m, rad; each that is not told is that of the start"""
+    return pose(start.model_copy(update=told.model_dump(exclude_none=True)))
+
+
+def said(*choices: BelievedStartKeys | SigmaKeys | None) -> Axes:
+    """Of which of x, y, θ any of the mappings says something."""
+    x, y, theta = (
+        any(keys is not None and getattr(keys, axis) is not None for keys in choices)
+        for axis in ("x", "y", "theta")
+    )
+    return x, y, theta
 
 
 def sigma(*choices: SigmaKeys | None) -> Array:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ekfsim.errors import Mistake, UsageError
-from ekfsim.files.given.given import Given, given_in
+from ekfsim.files.given.given import Given, called, given_in
 from ekfsim.files.keys.commands import (
     WAYS,
     CommandsKeys,
@@ -208,12 +208,6 @@ def scene_in(
     own_filter, file_of_world = filter_beside(path, scene.filter), world_file(found.value)
     scene = replace(scene, filter=own_filter, world_file=file_of_world)
     return Loaded(scene, mistakes, warnings)
-
-
-def called(world: World) -> str:
-    """How outputs name a world that was handed over: by its file, else by its own name."""
-    given = world.given
-    return source_name(given.shown if isinstance(given, Given) and given.is_file else world.name)
 
 
 def world_file(world: World) -> Path | None:

@@ -11,7 +11,6 @@ from ekfsim.files.yaml.telling import short
 from ekfsim.printable import some
 
 OFF = "off"
-POSE = ("x", "y", "theta")
 BELIEVED = {  # unless told apart
     "noise.": "belief.noise.",
     "start.sigma.": "belief.sigma.",
@@ -19,6 +18,7 @@ BELIEVED = {  # unless told apart
     "robot.": "belief.robot.",
     "sensors.": "belief.sensors.",
 }
+OF_FILTER = ("start.sigma.", "start.", "robot.", "sensors.")  # what on a log means the filter alone
 
 
 def overruled(root: Node, kind: Kind, settings: Iterable[Setting]) -> Node:
@@ -48,18 +48,16 @@ def pinned(root: Node, settings: Sequence[Setting]) -> Iterator[str]:
 
 def of_log(settings: Sequence[Setting]) -> tuple[Setting, ...]:
     """The same settings where a run was recorded:
-    there, what is said of the robot can mean the filter alone.
+    there, what is said of the robot and its start can mean the filter alone.
     """
     keys = {one.key for one in settings}
 
     def believed(one: Setting) -> Setting:
-        as_told = dataclasses.replace(one, key=f"belief.{one.key}")
-        apart = (
-            one.key.startswith(("robot.", "sensors."))
-            and as_told.key not in keys
-            and fault_of(as_told) is None
-        )
-        return as_told if apart else one
+        begun = next((begun for begun in OF_FILTER if one.key.startswith(begun)), None)
+        if begun is None:
+            return one
+        as_told = dataclasses.replace(one, key=BELIEVED[begun] + one.key.removeprefix(begun))
+        return as_told if as_told.key not in keys and fault_of(as_told) is None else one
 
     return tuple(map(believed, settings))
 
@@ -78,10 +76,6 @@ def _overruled(root: Node, one: Setting) -> Node:
         path = indexed(path, index)
     if path == ("gate",) and one.value == OFF:
         return _without(root, "gate")
-    if path[:2] == ("belief", "start") and root.at(("belief", "start")) is None:
-        for axis in POSE:
-            if (told := root.at(("start", axis))) is not None:
-                root = _put(root, ("belief", "start", axis), told)
     return _put(root, path, Node(root.nearest(path).mark, scalar(one.value), one.value))
 
 

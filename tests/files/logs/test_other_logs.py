@@ -20,8 +20,9 @@ def readings(found):
 
 
 def told(found):
-    """The warnings, without the folder."""
-    return [line.rpartition("log")[2] if "/log" in line else line for line in found.warnings]
+    """The warnings, without the folder, and without where the filter begins."""
+    lines = [line for line in found.warnings if "no truth tells where it starts" not in line]
+    return [line.rpartition("log")[2] if "/log" in line else line for line in lines]
 
 
 # pylon
@@ -46,7 +47,7 @@ def test_a_pylon_log_with_and_without_its_trailing_comma(tmp_path):
         for name, end in (("a", ",\n"), ("b", "\n"))
     )
     for found in (a, b):
-        assert found.warnings == []
+        assert told(found) == []
         assert [entry.t for entry in controls(found)] == pytest.approx([0.1, 0.2, 0.3, 0.4])
         np.testing.assert_allclose(controls(found)[2].given.u, [0.5, 0.25, 0, 0.1])
         np.testing.assert_allclose(

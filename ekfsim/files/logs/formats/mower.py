@@ -12,8 +12,8 @@ from ekfsim.files.logs.folder import find, folder_of
 from ekfsim.files.logs.formats.targets import of_landmarks
 from ekfsim.files.logs.ordering import tell_back, tell_gaps, tell_repeated
 from ekfsim.files.logs.recorded import Recorded
+from ekfsim.files.logs.start.belief import at_truth
 from ekfsim.files.logs.table import Rows, Wanted, bare_table, some
-from ekfsim.files.logs.timeline import beginning
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.records import Control, Entry, Log, Reading
@@ -67,7 +67,7 @@ def read_mower(asked: Asked) -> Recorded:
     for row, t in enumerate(poses.t.tolist()):
         for given in (Control(motion, u[row]), *readings.get(row, ())):
             entries.append(Entry(len(entries), given, truth[row], t=t))
-    first = beginning(world, reading, _first_pose(poses, reading))
+    first = at_truth(world, reading, _first_pose(poses, reading))
     return Recorded(Log(tuple(entries), first), landmarks, warnings)
 
 

@@ -11,9 +11,9 @@ from ekfsim.files.logs.folder import table_file
 from ekfsim.files.logs.formats.targets import only
 from ekfsim.files.logs.ordering import tell_gaps, tell_repeated
 from ekfsim.files.logs.recorded import Recorded
+from ekfsim.files.logs.start.belief import assumed
 from ekfsim.files.logs.table import Rows, Wanted, is_number, numbers_of, some
 from ekfsim.files.logs.text import Lines, lines_of
-from ekfsim.files.logs.timeline import beginning
 from ekfsim.files.yaml.telling import quoted
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
@@ -65,7 +65,8 @@ def read_pylon(asked: Asked) -> Recorded:
         warnings.append(
             f"{rows.file}: in {unseen} of {len(rows)} rows the lidar did not see the pylon"
         )
-    return Recorded(Log(tuple(entries), beginning(world, reading, None)), None, warnings)
+    first = assumed(world, reading, str(path), warnings)
+    return Recorded(Log(tuple(entries), first), None, warnings)
 
 
 def heading_of(yaw: Array) -> Array:

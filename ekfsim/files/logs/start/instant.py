@@ -1,0 +1,51 @@
+"""At which instant the filter of a recorded log begins."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ekfsim.errors import UsageError
+from ekfsim.files.logs.truth import Truth
+from ekfsim.geometry import Array
+
+
+def refuse_apart(truth: Truth, start: float, ends: Array, name: str) -> None:
+    """Raise UsageError where the truth is of another time than the motions. ends : (n,) s"""
+    if truth.t[-1] < start or truth.t[0] >= ends[-1]:
+        told = f"the truth is of {span(truth.t)}, the motion of {span([start, ends[-1]])}"
+        raise UsageError(f"{name}: the truth and the motion have no instant in common: {told}")
+
+
+def first_known(
+    truth: Truth, start: float, ends: Array, name: str, warnings: list[str]
+) -> float | None:
+    """The first instant of a log at which its true pose is known; None where it is at none.
+    ends : (n,) s, of the motions
+    """
+    if np.isfinite(truth.at(np.array([start]))).all():
+        return start
+    later = truth.t[(truth.t > start) & (truth.t < ends[-1])]
+    if not len(later):
+        warnings.append(f"{name}: no true pose is of the time of the motion: the truth is unknown")
+        return None
+    first, before = float(later[0]), truth.t[truth.t < start]
+    begins = f"is known again, after a gap from {before[-1]:.12g} s" if len(before) else "begins"
+    warnings.append(
+        f"{name}: starts at {first:.12g} s, where the truth {begins}: what was before is left out"
+    )
+    return first
+
+
+def tell_unknown(truth: Truth, start: float, ends: Array, name: str, warnings: list[str]) -> None:
+    """Warn of the time at either end of a log at which its errors are not known."""
+    if (before := float(truth.t[0]) - start) > 0:
+        told = f"the truth begins {before:.3g} s after the motion: errors are counted from then on"
+        warnings.append(f"{name}: {told}")
+    if (after := float(ends[-1] - truth.t[-1])) > truth.longest:
+        told = f"the truth ends {after:.3g} s before the motion: errors are counted until then"
+        warnings.append(f"{name}: {told}")
+
+
+def span(t: Array | Sequence[float]) -> str:
+    """The first and the last of some instants; of two clocks it shows how far they are apart."""
+    return f"{np.min(t):.12g} to {np.max(t):.12g} s"
