@@ -27,8 +27,10 @@ class Ground:
     @classmethod
     def of(cls, segments: Array, polygon: Integers, room: int) -> Self:
         """segments : (W, 2, 2) m, all edges; polygon : (W,) which polygon each belongs to"""
-        numbers = sorted(set(polygon.tolist()))
-        rings = [segments[polygon == number] for number in numbers]
+        order = np.argsort(polygon, kind="stable")
+        first = np.flatnonzero(np.diff(polygon[order])) + 1
+        numbers = polygon[order][np.concatenate([[0], first])].tolist() if len(order) else []
+        rings = np.split(segments[order], first) if len(order) else []
         corners = [(ring.min(axis=(0, 1)), ring.max(axis=(0, 1))) for ring in rings]
         low, high = np.array(corners).reshape(-1, 2, 2).swapaxes(0, 1)
         return cls(tuple(rings), numbers.index(room) if room in numbers else -1, low, high)
@@ -92,7 +94,10 @@ class Ground:
         ends = place + ways
         low = np.fmin.reduce([place, ends]).min(axis=0)
         high = np.fmax.reduce([place, ends]).max(axis=0)
-        near = [np.empty((0, 2, 2)), *(self.rings[number] for number in self.near(low, high))]
+        near = [
+            np.empty((0, 2, 2)),
+            *(_touching(self.rings[number], low, high) for number in self.near(low, high)),
+        ]
         a, along = (edges := np.concatenate(near))[:, 0], edges[:, 1] - edges[:, 0]
         offset, ways = a - place[:, None], ways[:, None]
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -119,16 +124,35 @@ class Ground:
         """(p, 4) m: low, and −high, so that one comparison tells whether two boxes touch."""
         return np.concatenate([self.low, -self.high], axis=-1)
 
+    def edges(self, number: int) -> list[Edge]:
+        """A ring in plain numbers."""
+        if number not in self._edges:
+            self._edges[number] = [
+                (ax, ay, bx, by) for (ax, ay), (bx, by) in self.rings[number].tolist()
+            ]
+        return self._edges[number]
+
     @cached_property
-    def edges(self) -> list[list[Edge]]:
-        """The rings in plain numbers."""
-        return [[(ax, ay, bx, by) for (ax, ay), (bx, by) in ring.tolist()] for ring in self.rings]
+    def _edges(self) -> dict[int, list[Edge]]:
+        """Those that were asked for: a robot comes near few of a building's."""
+        return {}
+
+
+def _touching(ring: Array, low: Array, high: Array) -> Array:
+    """The edges of a ring whose boxes, a hair wider, touch that from `low` (2,) to `high` (2,)."""
+    first, last = ring.min(axis=1), ring.max(axis=1)
+    hair = HAIR * (last - first)
+    touching: Booleans = ((first - hair <= high) & (last + hair >= low)).all(axis=-1)
+    return ring[touching]
 
 
 def _inside(ring: Array, points: Array) -> Booleans:
     """Whether points (n, 2) lie in a polygon : (n,). A line from there to the west crosses its
     edges oddly often.
     """
+    if len(points) > 1:  # few edges of a building's outline are as far north as any of them
+        south, north = points[:, 1].min(), points[:, 1].max()
+        ring = ring[(ring[..., 1].min(axis=1) <= north) & (ring[..., 1].max(axis=1) > south)]
     (ax, ay), (bx, by) = ring[:, 0].T, ring[:, 1].T
     x, y = points[:, 0, None], points[:, 1, None]
     beside = (ay > y) != (by > y)

@@ -38,7 +38,7 @@ def _free(ground: Ground, near: list[int], x: float, y: float) -> bool:
     """Whether a robot can stand at a place. near : the polygons that may hold it"""
     indoors = ground.room < 0
     for number in near:
-        if _inside(ground.edges[number], x, y):
+        if _inside(ground.edges(number), x, y):
             if number != ground.room:
                 return False
             indoors = True
@@ -59,7 +59,7 @@ def _cut_back(ground: Ground, near: list[int], x: float, y: float, dx: float, dy
     """
     cuts = [1.0, 0.0]
     for number in near:
-        for ax, ay, bx, by in ground.edges[number]:
+        for ax, ay, bx, by in ground.edges(number):
             east, north, across = bx - ax, by - ay, dx * (by - ay) - dy * (bx - ax)
             if across:
                 cut = ((ax - x) * north - (ay - y) * east) / across
