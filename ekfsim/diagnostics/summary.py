@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Self
 
+from ekfsim.diagnostics.innovations import Innovations
 from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
@@ -114,6 +115,7 @@ class Summary(Shown):
     reckoned_position: Errors = field(default_factory=Errors)
     reckoned_heading: Errors = field(default_factory=Errors)
     evidence: Evidence = field(default_factory=Evidence)
+    innovations: Innovations = field(default_factory=Innovations)
     first_t: float | None = None  # s, of the start
     last_t: float | None = None
     _reckoned: Array | None = None  # (n,), the whole state
@@ -144,6 +146,7 @@ class Summary(Shown):
         """Take one more step into account; the first is the start."""
         entry = step.entry
         self.evidence.add(step)
+        self.innovations.add(step)
         self.last_t = entry.t
         if self._reckoned is None:
             self._reckoned, self.first_t = step.posterior.mean, entry.t
@@ -201,6 +204,7 @@ class Summary(Shown):
                 "last": None if last is None or last.impossible else float(last.value),
                 "dof": None if last is None else int(last.dof),
             },
+            "whiteness": self.innovations.found().table(),
             "lost_from": evidence.lost_from,
             "verdict": evidence.verdict.value,
             "dead_reckoning": {

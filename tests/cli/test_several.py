@@ -43,7 +43,7 @@ def test_the_first_filter_is_narrated_and_all_are_summed_up():
     assert [line.split()[0] for line in lines[1:5]] == ["filter", "ukf", "ekf", "odometry"]
     assert lines[1].split() == ["filter", "updates", "position", "heading", "ΣNIS", "99", "%",
     "band", "last", "NEES",
-                                "verdict"]  # fmt: skip
+                                "innovations", "verdict"]  # fmt: skip
     assert lines[5:7] == [parted, ""]
     for name, line in zip(("ukf", "ekf"), lines[7:], strict=True):
         verdict = (

@@ -113,11 +113,12 @@ def test_the_keys_are_those_of_the_format(tmp_path):
     assert {key: written[key] for key in set(written) - made_by} == summary.table()
     assert set(written) - made_by == {
         "steps", "updates", "refused", "position", "heading", "path_rmse", "nis", "nees",
-        "lost_from", "verdict",
+        "lost_from", "verdict", "whiteness",
         "dead_reckoning",
     }  # fmt: skip
     assert set(written["position"]) == set(written["heading"]) == FOUR
     assert set(written["nis"]) == {"mean", "sum", "dof", "low", "high"}
+    assert set(written["whiteness"]) == {"word", "p", "tests", "left_out", "sensors"}
     assert set(written["nees"]) == {"last", "dof"}
     assert set(written["dead_reckoning"]) == {"position", "heading"}
 

@@ -98,6 +98,10 @@ def differences(told, right, within, name, runs=None):
             return [f"{name}: {len(told)} parts in place of {len(right)}"]
         names = getattr(right, "_fields", range(len(right)))
         pairs = list(zip(names, told, right, strict=True))
+    elif isinstance(right, dict):
+        if list(told) != list(right):
+            return [f"{name}: of {list(told)} in place of {list(right)}"]
+        pairs = [(one, told[one], part) for one, part in right.items()]
     elif isinstance(right, np.ndarray | float | int | bool):
         return _numbers(np.asarray(told), np.asarray(right), within, name, runs)
     elif type(right).__eq__ is object.__eq__ and getattr(right, "__dict__", None):

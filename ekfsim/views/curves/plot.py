@@ -150,7 +150,10 @@ def _title(scene: Scene) -> str:
 
 def verdict(run: Series) -> str:
     """What is to be said of a filter when its run is over."""
-    return f"{run.name}: {sentence(run.evidence)}" if run.name else sentence(run.evidence)
+    told, found = sentence(run.evidence), run.whitened.found()
+    if found.word != "no evidence":
+        told += f"; innovations are {found.word} (p {float(found.p):.2g})"
+    return f"{run.name}: {told}" if run.name else told
 
 
 def _legend(

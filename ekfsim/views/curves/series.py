@@ -8,6 +8,7 @@ from typing import Self
 
 import numpy as np
 
+from ekfsim.diagnostics import innovations as whitening
 from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Correction, Refused
@@ -65,6 +66,7 @@ class Series:
     # of each quantity that was read, in the order of their first readings
     innovations: dict[Quantity, Innovations] = field(default_factory=dict)
     evidence: Evidence = field(default_factory=Evidence)  # holds the verdict and `lost_from`
+    whitened: whitening.Innovations = field(default_factory=whitening.Innovations)
     _rows: "array[float]" = field(default_factory=lambda: array("d"))  # COLUMNS of each step
 
     @classmethod
@@ -84,6 +86,7 @@ class Series:
         self.labels.append(called(entry))
         self.events.extend(events(step, row))
         self.evidence.add(step)
+        self.whitened.add(step)
         self._rows.extend((entry.index, math.nan if entry.t is None else entry.t))
         self._rows.extend(_error(step))
         P = step.posterior.covariance

@@ -15,6 +15,7 @@ from ekfsim.views.playback.parting import Apart
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.numbers import between, figure, number, turn
 from ekfsim.views.words.text_table import aligned
+from ekfsim.views.words.whiteness import sentence as whiteness
 
 REASONS = {
     Refused.NO_ECHO: "without an echo",
@@ -24,7 +25,10 @@ REASONS = {
 }
 
 
-HEAD = ("filter", "updates", "position", "heading", "ΣNIS", "99 % band", "last NEES", "verdict")
+HEAD = (
+    *("filter", "updates", "position", "heading", "ΣNIS", "99 % band", "last NEES"),
+    *("innovations", "verdict"),
+)
 
 
 def conclude(summary: Summary) -> str:
@@ -32,6 +36,8 @@ def conclude(summary: Summary) -> str:
     lines = [f"The run is over after {_done(summary)}: {_readings(summary)}", *_errors(summary)]
     if summary.path.rmse is not None:
         lines += [f"Distance to the expected path: {_metres(summary.path)}"]
+    if summary.innovations.of:
+        lines += [f"Innovations: {whiteness(summary.innovations.found())}"]
     return "".join(f"{line}\n" for line in [*lines, f"Verdict: {sentence(summary.evidence)}"])
 
 
@@ -69,7 +75,7 @@ def _table(names: Sequence[str], summaries: Sequence[Summary]) -> list[str]:
             _cell(first.reckoned_position.rmse),
             _cell(first.reckoned_heading.rmse, math.degrees(1)),
         )
-        rows.append(("odometry alone", "", *reckoned, *[""] * 4))
+        rows.append(("odometry alone", "", *reckoned, *[""] * 5))
     return aligned(rows, 1)
 
 
@@ -92,6 +98,7 @@ def _row(name: str, summary: Summary) -> tuple[str, ...]:
         f"{evidence.nis_sum:.3g}" if known else "-",
         f"{low:.3g} to {high:.3g}" if known else "-",
         nees,
+        summary.innovations.found().word,
         evidence.verdict.value,
     )
 

@@ -1,4 +1,5 @@
 import math
+import re
 from collections import Counter
 from dataclasses import replace
 from itertools import islice, pairwise
@@ -125,8 +126,9 @@ def test_where_a_filter_is_lost_is_a_line_through_all_panels():
     figure, artists = drawn(run)
     assert [set(line.get_xdata()) for line in artists["lost-0"]] == [{13.0}] * 5
     assert artists["lost-words-13"].get_text() == "lost since step 13"
-    assert words(figure.legends[0]) == [verdict(run)]
+    assert [" ".join(word.split()) for word in words(figure.legends[0])] == [verdict(run)]
     assert verdict(run).startswith("ekf: lost from step 13 on")
+    assert re.search(r"; innovations are white \(p \S+\)$", verdict(run))
     _, artists = drawn(Series.of(play(load_scene("commands/tour.yaml")), "ekf"))
     assert not [gid for gid in artists if gid.startswith("lost")]
 
