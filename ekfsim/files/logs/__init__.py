@@ -7,19 +7,21 @@ from ekfsim.errors import UsageError
 from ekfsim.files.keys.recording import SYSTEM_OF, RecordingKeys, misfit
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.formats.classroom import read_classroom
-from ekfsim.files.logs.formats.gnss import read_gnss
-from ekfsim.files.logs.formats.mower import read_mower
+from ekfsim.files.logs.formats.gnss import GNSS, read_gnss
+from ekfsim.files.logs.formats.mower import MOWER, read_mower
 from ekfsim.files.logs.formats.mrclam import read_mrclam
-from ekfsim.files.logs.formats.pioneer import read_pioneer
-from ekfsim.files.logs.formats.pylon import read_pylon
-from ekfsim.files.logs.formats.ranges import read_ranges
+from ekfsim.files.logs.formats.mrclam_tables import MRCLAM
+from ekfsim.files.logs.formats.pioneer import PIONEER, read_pioneer
+from ekfsim.files.logs.formats.pylon import PYLON, read_pylon
+from ekfsim.files.logs.formats.ranges import PLAZA, read_ranges
 from ekfsim.files.logs.named.log import read_named
 from ekfsim.files.logs.recorded import Recorded
+from ekfsim.files.logs.tables.declared import Format
 from ekfsim.files.logs.written import WRITERS, write_log
 from ekfsim.systems.document import DocumentReading
 from ekfsim.world import World
 
-__all__ = ["FORMATS", "SYSTEM_OF", "WRITERS", "Recorded", "read_log", "write_log"]
+__all__ = ["DECLARED", "FORMATS", "SYSTEM_OF", "WRITERS", "Recorded", "read_log", "write_log"]
 
 Reader = Callable[[Asked], Recorded]
 FORMATS: dict[str, Reader] = {
@@ -31,6 +33,10 @@ FORMATS: dict[str, Reader] = {
     "pioneer": read_pioneer,
     "classroom": read_classroom,
     "log": read_named,
+}
+# what the files of each hold, for readers, refusals, `ekfsim schema recording` and the docs
+DECLARED: dict[str, Format] = {
+    format.name: format for format in (PYLON, GNSS, MOWER, MRCLAM, PLAZA, PIONEER)
 }
 
 

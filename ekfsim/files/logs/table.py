@@ -8,14 +8,12 @@ else is wrong is refused with its place.
 import math
 import re
 import sys
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from ekfsim.errors import InputError, Mistake, Place
-from ekfsim.files.logs.header import places_of, separator_of
 from ekfsim.files.logs.text import Lines, lines_of
 from ekfsim.files.source import mistake
 from ekfsim.files.yaml.telling import quoted
@@ -27,7 +25,7 @@ NUMBER = re.compile(
 MOST_TOLD = 20  # mistakes
 MOST_WARNED = 3  # rows of one kind
 EPOCH = 1e10  # s since 1970, until the year 2286; stamps count from then on in
-FINER = (("milliseconds", 1e3), ("microseconds", 1e6), ("nanoseconds", 1e9))
+FINER = (("milliseconds", "ms", 1e3), ("microseconds", "us", 1e6), ("nanoseconds", "ns", 1e9))
 # s and m: until the year 33658, and for any map grid
 ENORMOUS = {"t": 1e12, "time": 1e12, "x": 1e8, "y": 1e8}
 
@@ -44,10 +42,12 @@ class Wanted:
     maybe: frozenset[str] = frozenset()  # columns that may say nan
     # columns that are ranges: where nothing answers, many sensors say 0 or −1
     ranges: frozenset[str] = frozenset()
+    largest: tuple[float, ...] = ()  # the magnitude of each beyond which it cannot be meant
+    told: str = ""  # what columns the file is to have, as a refusal says it
 
     def limits(self) -> Array:
         """The magnitude beyond which a number cannot be meant."""
-        return np.array([ENORMOUS.get(name, 1e6) for name in self.names])
+        return np.array(self.largest or [ENORMOUS.get(name, 1e6) for name in self.names])
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,7 @@ class Rows:
     lines: Integers  # (n,)
     values: Array  # (n, k), a column for each that was wanted
     left_out: int = 0  # rows whose numbers cannot be meant
+    why: str = ""  # the first of them is left out
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -75,53 +76,39 @@ class Rows:
         return f"{self.file}:{self.lines[row]}"
 
 
-def named_table(
-    path: Path,
-    columns: Sequence[tuple[str, ...]],
-    warnings: list[str],
-    ranges: frozenset[str] = frozenset(),
-) -> Rows:
-    """A table whose first line names its columns; each wanted one may go by several names.
+def bare_table(path: Path, wanted: Wanted, warnings: list[str]) -> Rows:
+    """A table without a header.
 
     Raises UsageError where there is no such file, InputError with what is wrong in it.
     """
-    lines = lines_of(path)
-    width, places = places_of(lines, columns)
-    wanted = Wanted(
-        tuple(names[0] for names in columns), tuple(places), range(width, width + 1), ranges=ranges
-    )
-    body = replace(lines[1:], ended=lines.ended or len(lines) == 1)
-    return numbers_of(body, wanted, separator_of(lines.texts[0]), warnings)
-
-
-def bare_table(path: Path, wanted: Wanted, warnings: list[str], mixed: bool = False) -> Rows:
-    """A table without a header; with `mixed`, commas and white space both separate its columns.
-
-    Raises UsageError where there is no such file, InputError with what is wrong in it.
-    """
-    lines = lines_of(path)
-    if mixed:
-        lines = replace(lines, texts=[text.replace(",", " ") for text in lines.texts])
-    return numbers_of(lines, wanted, None, warnings)
+    return numbers_of(lines_of(path), wanted, None, warnings)
 
 
 def numbers_of(lines: Lines, wanted: Wanted, separator: str | None, warnings: list[str]) -> Rows:
     """The wanted columns of all rows that can be used.
     Raises InputError with the mistakes in the others.
     """
+    lines = whole(lines, separator, warnings)
+    values = values_of(lines, wanted, separator)
+    return sane(Rows(lines.file, np.array(lines.numbers, np.int64), values), wanted, warnings)
+
+
+def values_of(lines: Lines, wanted: Wanted, separator: str | None) -> Array:
+    """The wanted columns of all rows, as they stand : (n, k)
+    Raises InputError with the mistakes in them.
+    """
+    values = _quickly(lines, wanted, separator)
+    return _carefully(lines, wanted, separator) if values is None else values
+
+
+def whole(lines: Lines, separator: str | None, warnings: list[str]) -> Lines:
+    """The lines without what stands after their last column, and without a last line that was cut
+    short.
+    """
     if separator:
         lines = replace(
             lines, texts=[text.rstrip().removesuffix(separator) for text in lines.texts]
         )
-    lines = _whole(lines, separator, warnings)
-    values = _quickly(lines, wanted, separator)
-    if values is None:
-        values = _carefully(lines, wanted, separator)
-    return _sane(Rows(lines.file, np.array(lines.numbers, np.int64), values), wanted, warnings)
-
-
-def _whole(lines: Lines, separator: str | None, warnings: list[str]) -> Lines:
-    """The lines without a last one that was cut short."""
     if not len(lines):
         return lines
     last = lines.texts[-1].split(separator)
@@ -187,7 +174,7 @@ def _carefully(lines: Lines, wanted: Wanted, separator: str | None) -> Array:
     widths = [_width(text, separator) for text in lines.texts]
     usual = next((width for width in widths if width in wanted.widths), None)
     if usual is None and len(set(widths)) == 1:
-        raise InputError([_width_mistake(lines, 0, widths[0], wanted.widths)])
+        raise InputError([_width_mistake(lines, 0, widths[0], wanted)])
     for row, text in enumerate(lines.texts):
         found = _row_mistakes(lines, row, text, separator, wanted, usual)
         mistakes, more = (
@@ -210,11 +197,8 @@ def _row_mistakes(
     """What is wrong with one row."""
     fields = text.split(separator)
     if len(fields) not in wanted.widths or (usual is not None and len(fields) != usual):
-        return [
-            _width_mistake(
-                lines, row, len(fields), wanted.widths if usual is None else range(usual, usual + 1)
-            )
-        ]
+        only = wanted if usual is None else replace(wanted, widths=range(usual, usual + 1))
+        return [_width_mistake(lines, row, len(fields), only)]
     found, column = [], 0
     for place, field in enumerate(fields):
         column = text.index(field, column) if field else column
@@ -235,39 +219,39 @@ def _row_mistakes(
     return found
 
 
-def _width_mistake(lines: Lines, row: int, width: int, widths: range) -> Mistake:
+def _width_mistake(lines: Lines, row: int, width: int, wanted: Wanted) -> Mistake:
+    """That a row has too few or too many columns."""
     columns = "1 column stands" if width == 1 else f"{width} columns stand"
-    right = f"{widths.start}" + (
+    widths = wanted.widths
+    right = f"it must have {widths.start}" + (
         " or more" if len(widths) > 2 else f" or {widths[-1]}" if len(widths) == 2 else ""
     )
-    if width == 1 and (mark := separator_of(lines.texts[row])):
-        right += f", and no '{mark}' between them"
-    return Mistake(
-        Place(lines.file, lines.numbers[row], 1),
-        "",
-        f"{columns} in this row",
-        f"it must have {right}",
-    )
+    if width == 2 * widths.start and len(widths) == 1:
+        right += "; if these are decimal commas, write points, or ; between the columns"
+    if row == 0 and wanted.told:
+        right += f"; {wanted.told}"
+    return Mistake(Place(lines.file, lines.numbers[row], 1), "", f"{columns} in this row", right)
 
 
-def _sane(rows: Rows, wanted: Wanted, warnings: list[str]) -> Rows:
+def sane(rows: Rows, wanted: Wanted, warnings: list[str]) -> Rows:
     """The rows whose numbers can be meant."""
     size = np.abs(rows.values)
     allowed = np.isnan(rows.values) & np.array([name in wanted.maybe for name in wanted.names])
     odd = ~allowed & (~(size <= wanted.limits()) | ((size > 0) & (size < sys.float_info.min)))
     odd |= (rows.values <= 0) & np.array([name in wanted.ranges for name in wanted.names])
     bad = np.flatnonzero(odd.any(axis=1))
+    whys = list[str]()
     for row in bad[:MOST_WARNED]:
         column = int(np.argmax(odd[row]))
         value = float(rows.values[row, column])
         name = wanted.names[column]
-        why = _why(value, name, name in wanted.ranges)
-        warnings.append(f"{rows.at(row)}: {name}: {value:g} is {why}: this row is left out")
+        whys.append(f"{name}: {value:g} is {_why(value, name, name in wanted.ranges)}")
+        warnings.append(f"{rows.at(row)}: {whys[-1]}: this row is left out")
     if len(bad) > MOST_WARNED:
         warnings.append(
             f"{rows.at(bad[MOST_WARNED])}: so {_are_rows(len(bad) - MOST_WARNED)} from here on"
         )
-    return replace(rows[~odd.any(axis=1)], left_out=len(bad)) if len(bad) else rows
+    return replace(rows[~odd.any(axis=1)], left_out=len(bad), why=whys[0]) if whys else rows
 
 
 def _why(value: float, name: str, is_range: bool) -> str:
@@ -277,10 +261,12 @@ def _why(value: float, name: str, is_range: bool) -> str:
     if 0 < abs(value) < sys.float_info.min:
         return "a denormal"
     if name in ("t", "time"):
-        unit = next(
-            (f" (are these {unit}?)" for unit, second in FINER if abs(value) < EPOCH * second), ""
+        finer = (
+            f" (if these are {unit}: --set recording.timeUnit={short})"
+            for unit, short, second in FINER
+            if abs(value) < EPOCH * second
         )
-        return f"no time in s{unit}"
+        return f"no time in s{next(finer, '')}"
     return "no range" if is_range and value <= 0 else "absurdly large"
 
 
@@ -291,8 +277,7 @@ def _are_rows(count: int) -> str:
 def some(rows: Rows, what: str) -> Rows:
     """The rows, of which there must be one. Raises InputError where there is none."""
     if not len(rows):
-        wrong = (
-            f"all {rows.left_out} rows are left out" if rows.left_out else "the file holds no rows"
-        )
+        left_out = f"all {rows.left_out} rows are left out: {rows.why}"
+        wrong = left_out if rows.left_out else "the file holds no rows"
         raise mistake(rows.file, 1, 1, wrong, f"without {what} there is nothing to localize")
     return rows

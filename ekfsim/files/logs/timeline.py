@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ekfsim.errors import UsageError
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.start.belief import assumed, at_truth
 from ekfsim.files.logs.start.instant import first_known, refuse_apart, span, tell_unknown
@@ -72,6 +73,9 @@ class Timeline:
         It starts at the first instant at which the truth is known, where nobody told the start.
         """
         truth, start, ends = self.truth, self.start, self.motions.end
+        if not len(ends):
+            wrong = "the motion has one instant alone: there is no way to localize on"
+            raise UsageError(f"{self.name}: {wrong}; it needs two rows of different times")
         if truth is not None:
             refuse_apart(truth, start, ends, self.name)
             if not all(world.told.start_said):

@@ -9,11 +9,15 @@ import numpy as np
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import find, folder_of
+from ekfsim.files.logs.formats.groundtruth import HEADING, TIME, X, Y
 from ekfsim.files.logs.formats.targets import of_landmarks
 from ekfsim.files.logs.ordering import tell_back, tell_gaps, tell_repeated
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.start.belief import at_truth
-from ekfsim.files.logs.table import Rows, Wanted, bare_table, some
+from ekfsim.files.logs.table import Rows, some
+from ekfsim.files.logs.tables.angles import BEYOND_A_TURN
+from ekfsim.files.logs.tables.declared import Column, Format, Table
+from ekfsim.files.logs.tables.reading import read_table
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.records import Control, Entry, Log, Reading
@@ -22,12 +26,68 @@ from ekfsim.systems.instrument import Landmark
 from ekfsim.systems.instruments import Markers
 from ekfsim.world import World
 
-HOLDS = "marker-001-poselog.txt, marker-001-003-angles.txt and marker-001-map.txt"
-POSELOG = Wanted(
-    ("t", "ΔD_L", "ΔD_R", "ω", "x", "y", "heading"), (2, 3, 4, 8, 18, 19, 20), range(21, 1000)
+POSELOG = Table(
+    "the positions",
+    ("marker-001-poselog.txt", "*poselog.txt"),
+    (
+        TIME.but(place=2),
+        Column("ΔD_L", "m", "way of the left wheel since the row before", place=3),
+        Column("ΔD_R", "m", "way of the right wheel since the row before", place=4),
+        Column("ω", "rad/s", "turn rate of the gyro", place=8, most=10.0),
+        X.but(place=18),
+        Y.but(place=19),
+        HEADING.but(place=20),
+    ),
+    named=False,
+    widths=range(21, 1000),
+    told="x, y and heading are the true pose. Every row, the first too, is one time update.",
+    example="""\
+1 0 0.025 0.01 0.01 0 0 0 0.0 0 0 0 0 0 0 0 0 0 0.01 0.0 0.0
+2 0 0.05 0.01 0.01 0 0 0 0.0 0 0 0 0 0 0 0 0 0 0.02 0.0 0.0
+3 0 0.075 0.01 0.01 0 0 0 0.0 0 0 0 0 0 0 0 0 0 0.03 0.0 0.0
+4 0 0.1 0.01 0.01 0 0 0 0.0 0 0 0 0 0 0 0 0 0 0.04 0.0 0.0
+5 0 0.125 0.01 0.01 0 0 0 0.0 0 0 0 0 0 0 0 0 0 0.05 0.0 0.0
+""",
 )
-ANGLES = Wanted(("t", "marker", "azimuth", "elevation"), (0, 1, 2, 3), range(4, 1000))
-MAP = Wanted(("marker", "x", "y"), (0, 1, 2), range(3, 1000))
+ANGLES = Table(
+    "the angles of the markers",
+    ("marker-001-003-angles.txt", "*angles.txt"),
+    (
+        TIME,
+        Column("marker", "", "its row in the map, from 0"),
+        Column("azimuth", "rad", "from straight ahead, to the left positive", most=BEYOND_A_TURN),
+        Column("elevation", "rad", "above the horizon", most=math.pi),
+    ),
+    named=False,
+    widths=range(4, 1000),
+    example="""\
+0.03 0 0.32 0.10
+0.06 1 -0.30 0.12
+0.08 0 0.32 0.10
+0.11 2 0.75 0.15
+0.12 1 -0.30 0.12
+""",
+)
+MAP = Table(
+    "the map of the markers",
+    ("marker-001-map.txt", "*map.txt"),
+    (Column("marker", "", "its number"), X, Y),
+    named=False,
+    widths=range(3, 1000),
+    example="""\
+0 3.0 1.0
+1 3.0 -1.0
+2 2.0 2.0
+3 -2.0 2.0
+4 -2.0 -2.0
+""",
+)
+MOWER = Format(
+    "mower",
+    "Ways of the wheels and angles to markers, as document 000 and its MATLAB listing have them; "
+    "`ekfsim record` writes it. White space or commas between the columns, no names.",
+    (POSELOG, ANGLES, MAP),
+)
 MUCH_LATER = 10  # steps dT from which on it is told that a picture has to wait so long for its row
 
 
@@ -41,18 +101,14 @@ def read_mower(asked: Asked) -> Recorded:
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
     path, world, reading, _, warnings = asked
-    folder = folder_of(path, HOLDS)
-    files = (
-        find(folder, "the positions", "marker-001-poselog.txt", "*poselog.txt"),
-        find(folder, "the angles of the markers", "marker-001-003-angles.txt", "*angles.txt"),
-        find(folder, "the map of the markers", "marker-001-map.txt", "*map.txt"),
-    )
-    poses = some(bare_table(files[0], POSELOG, warnings, mixed=True), "positions")
+    folder = folder_of(path, MOWER.holds)
+    files = [find(folder, table.what, *table.files) for table in MOWER.tables]
+    poses = some(read_table(files[0], POSELOG, asked), "positions")
     _refuse_going_back(poses)
     tell_repeated(poses, warnings)
     tell_gaps(poses, warnings)
-    angles = bare_table(files[1], ANGLES, warnings, mixed=True)
-    landmarks = _landmarks(bare_table(files[2], MAP, warnings, mixed=True), warnings)
+    angles = read_table(files[1], ANGLES, asked, poses)
+    landmarks = _landmarks(read_table(files[2], MAP, asked), warnings)
     dT = 1 / world.believed_robot.rate
     tell_back(angles, warnings)
     rows_of = _rows_of_listing if reading == "coded" else _rows_of_text

@@ -7,14 +7,21 @@ from typing import NamedTuple
 import numpy as np
 
 from ekfsim.errors import InputError, Mistake, Place, UsageError
-from ekfsim.files.keys.recording import Targets
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.formats.mrclam_files import BARCODES as BARCODES_FILE
 from ekfsim.files.logs.formats.mrclam_files import RobotFiles, files_of
+from ekfsim.files.logs.formats.mrclam_tables import (
+    BARCODES,
+    LANDMARKS,
+    MEASUREMENT,
+    ODOMETRY,
+    TRUTH,
+)
 from ekfsim.files.logs.formats.targets import landmarks_of, of_landmarks
 from ekfsim.files.logs.ordering import apart, in_order, tell_gaps
 from ekfsim.files.logs.recorded import Recorded
-from ekfsim.files.logs.table import Rows, Wanted, bare_table, some
+from ekfsim.files.logs.table import Rows, some
+from ekfsim.files.logs.tables.reading import read_table
 from ekfsim.files.logs.timeline import Motions, Sample, Timeline
 from ekfsim.files.logs.truth import Truth, truth_of
 from ekfsim.geometry import Array
@@ -26,13 +33,6 @@ from ekfsim.world import World
 
 ROBOTS = range(1, 6)  # the subjects that move
 ALL_BUT_ODD = 0.99  # of the numbers of the measurements
-ODOMETRY = Wanted(("t", "speed", "turn rate"), (0, 1, 2), range(3, 4))
-MEASUREMENT = Wanted(
-    ("t", "barcode", "range", "bearing"), (0, 1, 2, 3), range(4, 5), ranges=frozenset({"range"})
-)
-GROUNDTRUTH = Wanted(("t", "x", "y", "orientation"), (0, 1, 2, 3), range(4, 5))
-BARCODES = Wanted(("subject", "barcode"), (0, 1), range(2, 3))
-LANDMARKS = Wanted(("subject", "x", "y"), (0, 1, 2), range(3, 6))
 
 
 class Names(NamedTuple):
@@ -49,13 +49,13 @@ def read_mrclam(asked: Asked) -> Recorded:
     """
     path, world, reading, recording, warnings = asked
     files = files_of(path, recording.robot)
-    landmarks = landmarks_of(bare_table(files.landmarks, LANDMARKS, warnings))
-    odometry = some(bare_table(files.odometry, ODOMETRY, warnings), "odometry")
+    landmarks = landmarks_of(read_table(files.landmarks, LANDMARKS, asked))
+    odometry = some(read_table(files.odometry, ODOMETRY, asked), "odometry")
     odometry = apart(odometry, warnings, recording.same_time, until_next=True)
     tell_gaps(odometry, warnings)
-    seen = in_order(bare_table(files.measurement, MEASUREMENT, warnings), warnings)
-    truth = _truth(files, warnings)
-    names = _names(seen, files, landmarks, recording.targets, warnings)
+    seen = in_order(read_table(files.measurement, MEASUREMENT, asked, odometry), warnings)
+    truth = _truth(files, asked, odometry)
+    names = _names(seen, files, landmarks, asked)
     samples = _samples(seen, names, landmarks, world, reading, warnings)
     u = np.column_stack([odometry.values[:-1, 1:], np.diff(odometry.t)])
     motions = Motions(
@@ -71,29 +71,29 @@ def read_mrclam(asked: Asked) -> Recorded:
     return timeline.recorded(world, reading, warnings)
 
 
-def _truth(files: RobotFiles, warnings: list[str]) -> Truth | None:
+def _truth(files: RobotFiles, asked: Asked, odometry: Rows) -> Truth | None:
     if files.truth is None:
         name = files.odometry.name.replace("Odometry", "Groundtruth")
-        warnings.append(
+        asked.warnings.append(
             f"{files.odometry.parent}: no {name} in it: the truth is unknown, and so are the errors"
         )
         return None
-    return truth_of(bare_table(files.truth, GROUNDTRUTH, warnings), warnings)
+    return truth_of(read_table(files.truth, TRUTH, asked, odometry), asked.warnings)
 
 
 def _names(
     seen: Rows,
     files: RobotFiles,
     landmarks: tuple[Landmark, ...],
-    targets: Targets | None,
-    warnings: list[str],
+    asked: Asked,
 ) -> Names:
     """The subject that each number of the measurements means: by its barcode, or itself.
 
     Raises UsageError where there are no barcodes, and the numbers are no subjects.
     """
+    targets, warnings = asked.recording.targets, asked.warnings
     given = (
-        list[Rows]() if files.barcodes is None else [bare_table(files.barcodes, BARCODES, warnings)]
+        list[Rows]() if files.barcodes is None else [read_table(files.barcodes, BARCODES, asked)]
     )
     subject_of = _subjects(given[0]) if given else {}
     subjects = {*ROBOTS, *subject_of.values(), *(mark.id for mark in landmarks)}

@@ -12,8 +12,10 @@ from ekfsim.files.logs.formats.targets import only
 from ekfsim.files.logs.ordering import tell_gaps, tell_repeated
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.start.belief import assumed
-from ekfsim.files.logs.table import Rows, Wanted, is_number, numbers_of, some
-from ekfsim.files.logs.text import Lines, lines_of
+from ekfsim.files.logs.table import Rows, some
+from ekfsim.files.logs.tables.declared import Column, Format, Table
+from ekfsim.files.logs.tables.reading import Read, read_text
+from ekfsim.files.logs.tables.stamps import POWER, SPOKEN, seconds_of, usual_step
 from ekfsim.files.yaml.telling import quoted
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
@@ -22,10 +24,43 @@ from ekfsim.models.sensors.offset import to_global
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.systems.instruments import Lidar, Pylon
 
-COLUMNS = ("X", "Y", "Latitude", "Longitude", "Yaw", "AccelX", "AccelY")
-PLACES = (0, 1, 4, 5, 6, 9, 10)
-STAMP = 3  # the column that is no float
 CLOCK = 1 << 32  # µs after which the stamps' clock starts again
+ODD = 20  # times the robot's own step, or a part of it: a usual step that cannot be meant
+TABLE = Table(
+    "the CSV file of the lidar and the inertial unit",
+    ("*.csv",),
+    (
+        Column("X", "m", "of the pylon in the lidar's frame; nan or 0, 0 where unseen", maybe=True),
+        Column("Y", "m", "ditto", maybe=True),
+        Column("Latitude", "degrees north", "of the GPS", ("lat",), 4, maybe=True),
+        Column("Longitude", "degrees east", "ditto", ("lon",), 5, maybe=True),
+        Column("Yaw", "degrees", "clockwise, from the start", place=6),
+        Column("AccelX", "m/s²", "forwards", ("accel_x", "ax"), 9),
+        Column("AccelY", "m/s²", "to the left", ("accel_y", "ay"), 10),
+        Column(
+            "Time Stamp", "µs", "its low 32 bits are a clock", ("timestamp", "time_stamp", "t"), 3,
+            maybe=True, largest=math.inf,
+        ),
+    ),
+    named=False,
+    widths=range(12, 13),
+    told="Twelve columns without names: X, Y, Z, Time Stamp, Latitude, Longitude, Yaw, Pitch, "
+    "Roll, AccelX, AccelY, AccelZ, of which Z, Pitch, Roll and AccelZ are not read.",
+    example="""\
+5.027,4.750,-0.36,6871947673600000,34.106,-117.705,0.0,0.0,0.0,0.0,0.0,0.0
+5.007,4.702,-0.36,6871947673700000,34.106,-117.705,0.0,0.0,0.0,0.1,0.0,0.0
+5.035,4.748,-0.36,6871947673800000,34.106,-117.705,0.0,0.0,0.0,0.1,0.0,0.0
+nan,nan,-0.36,6871947673900000,34.106,-117.705,359.9,0.0,0.0,0.1,0.0,0.0
+5.009,4.702,-0.36,6871947674000000,34.106,-117.705,359.9,0.0,0.0,0.1,0.0,0.0
+""",
+)  # fmt: skip
+PYLON = Format(
+    "pylon",
+    "One CSV file of document 004: the pylon as the lidar sees it, the inertial unit, GPS; "
+    "`ekfsim record` writes it.",
+    (TABLE,),
+    alone=True,
+)
 EARTH_RADIUS = 6.3781e6  # m
 
 
@@ -35,11 +70,10 @@ def read_pylon(asked: Asked) -> Recorded:
     Raises UsageError where there is no such file, InputError with what is wrong in it.
     """
     path, world, reading, _, warnings = asked
-    lines = lines_of(table_file(path, "the CSV file of the lidar and the inertial unit", ".csv"))
-    wanted = Wanted(COLUMNS, PLACES, range(12, 13), frozenset({"X", "Y", "Latitude", "Longitude"}))
-    rows = some(numbers_of(lines, wanted, ",", warnings), "lidar and accelerations")
+    read = read_text(table_file(path, TABLE.what, ".csv"), TABLE, asked)
+    some(read.rows, "lidar and accelerations")
     step = 1 / world.believed_robot.rate
-    rows = _timed(rows, lines, step, warnings)
+    rows = _timed(read, step, asked)
     θ = heading_of(rows.values[:, 5])
     # As in the authors' code the time between two rows is taken for constant; only the corrected
     # reading measures it.
@@ -88,13 +122,12 @@ def metres(degrees: Array) -> Array:
     return np.stack([east * math.cos(math.radians(lat)), north], axis=-1)
 
 
-def _timed(rows: Rows, lines: Lines, step: float, warnings: list[str]) -> Rows:
+def _timed(read: Read, step: float, asked: Asked) -> Rows:
     """The rows with their time before all else, in order;
     the first is one usual step after the start at 0.
     """
-    clock = np.array(_stamps(rows, lines), dtype=np.int64)
-    # µs; what seems half a clock's round ahead went back
-    ahead = (np.diff(clock) + CLOCK // 2) % CLOCK - CLOCK // 2
+    rows, warnings = read.rows, asked.warnings
+    ahead = _ahead(read, step, asked)
     t = step + np.concatenate([[0], np.cumsum(ahead)]) / 1e6
     back = np.flatnonzero(ahead < 0) + 1
     if len(back):
@@ -104,33 +137,50 @@ def _timed(rows: Rows, lines: Lines, step: float, warnings: list[str]) -> Rows:
             f"row above{more}"
         )
         warnings.append(f"{told}: the rows are put in order of time")
-    rows = replace(rows, values=np.column_stack([t, rows.values]))[np.argsort(t, kind="stable")]
+    rows = replace(rows, values=np.column_stack([t, rows.values[:, :7]]))[
+        np.argsort(t, kind="stable")
+    ]
     rows = replace(rows, values=np.column_stack([rows.t - rows.t[0] + step, rows.values[:, 1:]]))
     tell_repeated(rows, warnings)
     tell_gaps(rows, warnings)
     return rows
 
 
-def _stamps(rows: Rows, lines: Lines) -> list[int]:
+def _ahead(read: Read, step: float, asked: Asked) -> Array:
+    """How far the stamp of each row is ahead of that of the row above, in µs : (n − 1,)"""
+    texts = read.texts("Time Stamp")
+    unit = asked.recording.time_unit or read.layout.units.get("Time Stamp")
+    clock = np.array(_stamps(read.rows, texts, read) if unit in (None, "us") else [], np.int64)
+    # what seems half a clock's round ahead went back
+    ahead = (np.diff(clock) + CLOCK // 2) % CLOCK - CLOCK // 2
+    usual = float(np.median(ahead[ahead > 0])) / 1e6 if np.any(ahead > 0) else 0.0
+    if unit is None and len(clock) > 1 and not step / ODD <= usual <= step * ODD:
+        steps = {one: usual_step(seconds_of(texts, one)) for one in POWER}
+        likely = [one for one, dt in steps.items() if step / ODD <= dt <= step * ODD]
+        if likely:
+            unit = likely[0]
+            told = f"as the clock of such a log their usual step would be {usual:.3g} s"
+            cure = "say otherwise with --set recording.timeUnit=us"
+            asked.warnings.append(
+                f"{read.rows.file}: the stamps are taken as {SPOKEN[unit]}: {told}; {cure}"
+            )
+    return ahead if unit in (None, "us") else np.diff(seconds_of(texts, str(unit))) * 1e6
+
+
+def _stamps(rows: Rows, texts: list[str], read: Read) -> list[int]:
     """The free-running clock of each row in µs: the low 32 bits of its stamp.
 
     A stamp printed as a float is what is left of the 64 bits;
     one in plain digits is the number itself.
     """
     stamps, mistakes = list[int](), list[Mistake]()
-    as_written = dict(zip(lines.numbers, lines.texts, strict=True))
-    for number in rows.lines.tolist():
-        fields = as_written[number].split(",")
-        text = fields[STAMP].strip()
-        value = int(text) if text.isdecimal() else _whole(float(text)) if is_number(text) else -1
+    for number, written in zip(rows.lines.tolist(), texts, strict=True):
+        text = written.strip()
+        value = int(text) if text.isdecimal() else _whole(float(text))
         if not 0 <= value < 1 << 64:
-            column = len(",".join(fields[:STAMP])) + 2
             wrong = f"{quoted(text)} is no stamp"
-            mistakes.append(
-                Mistake(
-                    Place(rows.file, number, column), "Time Stamp", wrong, "it is a 64-bit number"
-                )
-            )
+            place = Place(rows.file, number, read.column(number, "Time Stamp"))
+            mistakes.append(Mistake(place, "Time Stamp", wrong, "it is a 64-bit number"))
         else:
             stamps.append(value % CLOCK)
     if mistakes:

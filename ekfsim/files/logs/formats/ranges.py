@@ -11,11 +11,13 @@ import numpy as np
 from ekfsim.files.keys.recording import TurnTruth
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import find, folder_of
-from ekfsim.files.logs.formats.gnss import TIME, read_truth
+from ekfsim.files.logs.formats.groundtruth import GROUNDTRUTH, TIME, X, Y, read_truth
 from ekfsim.files.logs.formats.targets import landmarks_of, of_landmarks
 from ekfsim.files.logs.ordering import apart, in_order, step_of, tell_gaps
 from ekfsim.files.logs.recorded import Recorded
-from ekfsim.files.logs.table import Rows, named_table, some
+from ekfsim.files.logs.table import Rows, some
+from ekfsim.files.logs.tables.declared import Column, Format, Table
+from ekfsim.files.logs.tables.reading import read_table
 from ekfsim.files.logs.timeline import Motions, Sample, Timeline
 from ekfsim.files.logs.truth import Truth
 from ekfsim.geometry.angles import wrap
@@ -25,7 +27,59 @@ from ekfsim.systems.instrument import Landmark
 from ekfsim.systems.instruments import Ranges
 from ekfsim.world import World
 
-HOLDS = "odometry.csv, ranges.csv, nodes.csv and, where it is known, groundtruth.csv"
+ODOMETRY = Table(
+    "the odometry",
+    ("odometry*.csv",),
+    (
+        TIME,
+        Column("distance", "m", "way since the row before, backwards negative"),
+        Column("dheading", "rad", "turn since the row before, counter-clockwise", most=math.pi),
+    ),
+    example="""\
+t,distance,dheading
+0.1,0.3,0.0
+0.2,0.3,0.01
+0.3,0.31,0.01
+0.4,0.3,0.02
+0.5,0.3,0.02
+""",
+)
+RANGES = Table(
+    "the ranges",
+    ("ranges*.csv",),
+    (
+        TIME,
+        Column("node", "", "which node answered, a whole number"),
+        Column("range", "m", "how far it is, as measured", positive=True),
+    ),
+    example="""\
+t,node,range
+0.1,1,10.6
+0.2,2,14.5
+0.3,1,10.4
+0.4,3,22.0
+0.5,2,14.1
+""",
+)
+NODES = Table(
+    "the nodes",
+    ("nodes*.csv",),
+    (Column("node", "", "its number"), X, Y),
+    example="""\
+node,x,y
+1,10.0,0.0
+2,0.0,14.0
+3,20.0,10.0
+4,-5.0,-5.0
+5,0.0,-20.0
+""",
+)
+PLAZA = Format(
+    "ranges",
+    "Way and turn of a robot, and ranges to radio nodes, as in the Plaza data; `ekfsim record` "
+    "does not write it. A row of the odometry is a stride that ends at its time.",
+    (ODOMETRY, RANGES, NODES, GROUNDTRUTH),
+)
 FIRST_METRES = 2.0  # of travel, by which a stored heading is found to point ahead or back
 
 
@@ -35,23 +89,17 @@ def read_ranges(asked: Asked) -> Recorded:
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
     path, world, reading, recording, warnings = asked
-    folder = folder_of(path, HOLDS)
-    odometry_file = find(folder, "the odometry", "odometry*.csv")
-    ranges_file = find(folder, "the ranges", "ranges*.csv")
-    nodes = named_table(
-        find(folder, "the nodes", "nodes*.csv"), (("node",), ("x",), ("y",)), warnings
-    )
-    truth = read_truth(folder, warnings)
-    columns = TIME, ("distance",), ("dheading",)
-    odometry = some(named_table(odometry_file, columns, warnings), "odometry")
+    folder = folder_of(path, PLAZA.holds)
+    odometry_file = find(folder, ODOMETRY.what, *ODOMETRY.files)
+    ranges_file = find(folder, RANGES.what, *RANGES.files)
+    nodes = read_table(find(folder, NODES.what, *NODES.files), NODES, asked)
+    odometry = some(read_table(odometry_file, ODOMETRY, asked), "odometry")
     odometry = apart(odometry, warnings, recording.same_time)
+    truth = read_truth(folder, asked, odometry)
     tell_gaps(odometry, warnings)
     if truth is not None:
         truth = _ahead(truth, odometry, recording.turn_truth, folder, warnings)
-    measured = named_table(
-        ranges_file, (TIME, ("node",), ("range",)), warnings, frozenset({"range"})
-    )
-    ranges = in_order(measured, warnings)
+    ranges = in_order(read_table(ranges_file, RANGES, asked, odometry), warnings)
     landmarks = landmarks_of(nodes)
     start = _start(odometry, truth)
     begin = np.concatenate([[start], odometry.t[:-1]])

@@ -96,7 +96,7 @@ class Table:
             range(self.width, self.width + 1),
             maybe,
             ranges,
-            units,
+            units=units,
         )
         rows = numbers_of(self.lines, wanted, self.separator, warnings)
         return replace(rows, values=rows.values * units) if set(units) != {1.0} else rows
