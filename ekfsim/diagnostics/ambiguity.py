@@ -9,6 +9,7 @@ from ekfsim.models.protocols import Sensor
 from ekfsim.models.sensors.frozen import Frozen
 from ekfsim.models.sensors.infrared import InfraredBeam
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.models.sensors.mounted import Mounted, carried, carried_by
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
 from ekfsim.records import Step
 from ekfsim.twins import twinned
@@ -50,6 +51,10 @@ def remark(sensor: Sensor, x: Array, P: Array) -> Sighting | None:
     """What is to be said of a reading before it is used; None of a sensor that sends no beam."""
     if isinstance(sensor, Frozen):
         return remark(sensor.sensor, x, P)
+    if isinstance(sensor, Mounted):
+        pose, P_pose = sensor.layout.pose(x), sensor.layout.pose_covariance(P)
+        J = carried_by(pose, sensor.mount)
+        return remark(sensor.sensor, carried(pose, sensor.mount), J @ P_pose @ J.mT)
     return sighting(sensor, x, P) if isinstance(sensor, BeamSensor) else None
 
 

@@ -68,6 +68,7 @@ TWINS: tuple[Twin, ...] = (
     Twin(SENSOR, f"{MANY}.sensors:ultrasonic", ANY, "UltrasonicBeam"),
     Twin(SENSOR, f"{MANY}.sensors:infrared", ANY, "InfraredBeam"),
     Twin(SENSOR, f"{MANY}.sensors:frozen", "as many x as it holds", "Frozen"),
+    Twin(SENSOR, f"{MANY}.sensors:mounted", ANY, "Mounted"),
     Twin(SENSOR, f"{ONE}.landmarks:marker_angles", ALONE, "MarkerAngles"),
     Twin(SENSOR, f"{ONE}.landmarks:range_bearing", ALONE, "RangeBearing"),
     Twin(SENSOR, f"{ONE}.landmarks:range_only", ALONE, "RangeOnly"),

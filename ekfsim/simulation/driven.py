@@ -52,7 +52,7 @@ def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
     )
     inputs, watches = draws.stream(INPUT), list(_watches(scene, draws))
     gps = None if robot.gps is None else _Fixes(robot.gps, draws.stream(FIX))
-    past = Past(start, max((watch.faults.delay for watch in watches), default=0.0) * robot.rate)
+    past = Past(start, max((watch.late for watch in watches), default=0.0) * robot.rate)
     yield Entry(0, None, start, t=0.0)
     index = 0
     for ticks in _blocks(len(course.speed), start.size // 3):
@@ -105,6 +105,15 @@ class _Watch(NamedTuple):
     noise: Stream
     outliers: Stream | None  # None where there are none
 
+    @property
+    def late(self) -> float:
+        """How much older its readings are than the filter takes them to be, in s.
+
+        A reading is taken by the filter at the end of a tick, and stamped as much later as it is
+        told: what it is told truly of a delay makes no difference.
+        """
+        return self.faults.delay + max(self.true.delay - self.told.delay, 0.0)
+
     def read(self, pose: Array, x: Array, u: Array) -> Array:
         """Its readings from true poses (D, …, 3) and their states x : (D, …, k), nan where it is
         not in view.
@@ -128,7 +137,7 @@ def _watches(scene: Scene, draws: Draws) -> Iterator[_Watch]:
     world = scene.world
     both = zip(world.targets(scene.reading), world.true_targets(), strict=True)
     for number, ((believed, known), (instrument, real)) in enumerate(both):
-        faults = world.drive_faults.sensors.get(instrument.name, SOUND)
+        faults = world.drive_faults.sensors.get(instrument.called, SOUND)
         outliers = draws.stream(OUTLIER, number) if faults.outliers > 0 else None
         yield _Watch(
             instrument, believed, known, real, faults, draws.stream(READING, number), outliers
@@ -144,7 +153,7 @@ def _readings(
         due = np.flatnonzero(_due(watch.instrument.rate, ticks, rate))
         if len(due) == 0:
             continue
-        pose = past.before(ticks[due] + 1, watch.faults.delay * rate)
+        pose = past.before(ticks[due] + 1, watch.late * rate)
         z = watch.read(pose, layout.state(pose), u[due])
         met = np.any(~np.isnan(z.reshape(len(due), -1)), axis=-1)
         for i in np.flatnonzero(met).tolist():

@@ -2,14 +2,16 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap
-from ekfsim.models.layout import Layout
+from ekfsim.models.layout import POSE, Layout
 from ekfsim.models.protocols import Sensor
+from ekfsim.models.sensors.mounted import AT_THE_POSE, Mount, Mounted, carried
 from ekfsim.raycast.walls import Walls
 from ekfsim.systems.document import DocumentReading
 
@@ -41,6 +43,7 @@ class Target(NamedTuple):
     name: str  # as the narrative and the trace call the sensor: "marker 3"
     sensor: Sensor
     place: tuple[float, float] | None = None  # m, where it stands; None for what has no place
+    delay: float = 0.0  # s, how old a reading of it is when it is stamped
 
 
 class Seen(NamedTuple):
@@ -61,6 +64,18 @@ class Instrument(Protocol):
     @property
     def rate(self) -> float:
         """How often it is read, in Hz."""
+
+    @property
+    def called(self) -> str:
+        """The name that tells it from others of its kind; the kind where it has none."""
+
+    @property
+    def mount(self) -> Mount:
+        """Where it sits on the robot."""
+
+    @property
+    def delay(self) -> float:
+        """How old its readings are when they are stamped, in s."""
 
     def targets(self, around: Surroundings) -> Iterator[Target]:
         """Everything that it may read."""
@@ -84,17 +99,48 @@ def turned(z: Array, angle: Array) -> Array:
     return np.stack([c * z[..., 0] - s * z[..., 1], s * z[..., 0] + c * z[..., 1]], axis=-1)
 
 
-class Looking:
+@dataclass(frozen=True, kw_only=True)
+class Carried:
+    """What may be told of any instrument: its name, where it sits, how late it tells."""
+
+    mount: Mount = AT_THE_POSE
+    delay: float = 0.0  # s, how old a reading is when it is stamped
+    label: str | None = None  # its name, where it has one of its own
+
+
+class Looking(Carried):
     """An instrument that sees what is near enough and in one of its fields of view."""
 
+    name: ClassVar[str]
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
+    by_pose: ClassVar[bool] = False  # whether its sensors know no state but a pose
     farthest: float  # m
     views: tuple[tuple[float, float], ...]  # rad from straight ahead, counter-clockwise: from, to
 
+    @property
+    def called(self) -> str:
+        """Its name; the kind where it has none."""
+        return self.label or self.name
+
+    def targets(self, around: Surroundings) -> Iterator[Target]:
+        """Everything that it may read, from where it sits."""
+        wrapped = self.mount != AT_THE_POSE or (self.by_pose and around.layout != POSE)
+        for target in self.things(around._replace(layout=POSE) if wrapped else around):
+            sensor = target.sensor
+            if wrapped:
+                sensor = Mounted(sensor, self.mount, around.layout)
+            yield target._replace(sensor=sensor, delay=self.delay)
+
+    def things(self, around: Surroundings) -> Iterator[Target]:
+        """Everything that it may read, from the pose that the state tells."""
+        raise NotImplementedError
+
     def sees(self, target: Target, pose: Array) -> Booleans:
-        """Whether a target is in view from a true pose (…, 3) : (…)"""
+        """Whether a target is in view from a true pose (…, 3) of the robot : (…)"""
         if target.place is None:
             return np.ones(pose.shape[:-1], bool)
+        if self.mount != AT_THE_POSE:
+            pose = carried(pose, self.mount)
         dx, dy = target.place[0] - pose[..., 0], target.place[1] - pose[..., 1]
         bearing = np.arctan2(dy, dx) - pose[..., 2]
         near: Booleans = np.hypot(dx, dy) <= self.farthest

@@ -46,7 +46,7 @@ class Markers(Looking):
         (math.radians(150), math.radians(210)),
     )
 
-    def targets(self, around: Surroundings) -> Iterator[Target]:
+    def things(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each marker; `printed` has the signs of eq. 25."""
         sign = -1.0 if around.reading == "printed" else 1.0
         for mark in around.landmarks:
@@ -59,7 +59,7 @@ class Markers(Looking):
                 sign,
                 around.layout,
             )
-            yield Target(f"marker {mark.id}", angles, (mark.x, mark.y))
+            yield Target(f"{self.label or 'marker'} {mark.id}", angles, (mark.x, mark.y))
 
 
 @dataclass(frozen=True)
@@ -73,13 +73,13 @@ class RangeBearings(Looking):
     farthest: float = 5.0
     views: tuple[tuple[float, float], ...] = ((math.radians(-35), math.radians(35)),)
 
-    def targets(self, around: Surroundings) -> Iterator[Target]:
+    def things(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each landmark."""
         for mark in around.landmarks:
             sensor = RangeBearing(
                 mark.x, mark.y, self.range_sigma, self.bearing_sigma, around.layout
             )
-            yield Target(f"landmark {mark.id}", sensor, (mark.x, mark.y))
+            yield Target(f"{self.label or 'landmark'} {mark.id}", sensor, (mark.x, mark.y))
 
 
 @dataclass(frozen=True)
@@ -92,11 +92,11 @@ class Bearings(Looking):
     farthest: float = 5.0
     views: tuple[tuple[float, float], ...] = ((math.radians(-35), math.radians(35)),)
 
-    def targets(self, around: Surroundings) -> Iterator[Target]:
+    def things(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each landmark."""
         for mark in around.landmarks:
             yield Target(
-                f"landmark {mark.id}",
+                f"{self.label or 'landmark'} {mark.id}",
                 BearingOnly(mark.x, mark.y, self.sigma, around.layout),
                 (mark.x, mark.y),
             )
@@ -117,11 +117,11 @@ class Ranges(Looking):
     farthest: float = 100.0
     views: tuple[tuple[float, float], ...] = ALL_ROUND
 
-    def targets(self, around: Surroundings) -> Iterator[Target]:
+    def things(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each node."""
         for mark in around.landmarks:
             yield Target(
-                f"node {mark.id}",
+                f"{self.label or 'node'} {mark.id}",
                 RangeOnly(mark.x, mark.y, self.sigma, around.layout),
                 (mark.x, mark.y),
             )
@@ -148,10 +148,10 @@ class Gnss(Looking):
     rate: float = 10.0
     sigma: float = 0.15  # m, on each axis
 
-    def targets(self, around: Surroundings) -> Iterator[Target]:
+    def things(self, around: Surroundings) -> Iterator[Target]:
         """The fix; the recipe of the document's authors takes R = I."""
         sigma = 1.0 if around.reading == "coded" else self.sigma
-        yield Target("gnss", Position(sigma, sigma, around.layout))
+        yield Target(self.called, Position(sigma, sigma, around.layout))
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ class Pylon(Looking):
     farthest: float = 100.0
     views: tuple[tuple[float, float], ...] = ALL_ROUND
 
-    def targets(self, around: Surroundings) -> Iterator[Target]:
+    def things(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each pylon.
 
         Only `corrected` knows that an error of the yaw moves the reading sideways.
@@ -175,7 +175,7 @@ class Pylon(Looking):
             sensor = LandmarkOffset(
                 mark.x, mark.y, self.sigma, self.sigma, around.layout, yaw_sigma
             )
-            yield Target("pylon", sensor, (mark.x, mark.y))
+            yield Target(self.called, sensor, (mark.x, mark.y))
 
     def read(self, seen: Seen, pose: Array, u: Array) -> Seen:
         """What the lidar sees with its own noise, turned by the yaw as it was measured."""
@@ -194,11 +194,13 @@ class Lidar(Looking):
     farthest: float = 100.0
     views: tuple[tuple[float, float], ...] = ALL_ROUND
 
-    def targets(self, around: Surroundings) -> Iterator[Target]:
+    def things(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each pylon."""
         for mark in around.landmarks:
             yield Target(
-                "lidar", LidarOffset(mark.x, mark.y, self.sigma, around.layout), (mark.x, mark.y)
+                self.called,
+                LidarOffset(mark.x, mark.y, self.sigma, around.layout),
+                (mark.x, mark.y),
             )
 
 
@@ -211,6 +213,7 @@ class Ultrasonic(Looking):
     """Document 001: a ring of ultrasonic beams; the error grows with the distance (fig. 6)."""
 
     name: ClassVar[str] = "ultrasonic"
+    by_pose: ClassVar[bool] = True
     rate: float = 2.0
     bearings: tuple[float, ...] = EIGHT  # rad from straight ahead
     sigma: float = 0.005  # m
@@ -218,13 +221,13 @@ class Ultrasonic(Looking):
     nearest: float = 0.1  # m
     farthest: float = 2.0
 
-    def targets(self, around: Surroundings) -> Iterator[Target]:
+    def things(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each beam."""
         for number, bearing in enumerate(self.bearings):
             beam = UltrasonicBeam(
                 around.walls, bearing, self.sigma, self.sigma_per_metre, self.nearest, self.farthest
             )
-            yield Target(f"ultrasonic {number}", beam)
+            yield Target(f"{self.called} {number}", beam)
 
 
 @dataclass(frozen=True)
@@ -235,6 +238,7 @@ class Infrared(Looking):
     """
 
     name: ClassVar[str] = "infrared"
+    by_pose: ClassVar[bool] = True
     rate: float = 2.0
     bearings: tuple[float, ...] = FOUR
     gain: float = 1.0  # V per e-fold of the distance
@@ -244,7 +248,7 @@ class Infrared(Looking):
     nearest: float = 0.1  # m
     farthest: float = 1.5
 
-    def targets(self, around: Surroundings) -> Iterator[Target]:
+    def things(self, around: Surroundings) -> Iterator[Target]:
         """A sensor for each pair."""
         for number, bearing in enumerate(self.bearings):
             beam = InfraredBeam(
@@ -252,7 +256,7 @@ class Infrared(Looking):
                 self.nearest,
                 self.farthest,
             )  # fmt: skip
-            yield Target(f"infrared {number}", beam)
+            yield Target(f"{self.called} {number}", beam)
 
 
 @dataclass(frozen=True)
@@ -267,9 +271,9 @@ class Compass(Looking):
     sigma: float = math.radians(10)  # rad; the document prints none
     orientation: float = 0.0  # rad, β of eqs 36, 37: what it tells where the robot looks along +x
 
-    def targets(self, around: Surroundings) -> Iterator[Target]:
+    def things(self, around: Surroundings) -> Iterator[Target]:
         """The yaw."""
-        yield Target("compass", Yaw(self.orientation, self.sigma, around.layout))
+        yield Target(self.called, Yaw(self.orientation, self.sigma, around.layout))
 
 
 @dataclass(frozen=True)
@@ -284,9 +288,9 @@ class Gyro(Looking):
     rate: float = 10.0
     sigma: float = math.radians(1)  # rad; the document prints none
 
-    def targets(self, around: Surroundings) -> Iterator[Target]:
-        """The yaw, 0 along the mark."""
-        yield Target("gyro", Yaw(-around.mark, self.sigma, around.layout))
+    def things(self, around: Surroundings) -> Iterator[Target]:
+        """The yaw, 0 along the mark, however it is mounted."""
+        yield Target(self.called, Yaw(-around.mark - self.mount.theta, self.sigma, around.layout))
 
 
 INSTRUMENTS: dict[str, type[Instrument]] = {

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ekfsim.geometry import Array
+from ekfsim.models.sensors.mounted import bare
 from ekfsim.models.sensors.position import Position
 from ekfsim.records import Control, Entry, Reading
 
@@ -39,7 +40,7 @@ def _fix(entry: Entry) -> Reading | None:
     """The fix that an entry brings, None where it brings something else."""
     return (
         entry.given
-        if isinstance(entry.given, Reading) and isinstance(entry.given.sensor, Position)
+        if isinstance(entry.given, Reading) and isinstance(bare(entry.given.sensor), Position)
         else None
     )
 

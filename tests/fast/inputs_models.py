@@ -6,7 +6,7 @@ import numpy as np
 from inputs_rays import DESK, PLACES, ROOM, TURNS
 from twin_inputs import axes_of, inputs
 
-from ekfsim.models.layout import INERTIAL
+from ekfsim.models.layout import INERTIAL, POSE
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.motions.unicycle import Unicycle
 from ekfsim.models.motions.wheel_speeds import WheelSpeeds
@@ -17,6 +17,7 @@ from ekfsim.models.sensors.landmarks import BearingOnly, MarkerAngles, RangeBear
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.laser_by_reading import LaserByReading
 from ekfsim.models.sensors.lidar import LidarOffset
+from ekfsim.models.sensors.mounted import Mount, Mounted
 from ekfsim.models.sensors.offset import LandmarkOffset
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
 from ekfsim.raycast.walls import BOUNDARY, Walls
@@ -151,6 +152,15 @@ def seen(kind):
 
 for each in LANDMARKS:
     inputs(SENSOR, each)(seen(each))
+
+
+@inputs(SENSOR, "Mounted", within=SHORT)
+def mounted_sensors(random, runs):
+    """Beside the pose and half turned round, on a state that is a pose and on one of seven."""
+    for sensor in (UltrasonicBeam(WALLS[0], 0.4, 0.005, 0.01), next(markers())[0]):
+        for layout in (POSE, INERTIAL):
+            for x in states(random, runs, len(layout.names)):
+                yield Mounted(sensor, Mount(0.3, -0.2, 2.5), layout), x
 
 
 @inputs(SENSOR, "Frozen", within=SHORT)

@@ -8,6 +8,7 @@ from ekfsim.models.sensors.frozen import Frozen
 from ekfsim.models.sensors.infrared import InfraredBeam
 from ekfsim.models.sensors.laser import ALONG, Laser
 from ekfsim.models.sensors.laser_by_reading import LaserByReading
+from ekfsim.models.sensors.mounted import Mounted
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
 from ekfsim.raycast.walls import Walls
 
@@ -68,6 +69,12 @@ def infrared(sensor: InfraredBeam, x: Array) -> Linearized:
 def frozen(sensor: Frozen, x: Array) -> Linearized | None:
     """Twin of h, H and R of `Frozen`: by the twin of the sensor that it holds."""
     return sensor.sensor.linearize(sensor.at) if sensor.at.shape == x.shape else None
+
+
+def mounted(sensor: Mounted, x: Array) -> Linearized:
+    """Twin of h, H and R of `Mounted`: by the twin of the sensor that it carries."""
+    h, H, R = sensor.sensor.linearize(sensor._pose(x))
+    return h, sensor._placed(H, x), R
 
 
 def _normal(walls: Walls, wall: Integers) -> Array:

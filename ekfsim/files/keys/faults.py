@@ -2,7 +2,7 @@
 
 from typing import ClassVar
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from ekfsim.files.keys.fields import (
     Degrees,
@@ -120,8 +120,22 @@ class FaultyYawKeys(FaultyKeys):
     bias: Degrees = Field(0.0, description="Degrees added to every yaw.")
 
 
+class FaultyNamedKeys(
+    FaultyMarkersKeys,
+    FaultyRangeBearingKeys,
+    FaultyGnssKeys,
+    FaultyPylonKeys,
+    FaultyLidarKeys,
+    FaultyInfraredKeys,
+):
+    """What is wrong with a sensor that has a name of its own: the keys of its kind."""
+
+
 class FaultySensorsKeys(Strict):
-    """What is wrong with the sensors, by their names."""
+    """What is wrong with the sensors, by their names: the kind where they have no other."""
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, FaultyNamedKeys] = Field(init=False)
 
     markers: FaultyMarkersKeys | None = Field(
         None, description="Cameras.", examples=[{"azimuthBias": 1}]

@@ -4,7 +4,7 @@ messages and editors read the same bounds.
 
 import math
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import (
     AfterValidator,
@@ -56,7 +56,14 @@ class PartKeys(Strict):
     def given(self) -> dict[str, Any]:
         """What was written, by the names that the program has for it; angles in radians."""
         written = self.model_dump(exclude_unset=True)
-        return {name: _inside(value, name in self.angles) for name, value in written.items()}
+        parts = {name: getattr(self, name) for name in written}
+        return {
+            name: part.given()
+            if isinstance(part, PartKeys)
+            else _inside(value, name in self.angles)
+            for (name, value), part in zip(written.items(), parts.values(), strict=True)
+            if value is not None
+        }
 
 
 def _inside(value: Any, is_angle: bool) -> Any:
@@ -115,6 +122,17 @@ def whole(model: type[BaseModel]) -> type[BaseModel]:
 def aliases(model: type[BaseModel]) -> dict[str, str]:
     """The keys of a file by the names that the program has for them."""
     return {name: field.alias or name for name, field in model.model_fields.items()}
+
+
+def keys_of_kind(sensors: type[BaseModel], kind: str) -> type[PartKeys]:
+    """The keys that a mapping of sensors by their kinds has for one of them."""
+    field = next(
+        field for name, field in sensors.model_fields.items() if kind in (name, field.alias)
+    )
+    found: type[PartKeys] = next(
+        part for part in get_args(field.annotation) if issubclass(part, PartKeys)
+    )
+    return found
 
 
 Coordinate = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST, examples=[1.5])]

@@ -36,6 +36,7 @@ from ekfsim.systems.instruments import (
 READ = "How often it is read, in Hz."
 FARTHEST = "How far it sees, in m."
 NEAREST = "What is nearer is not measured, m."
+NAME = r"^[A-Za-z][A-Za-z0-9_-]*$"
 Bearing = Annotated[float, Field(ge=-360, le=360, examples=[45])]
 
 
@@ -81,7 +82,48 @@ Beams = Annotated[
 ]
 
 
-class MarkersKeys(PartKeys):
+class MountKeys(PartKeys):
+    """Where a sensor sits on its robot, and which way it looks there."""
+
+    angles: ClassVar[frozenset[str]] = frozenset({"theta"})
+
+    x: Metres = Field(0.0, description="m ahead of the point that the state tells of.")
+    y: Metres = Field(0.0, description="m to the left of it.")
+    theta: Degrees = Field(
+        0.0, description="Degrees from straight ahead, counter-clockwise.", examples=[90]
+    )
+
+
+class CarriedKeys(PartKeys):
+    """What the filter may be told of any sensor."""
+
+    mount: MountKeys | None = Field(
+        None,
+        description="Where it sits on the robot and which way it looks there, in the robot's "
+        "frame: x ahead and y to the left in m, theta in degrees counter-clockwise; each left out "
+        "is 0.",
+        examples=[{"x": 0.3, "y": 0.1, "theta": 90}],
+    )
+    delay: Spread = Field(
+        0.0,
+        description="How old a reading is when it is stamped, s. The filter knows: a reading of "
+        "the stamp t is used at t − delay.",
+        examples=[0.2],
+    )
+
+
+class InstrumentKeys(CarriedKeys):
+    """What may be said of any sensor."""
+
+    label: Annotated[str, Field(pattern=NAME, examples=["rear"])] | None = Field(
+        None,
+        alias="name",
+        description="What it is called, where there are several of a kind: a letter, then "
+        "letters, digits, - and _. Default: its kind.",
+    )
+
+
+class MarkersKeys(InstrumentKeys):
     """Cameras that tell azimuth and elevation of surveyed markers."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"azimuth_sigma", "elevation_sigma", "views"})
@@ -104,7 +146,7 @@ class MarkersKeys(PartKeys):
     views: Views = Field(degrees(Markers.views), examples=[[[-30, 30], [150, 210]]])
 
 
-class RangeBearingKeys(PartKeys):
+class RangeBearingKeys(InstrumentKeys):
     """A camera that tells range and bearing of landmarks."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"bearing_sigma", "views"})
@@ -126,7 +168,7 @@ class RangeBearingKeys(PartKeys):
     views: Views = Field(degrees(RangeBearings.views), examples=[[[-35, 35]]])
 
 
-class BearingKeys(PartKeys):
+class BearingKeys(InstrumentKeys):
     """A camera that tells the bearing of landmarks alone."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"sigma", "views"})
@@ -139,7 +181,7 @@ class BearingKeys(PartKeys):
     views: Views = Field(degrees(Bearings.views), examples=[[[-35, 35]]])
 
 
-class RangeKeys(PartKeys):
+class RangeKeys(InstrumentKeys):
     """A radio that tells the range to nodes alone.
     It says scale · range + bias, and is corrected before use.
     """
@@ -158,14 +200,14 @@ class RangeKeys(PartKeys):
     views: Views = Field(degrees(Ranges.views), examples=[[[-180, 180]]])
 
 
-class GnssKeys(PartKeys):
+class GnssKeys(InstrumentKeys):
     """Satellite fixes of the position."""
 
     rate: Rate = Field(Gnss.rate, description=READ)
     sigma: Spread = Field(Gnss.sigma, description="Standard deviation of x and of y, m.")
 
 
-class PylonKeys(PartKeys):
+class PylonKeys(InstrumentKeys):
     """A lidar that tells the offset of a pylon."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"views"})
@@ -178,7 +220,7 @@ class PylonKeys(PartKeys):
     views: Views = Field(degrees(Pylon.views), examples=[[[-180, 180]]])
 
 
-class LidarKeys(PartKeys):
+class LidarKeys(InstrumentKeys):
     """A lidar that tells how far to the right and ahead of the robot a pylon stands,
     and so corrects the heading.
     """
@@ -193,7 +235,7 @@ class LidarKeys(PartKeys):
     views: Views = Field(degrees(Lidar.views), examples=[[[-180, 180]]])
 
 
-class UltrasonicKeys(PartKeys):
+class UltrasonicKeys(InstrumentKeys):
     """A ring of ultrasonic beams, whose error grows with the distance."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"bearings"})
@@ -226,7 +268,7 @@ def known_colour(name: str) -> str:
     return name
 
 
-class InfraredKeys(PartKeys):
+class InfraredKeys(InstrumentKeys):
     """Pairs of an infrared emitter and receiver, whose intensity falls with the distance."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"bearings"})
@@ -256,7 +298,7 @@ class InfraredKeys(PartKeys):
     _known = field_validator("colour")(known_colour)
 
 
-class CompassKeys(PartKeys):
+class CompassKeys(InstrumentKeys):
     """A compass, which tells the absolute yaw."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"sigma", "orientation"})
@@ -271,7 +313,7 @@ class CompassKeys(PartKeys):
     )
 
 
-class GyroKeys(PartKeys):
+class GyroKeys(InstrumentKeys):
     """A gyroscope, which tells the yaw since it was set to 0 along the mark,
     the heading of `start`.
     """

@@ -2,24 +2,23 @@
 
 from typing import ClassVar
 
-from pydantic import Field, field_validator
+from pydantic import ConfigDict, Field, field_validator
 
 from ekfsim.files.keys.fields import (
     Degrees,
     Metres,
-    PartKeys,
     Positive,
     Ratio,
     Spread,
     Strict,
     Turn,
 )
-from ekfsim.files.keys.instruments import known_colour, known_colours
+from ekfsim.files.keys.instruments import CarriedKeys, known_colour, known_colours
 
 SEE = "See sensors."
 
 
-class ToldMarkersKeys(PartKeys):
+class ToldMarkersKeys(CarriedKeys):
     """What the filter is told of the cameras."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"azimuth_sigma", "elevation_sigma"})
@@ -29,7 +28,7 @@ class ToldMarkersKeys(PartKeys):
     elevation_sigma: Turn | None = Field(None, alias="elevationSigma", description=SEE)
 
 
-class ToldRangeBearingKeys(PartKeys):
+class ToldRangeBearingKeys(CarriedKeys):
     """What the filter is told of a camera for range and bearing."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"bearing_sigma"})
@@ -38,7 +37,7 @@ class ToldRangeBearingKeys(PartKeys):
     bearing_sigma: Turn | None = Field(None, alias="bearingSigma", description=SEE)
 
 
-class ToldBearingKeys(PartKeys):
+class ToldBearingKeys(CarriedKeys):
     """What the filter is told of a camera for bearings."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"sigma"})
@@ -46,7 +45,7 @@ class ToldBearingKeys(PartKeys):
     sigma: Turn | None = Field(None, description=SEE)
 
 
-class ToldRangeKeys(PartKeys):
+class ToldRangeKeys(CarriedKeys):
     """What the filter is told of a radio,
     and with what its ranges are corrected before the filter gets them.
     """
@@ -56,20 +55,20 @@ class ToldRangeKeys(PartKeys):
     bias: Metres | None = Field(None, description=SEE, examples=[0.11])
 
 
-class ToldFixKeys(PartKeys):
+class ToldFixKeys(CarriedKeys):
     """What the filter is told of fixes, or of a lidar."""
 
     sigma: Spread | None = Field(None, description=SEE)
 
 
-class ToldUltrasonicKeys(PartKeys):
+class ToldUltrasonicKeys(CarriedKeys):
     """What the filter is told of ultrasonic beams."""
 
     sigma: Spread | None = Field(None, description=SEE, examples=[0.005])
     sigma_per_metre: Ratio | None = Field(None, alias="sigmaPerMetre", description=SEE)
 
 
-class ToldInfraredKeys(PartKeys):
+class ToldInfraredKeys(CarriedKeys):
     """What the filter is told of infrared pairs, and of the walls that they shine at."""
 
     gain: Positive | None = Field(None, description=SEE)
@@ -82,7 +81,7 @@ class ToldInfraredKeys(PartKeys):
     _known = field_validator("colour")(known_colour)
 
 
-class ToldYawKeys(PartKeys):
+class ToldYawKeys(CarriedKeys):
     """What the filter is told of a gyroscope."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"sigma"})
@@ -90,7 +89,7 @@ class ToldYawKeys(PartKeys):
     sigma: Turn | None = Field(None, description=SEE, examples=[1])
 
 
-class ToldCompassKeys(PartKeys):
+class ToldCompassKeys(CarriedKeys):
     """What the filter is told of a compass."""
 
     angles: ClassVar[frozenset[str]] = frozenset({"sigma", "orientation"})
@@ -99,8 +98,22 @@ class ToldCompassKeys(PartKeys):
     orientation: Degrees | None = Field(None, description=SEE, examples=[0])
 
 
+class ToldNamedKeys(
+    ToldMarkersKeys,
+    ToldRangeBearingKeys,
+    ToldRangeKeys,
+    ToldUltrasonicKeys,
+    ToldInfraredKeys,
+    ToldCompassKeys,
+):
+    """What the filter is told of a sensor that has a name of its own: the keys of its kind."""
+
+
 class ToldSensorsKeys(Strict):
-    """What the filter is told of the sensors, by their names."""
+    """What the filter is told of the sensors, by their names: the kind where they have no other."""
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, ToldNamedKeys] = Field(init=False)
 
     markers: ToldMarkersKeys | None = Field(
         None, description="Cameras.", examples=[{"azimuthSigma": 1}]

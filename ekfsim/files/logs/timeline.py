@@ -50,10 +50,11 @@ class Motions:
 
 
 class Sample(NamedTuple):
-    """A reading and its time."""
+    """A reading and its stamp."""
 
     t: float  # s
     reading: Reading
+    delay: float = 0.0  # s, how old it was then: it is used at t − delay
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,7 @@ class Timeline:
     def _within(self, start: float, motions: Motions, warnings: list[str]) -> list[Sample]:
         """The readings that the motions reach, by time."""
         edges = np.concatenate([[start], motions.end])
-        times = _snapped(np.array([sample.t for sample in self.samples]), edges)
+        times = _snapped(np.array([sample.t - sample.delay for sample in self.samples]), edges)
         kept = [
             Sample(float(times[i]), self.samples[i].reading)
             for i in np.argsort(times, kind="stable")

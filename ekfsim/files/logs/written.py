@@ -14,6 +14,7 @@ from ekfsim.files.logs.formats.pylon import CLOCK, EARTH_RADIUS
 from ekfsim.files.logs.handed_out import hand_out
 from ekfsim.files.logs.ticks import Run, as_written, numbered
 from ekfsim.files.results.writing import whole_folder
+from ekfsim.models.sensors.mounted import place_of
 from ekfsim.models.sensors.offset import from_global
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Entry
@@ -103,7 +104,7 @@ def _mower(scene: Scene, run: Run, out: Path) -> Files:
     holds the pose at which the filter of the run started, and every other the true pose after its
     own motion. Cameras look half a step before the stamp of the row at which they are used.
     """
-    poses, angles = list[list[float | int]](), list[list[float | int]]()
+    poses, angles, delays = list[list[float | int]](), list[list[float | int]](), _delays(scene)
     row_of = {mark.id: row for row, mark in enumerate(scene.world.landmarks)}
     for n, tick in enumerate(run.ticks):
         left, right, ω, dt = tick.u.tolist()
@@ -111,7 +112,8 @@ def _mower(scene: Scene, run: Run, out: Path) -> Files:
         poses.append([n + 1, 0, tick.t, left, right, 0, 0, 0, ω, *[0] * 9, *pose])
         for reading in tick.readings:
             _, id = numbered(reading, ("marker",), out)
-            angles.append([tick.t - dt / 2, row_of[id], *reading.z.tolist()])
+            stamp = tick.t - dt / 2 + delays[reading.name]
+            angles.append([stamp, row_of[id], *reading.z.tolist()])
     return {
         "marker-001-poselog.txt": as_written(poses, " "),
         "marker-001-003-angles.txt": as_written(angles, " "),
@@ -124,6 +126,7 @@ def _gnss(scene: Scene, run: Run, out: Path) -> Files:
     fixes and true poses at the stamps of the wheels.
     """
     wheels, fixes = list[list[float]](), list[list[float]]()
+    delays = _delays(scene)
     for tick in run.ticks:
         left, right, _ = tick.u.tolist()
         if not wheels:
@@ -131,7 +134,7 @@ def _gnss(scene: Scene, run: Run, out: Path) -> Files:
         wheels.append([tick.t, right, left])
         for reading in tick.readings:
             numbered(reading, ("gnss",), out)
-            fixes.append([tick.t, *reading.z.tolist()])
+            fixes.append([tick.t + delays[reading.name], *reading.z.tolist()])
     return {
         "wheelspeeds.csv": as_written(wheels, ",", "t,vr,vl"),
         "gnss.csv": as_written(fixes, ",", "t,x,y"),
@@ -144,17 +147,26 @@ def _pylon(scene: Scene, run: Run, out: Path) -> Files:
     stamps in whole microseconds, in plain digits.
     """
     rows = list[list[float | int]]()
+    if any(_delays(scene).values()):
+        wrong = "a row of this robot's log is stamped once, for its motion and for its reading"
+        raise UsageError(f"{out}: {wrong}; take the 'delay' out of the world")
     for tick in run.ticks:
         ahead, left, θ, _ = tick.u.tolist()
         x = y = math.nan
         for reading in tick.readings:
             kind, _ = numbered(reading, ("pylon", "lidar"), out)
-            x, y = (from_global(reading.z, θ) if kind == "pylon" else reading.z).tolist()
+            facing = place_of(reading.sensor, np.array([0.0, 0.0, θ]))[2]
+            x, y = (from_global(reading.z, facing) if kind == "pylon" else reading.z).tolist()
         stamp = (BEGINNING + int(tick.t)) * CLOCK + round(tick.t * 1e6) % CLOCK
         latitude, longitude = _degrees(*((0.0, 0.0) if tick.fix is None else tick.fix.tolist()))
         yaw = math.degrees(-θ) % 360
         rows.append([x, y, 0.0, stamp, latitude, longitude, yaw, 0.0, 0.0, ahead, left, 0.0])
     return {"pylon.csv": as_written(rows, ",", ending=",")}
+
+
+def _delays(scene: Scene) -> dict[str, float]:
+    """How old the readings of each sensor are when they are stamped, as the filter is told, in s"""
+    return {target.name: target.delay for _, target in scene.world.targets(scene.reading)}
 
 
 def _degrees(x: float, y: float) -> tuple[float, float]:
@@ -174,16 +186,18 @@ def _pioneer(scene: Scene, run: Run, out: Path) -> Files:
         for name in YAWS
         if any(i.name == name for i in scene.world.instruments)
     }
+    delays = _delays(scene)
     for tick in run.ticks:
         left, right, *dt = tick.u.tolist()  # a skid-steered robot is given speeds and dt
         span = dt[0] if dt else 1.0
         ways.append([tick.t, left * span, right * span])
         for reading in tick.readings:
             kind, beam = numbered(reading, (*read, *yaws), out)
+            stamp = tick.t + delays[reading.name]
             if kind in yaws:
-                yaws[kind].append([tick.t, *reading.z.tolist()])
+                yaws[kind].append([stamp, *reading.z.tolist()])
             else:
-                read[kind].append([tick.t, beam, *reading.z.tolist()])
+                read[kind].append([stamp, beam, *reading.z.tolist()])
     return {
         "odometry.csv": as_written(ways, ",", "t,left,right"),
         "ultrasonic.csv": as_written(read["ultrasonic"], ",", "t,beam,range"),

@@ -10,7 +10,7 @@ import numpy as np
 
 from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.files.keys.commands import CommandKeys, CommandsKeys, ExpectKeys
-from ekfsim.files.keys.fields import PartKeys, Pose, aliases
+from ekfsim.files.keys.fields import PartKeys, Pose, aliases, keys_of_kind
 from ekfsim.files.keys.world import (
     BeliefKeys,
     BelievedStartKeys,
@@ -25,7 +25,7 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.scene import Expect, Scene
 from ekfsim.systems.drive import Drive
 from ekfsim.systems.faults import DriveFaults, SensorFaults
-from ekfsim.systems.instrument import Instrument
+from ekfsim.systems.instrument import Carried, Instrument
 from ekfsim.systems.robot import Robot
 from ekfsim.world import (
     Axes,
@@ -42,8 +42,9 @@ from ekfsim.world import (
 
 if TYPE_CHECKING:
     from ekfsim.files.keys.drive import PathKeys, StretchKeys
-    from ekfsim.files.keys.faults import FaultKeys
+    from ekfsim.files.keys.faults import FaultKeys, FaultySensorsKeys
     from ekfsim.files.keys.sensors import SensorKeys
+    from ekfsim.files.keys.told import ToldSensorsKeys
 
 P = TypeVar("P", Robot, Instrument)
 NO_NOISE = Noise(0.0, 0.0, 0.0, 0.0, 0.0)  # of the classroom's robot, where another one drives
@@ -61,7 +62,7 @@ def world_of(keys: WorldKeys) -> World:
         noise=noise,
         told=told(keys, floor_plan, start, noise),
         faults=faults_of(keys.faults),
-        drive_faults=drive_faults_of(keys.faults),
+        drive_faults=drive_faults_of(keys),
         landmarks=tuple(Landmark(mark.id, mark.x, mark.y) for mark in keys.landmarks),
         description=keys.description,
         system=keys.system,
@@ -92,7 +93,11 @@ def told_robot_of(keys: WorldKeys, belief: BeliefKeys) -> Robot | None:
 def changed(part: P, keys: PartKeys) -> P:
     """The same robot or instrument with other numbers."""
     anew: Callable[..., P] = replace
-    return anew(part, **keys.given())
+    given = keys.given()
+    if "mount" in given:
+        assert isinstance(part, Carried)
+        given["mount"] = part.mount._replace(**given["mount"])
+    return anew(part, **given)
 
 
 def instruments_of(keys: WorldKeys) -> tuple[Instrument, ...]:
@@ -112,14 +117,24 @@ def told_instruments_of(keys: WorldKeys, belief: BeliefKeys) -> tuple[Instrument
     """The sensors as the filter is told, None where that is as they are."""
     if belief.sensors is None:
         return None
-    told = {
-        alias: getattr(belief.sensors, name)
-        for name, alias in aliases(type(belief.sensors)).items()
-    }
     return tuple(
-        one if told[one.name] is None else changed(one, told[one.name])
+        one if (told := said_of(one, belief.sensors)) is None else changed(one, told)
         for one in instruments_of(keys)
     )
+
+
+def said_of(one: Instrument, sensors: "ToldSensorsKeys | FaultySensorsKeys") -> Any:
+    """What a mapping of sensors by their names says of one, by the keys of its kind; None where it
+    says nothing.
+    """
+    kinds = {alias: name for name, alias in aliases(type(sensors)).items()}
+    if one.called in kinds:
+        return getattr(sensors, kinds[one.called])
+    named = (sensors.model_extra or {}).get(one.called)
+    if named is None:
+        return None
+    written = named.model_dump(by_alias=True, exclude_unset=True)
+    return keys_of_kind(type(sensors), one.name).model_validate(written)
 
 
 def faults_of(keys: "FaultKeys | None") -> Faults:
@@ -127,16 +142,16 @@ def faults_of(keys: "FaultKeys | None") -> Faults:
     return Faults(**_of_record(Faults, keys))
 
 
-def drive_faults_of(keys: "FaultKeys | None") -> DriveFaults:
+def drive_faults_of(keys: WorldKeys) -> DriveFaults:
     """What is wrong with a driven robot and its instruments."""
-    given = _of_record(DriveFaults, keys)
+    given = _of_record(DriveFaults, keys.faults)
     faulty = given.pop("sensors", None)
-    if keys is None or keys.sensors is None or faulty is None:
+    if keys.faults is None or keys.faults.sensors is None or faulty is None:
         return DriveFaults(**given)
     sensors = {
-        alias: SensorFaults(part.biases(), part.outliers, part.outlier_size, part.delay)
-        for name, alias in aliases(type(keys.sensors)).items()
-        if (part := getattr(keys.sensors, name)) is not None
+        one.called: SensorFaults(part.biases(), part.outliers, part.outlier_size, part.delay)
+        for one in instruments_of(keys)
+        if (part := said_of(one, keys.faults.sensors)) is not None
     }
     return DriveFaults(**given, sensors=sensors)
 
@@ -158,8 +173,7 @@ def instrument_of(item: "SensorKeys") -> Instrument:
     from ekfsim.files.keys.sensors import SENSORS
 
     keys = item.part()
-    made: Callable[..., Instrument] = SENSORS[type(keys)]
-    return made(**keys.given())
+    return changed(SENSORS[type(keys)](), keys)
 
 
 def told(keys: WorldKeys, floor_plan: Map, start: Array, noise: Noise) -> Told:

@@ -7,7 +7,7 @@ from ekfsim.errors import InputError, Mistake, UsageError
 from ekfsim.files.scenes.settings import Setting, fault_of, indexed, kind_of, path_of
 from ekfsim.files.yaml.marked import Node, field_of, scalar
 from ekfsim.files.yaml.schema import Kind
-from ekfsim.files.yaml.telling import short
+from ekfsim.files.yaml.telling import nearest, quoted, short
 from ekfsim.printable import some
 
 OFF = "off"
@@ -72,16 +72,16 @@ def idle_on_log(settings: Iterable[Setting]) -> Iterator[str]:
 def _overruled(root: Node, one: Setting) -> Node:
     path = path_of(one)
     if path[0] == "sensors":
-        root, index = _with_sensor(root, str(path[1]), one)
-        path = indexed(path, index)
+        root, index, kind = _with_sensor(root, str(path[1]), one)
+        path = indexed((path[0], kind, *path[2:]), index)
     if path == ("gate",) and one.value == OFF:
         return _without(root, "gate")
     return _put(root, path, Node(root.nearest(path).mark, scalar(one.value), one.value))
 
 
-def _with_sensor(root: Node, kind: str, one: Setting) -> tuple[Node, int]:
+def _with_sensor(root: Node, name: str, one: Setting) -> tuple[Node, int, str]:
     """The tree with the sensors of its system written out where it has none,
-    and which of them is of a kind.
+    which of them has a name, and its kind.
     """
     from ekfsim.systems import SYSTEMS
 
@@ -93,17 +93,24 @@ def _with_sensor(root: Node, kind: str, one: Setting) -> tuple[Node, int]:
         root = _put(root, ("sensors",), Node(root.mark, items)) if known else root
     sensors = root.at(("sensors",))
     items = sensors.value if sensors and isinstance(sensors.value, list) else []
-    kinds = [key for item in items for key in item.keys]
-    if kind not in kinds:
+    kinds = [next(iter(item.keys), "") for item in items]
+    called = [_name_of(item, kind) for item, kind in zip(items, kinds, strict=True)]
+    if name not in called:
+        near = nearest(name, called)
+        right = f"did you mean '{near}'?" if near else f"it has: {some(called) or 'none'}"
+        raise UsageError(f"{one.told}: the world has no sensor {quoted(name)}; {right}")
+    if called.count(name) > 1:
         raise UsageError(
-            f"{one.told}: the world has no sensor '{kind}'; it has: {some(kinds) or 'none'}"
+            f"{one.told}: the world has more than one sensor '{name}'; give each a name in its file"
         )
-    if kinds.count(kind) > 1:
-        raise UsageError(
-            f"{one.told}: the world has more than one sensor '{kind}'; write the number into "
-            "its file"
-        )
-    return root, kinds.index(kind)
+    index = called.index(name)
+    return root, index, kinds[index]
+
+
+def _name_of(item: Node, kind: str) -> str:
+    """What a sensor of a file is called: its name, or its kind where it has none."""
+    name = item.at((kind, "name"))
+    return kind if name is None else name.written
 
 
 def _put(node: Node, path: Sequence[str | int], value: Node) -> Node:

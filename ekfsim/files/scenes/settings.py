@@ -19,6 +19,7 @@ OF_COMMANDS = ("gate", "guard")  # the rest belongs to the world
 # filter.particles=… is a commands file's filterSettings
 OF_FILTERS, FILTER_SETTINGS = "filter", "filterSettings"
 OF_LOGS = "recording"  # recording.timeUnit=…
+SENSORS = ("sensors",), ("belief", "sensors"), ("faults", "sensors")  # each by its name
 OF_WORLDS = ("noise", "belief", "faults", "start", "robot", "sensors")
 
 
@@ -156,6 +157,8 @@ def fault_of(one: Setting, is_told: bool = True) -> tuple[str, str] | None:
                 f"write {field_of(path)}",
             )
         if part not in known:
+            if _names_a_sensor(one, n, known):
+                return None
             if n == 0 and part in keys_at("commands", (FILTER_SETTINGS,)):
                 return f"unknown key {quoted(part)}", f"did you mean '{OF_FILTERS}.{part}'?"
             near = nearest(part, known) if is_told else ""
@@ -172,6 +175,17 @@ def fault_of(one: Setting, is_told: bool = True) -> tuple[str, str] | None:
     if schema_at(kind, indexed(path, 0)).get("type") == "array":
         return f"'{one.key}' is a list", "only single values can be set, e.g. noise.rangeSigmaRatio"
     return None
+
+
+def _names_a_sensor(one: Setting, n: int, kinds: list[str]) -> bool:
+    """Whether the part n of a setting's key can be the name of a sensor, known where its world is:
+    some kind has the keys that follow.
+    """
+    parts = one.key.split(".")
+    if tuple(parts[:n]) not in SENSORS or n + 1 == len(parts):
+        return False
+    keys = (".".join([*parts[:n], kind, *parts[n + 1 :]]) for kind in kinds)
+    return any(fault_of(dataclasses.replace(one, key=key), is_told=False) is None for key in keys)
 
 
 def _known(kind: Kind, path: Route) -> list[str]:

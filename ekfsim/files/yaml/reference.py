@@ -7,6 +7,7 @@ from typing import Any
 from ekfsim.files.yaml.schema import Kind, json_schema
 
 BEYOND = 1e6  # a bound that says no more than that a number must be sensible
+NAMED = "NAME"  # a key that whoever writes the file chooses
 LONGEST = 60  # characters of an example; a longer one stands in the files that come along
 Schema = dict[str, Any]
 
@@ -29,7 +30,9 @@ def _places(schema: Schema, inner: Schema) -> dict[str, str]:
     waiting = [("", schema)]
     while waiting:
         place, part = waiting.pop(0)
-        for key, value in part.get("properties", {}).items():
+        others = part.get("additionalProperties")
+        named = {NAMED: others} if isinstance(others, dict) else {}
+        for key, value in {**part.get("properties", {}), **named}.items():
             for name, many in _named(value):
                 if name not in found and name in inner:
                     found[name] = f"{place}{key}{'[]' if many else ''}"

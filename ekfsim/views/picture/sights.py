@@ -14,8 +14,8 @@ from ekfsim.diagnostics.ambiguity import BeamSensor
 from ekfsim.filters.belief import Refused, posed
 from ekfsim.geometry import Array
 from ekfsim.models.protocols import Quantity, Sensor
-from ekfsim.models.sensors.frozen import Frozen
 from ekfsim.models.sensors.infrared import InfraredBeam
+from ekfsim.models.sensors.mounted import bare, place_of
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 
@@ -55,7 +55,8 @@ def sight(step: Step) -> Sight | None:
     given, correction = step.entry.given, step.correction
     if not isinstance(given, Reading) or correction is None:
         return None
-    pose, z, predicted = posed(step.prior, step.layout).mean, given.z, correction.predicted
+    pose = place_of(given.sensor, posed(step.prior, step.layout).mean)
+    z, predicted = given.z, correction.predicted
     refused, sensor = Refused(int(correction.refused)), bare(given.sensor)
     if isinstance(sensor, BeamSensor):
         line, way = (
@@ -123,13 +124,6 @@ def beam_length(sensor: BeamSensor, z: float) -> float:
         return z
     logarithm = (sensor.offset - z / sensor.reflectance) / sensor.gain
     return math.exp(min(logarithm, math.log(FARTHEST * sensor.farthest)))
-
-
-def bare(sensor: Sensor) -> Sensor:
-    """The sensor itself, where it is wrapped to be linearised elsewhere."""
-    while isinstance(sensor, Frozen):
-        sensor = sensor.sensor
-    return sensor
 
 
 def kinds(scene: Scene) -> set[type[Sensor]]:

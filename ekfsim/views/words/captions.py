@@ -7,6 +7,7 @@ from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense, Untold
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse, radius_factor
 from ekfsim.models.sensors.infrared import InfraredBeam
+from ekfsim.models.sensors.mounted import bare
 from ekfsim.records import Control, Entry, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.picture.sights import Sight, instants, told
@@ -94,7 +95,7 @@ def _notes(view: View, scene: Scene, read: Beam | Sight | None, probability: flo
             case Beam():
                 intensity = (
                     [told_of(step)]
-                    if isinstance(given, Reading) and isinstance(given.sensor, InfraredBeam)
+                    if isinstance(given, Reading) and isinstance(bare(given.sensor), InfraredBeam)
                     else []
                 )
                 return [*intensity, *_ranges(read), *_warnings(read)]

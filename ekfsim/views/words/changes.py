@@ -15,8 +15,8 @@ from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Correction, Gaussian, posed
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import cone_halfwidth, ellipse
+from ekfsim.models.sensors.mounted import bare, place_of
 from ekfsim.records import Control, Reading
-from ekfsim.views.picture.sights import bare
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.judgement import fatal
 from ekfsim.views.words.numbers import figure, length
@@ -142,7 +142,7 @@ def _sizes(view: View, before: Gaussian, after: Gaussian, probability: float) ->
     """How uncertain the pose was and is."""
     given = view.step.entry.given
     if isinstance(given, Reading) and isinstance(sensor := bare(given.sensor), BeamSensor):
-        along = before.mean[2] + sensor.bearing
+        along = place_of(given.sensor, before.mean)[2] + sensor.bearing
         yield Size("σ along the beam", _sigma(before, along), _sigma(after, along))
     was, now = (ellipse(pose.covariance, probability) for pose in (before, after))
     yield Size("the major radius", float(was.major), float(now.major))

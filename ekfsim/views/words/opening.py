@@ -9,6 +9,7 @@ from typing import Any
 from ekfsim.filters.choice import kind_of
 from ekfsim.filters.place import label
 from ekfsim.filters.tuning import reads
+from ekfsim.models.sensors.mounted import Mount
 from ekfsim.provenance import told_in_a_line
 from ekfsim.scene import Scene
 from ekfsim.views.words.numbers import number, pose
@@ -21,6 +22,7 @@ RATIOS = {  # as the files call them
     "odometry_angle": "odometryAngSigmaRatio",
     "range": "rangeSigmaRatio",
 }
+SELDOM = "delay", "mount_x", "mount_y", "mount_theta"  # told where they are not 0
 LINEARISED = ("kf", "kf-nominal", "ekf", "iekf")
 PERFECT = (
     "The filter is told that the range has no noise: each beam leaves no doubt along its "
@@ -66,7 +68,7 @@ def _numbers(scene: Scene) -> Iterator[str]:
         yield "The numbers of robot and sensors are in m, s, rad and V"
         yield from _both(f"The robot ({world.system})", world.robot, world.told_robot, simulated)
         for true, told in zip(world.instruments, world.told_instruments, strict=True):
-            yield from _both(f"Sensor {true.name}", true, told, simulated)
+            yield from _both(f"Sensor {true.called}", true, told, simulated)
     if simulated:
         about = ""
         if world.start_sigma.any():
@@ -79,10 +81,14 @@ def _numbers(scene: Scene) -> Iterator[str]:
 
 def _both(what: str, true: Any, told: Any, known: bool) -> Iterator[str]:
     """Numbers of a record as they are, and those of them that the filter is told otherwise."""
-    other = _values(told)
+    as_is, other = _values(true), _values(told)
+    for name in SELDOM:
+        if not as_is.get(name) and not other.get(name):
+            as_is.pop(name, None)
+            other.pop(name, None)
     if known:
-        yield f"{what}: {_listed(_values(true))}"
-        other = {name: value for name, value in other.items() if value != _values(true).get(name)}
+        yield f"{what}: {_listed(as_is)}"
+        other = {name: value for name, value in other.items() if value != as_is.get(name)}
     if other:
         yield f"{what}, as the filter is told: {_listed(other)}"
 
@@ -93,6 +99,8 @@ def _values(record: Any) -> dict[str, float]:
         RATIOS[f.name] if isinstance(record, Noise) else f.name: getattr(record, f.name)
         for f in fields(record)
     }
+    if isinstance(mount := named.pop("mount", None), Mount):
+        named |= {f"mount_{axis}": value for axis, value in mount._asdict().items()}
     return {name: value for name, value in named.items() if isinstance(value, int | float)}
 
 

@@ -174,7 +174,7 @@ def test_the_schema_s_defaults_are_the_instruments_(keys):
 
 
 def assert_close(value, expected):
-    if isinstance(expected, str):
+    if expected is None or isinstance(expected, str):
         assert value == expected
     else:
         np.testing.assert_allclose(value, expected, rtol=0, atol=1e-12)
@@ -388,8 +388,8 @@ ROOMS = {
             "'arctan'; write gyro or midpoint",
             "5:73: belief.robot.headingSigma: -1 is negative; write a number of 0 or more",
             "5:94: belief.sensors.gnss: the world has no sensor 'gnss'; it has: markers",
-            "5:108: belief.sensors.markers: unknown key 'range'; known keys here: height, "
-            "azimuthSigma, elevationSigma",
+            "5:108: belief.sensors.markers: unknown key 'range'; known keys here: mount, "
+            "delay, height, azimuthSigma, elevationSigma",
             "6:21: faults.rangeBias: the robot of the system 'mower' has no fault 'rangeBias'; it "
             "may have: leftScale, rightScale, gyroBias, sensors",
             "6:33: faults.yawBias: the robot of the system 'mower' has no fault 'yawBias'; it may "
@@ -491,12 +491,12 @@ ROOMS = {
         "markers: {}\n  - ultrasonic: {}\n"
         "  - {ultrasonic: {rate: -1}}\n",
         [
-            "7:11: sensors[2].gnss: the sensor 'gnss' on line 5 goes by the same name; keep one "
-            "of them",
-            "8:14: sensors[3].markers: the sensor 'markers' on line 6 goes by the same name; keep "
-            "one of them, with the 'views' of both",
+            "7:11: sensors[2].gnss: the sensor 'gnss' on line 5 goes by the same name; give "
+            "one a 'name', or keep one of them",
+            "8:14: sensors[3].markers: the sensor 'markers' on line 6 goes by the same name; "
+            "give one a 'name', or keep one of them, with the 'views' of both",
             "10:18: sensors[5].ultrasonic: the sensor 'ultrasonic' on line 9 goes by the same "
-            "name; keep one of them, with the 'bearings' of both",
+            "name; give one a 'name', or keep one of them, with the 'bearings' of both",
             "10:25: sensors[5].ultrasonic.rate: -1 is negative; write more than 0",
         ],
     ),
@@ -777,7 +777,7 @@ def test_warnings(worlds):
         f"world.yaml:5:11: sensors[0].gnss: the sensor 'gnss' {of_rate}",
         f"world.yaml:6:14: sensors[1].markers: {of_markers}",
     ]
-    of_walls = "sees walls, and the world has none; write a 'boundary' or 'obstacles'"
+    of_walls = "sees walls, and the world has none; write a 'boundary', 'obstacles' or 'walls'"
     assert told(HEAD + "system: pioneer\n") == [
         f"world.yaml:3:9: system: the sensor '{name}' {of_walls}"
         for name in ("ultrasonic", "infrared")

@@ -89,7 +89,7 @@ def read_gnss(asked: Asked) -> Recorded:
     gnss = only(world, reading, Gnss)
     taken = _at_rows(fixes, wheels, warnings) if reading == "coded" else fixes.t
     samples = [
-        Sample(t, Reading(gnss.sensor, z, gnss.name))
+        Sample(t, Reading(gnss.sensor, z, gnss.name), gnss.delay)
         for t, z in zip(taken.tolist(), fixes.values[:, 1:], strict=True)
     ]
     return Timeline(str(path), float(wheels.t[0]), motions, samples, truth).recorded(

@@ -3,6 +3,8 @@ poselog, angles and map, text files of bare numbers.
 """
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,9 +24,8 @@ from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.systems.document import DocumentReading
-from ekfsim.systems.instrument import Landmark
+from ekfsim.systems.instrument import Landmark, Target
 from ekfsim.systems.instruments import Markers
-from ekfsim.world import World
 
 POSELOG = Table(
     "the positions",
@@ -112,8 +113,12 @@ def read_mower(asked: Asked) -> Recorded:
     dT = 1 / world.believed_robot.rate
     tell_back(angles, warnings)
     rows_of = _rows_of_listing if reading == "coded" else _rows_of_text
+    instrument, targets = of_landmarks(world, reading, landmarks, (Markers,))[0]
+    if instrument.delay:  # by when they were, not by when they were stamped
+        aged = np.column_stack([angles.t - instrument.delay, angles.values[:, 1:]])
+        angles = replace(angles, values=aged)
     rows = rows_of(poses, angles, dT, warnings)
-    readings = _by_row(rows, _readings(angles, landmarks, world, reading, warnings))
+    readings = _by_row(rows, _readings(angles, landmarks, targets, warnings))
     u = np.column_stack([poses.values[:, 1:4], np.full(len(poses), dT)])
     truth = poses.values[:, 4:7].copy()
     truth[:, 2] = wrap(truth[:, 2])
@@ -180,12 +185,10 @@ def _landmarks(table: Rows, warnings: list[str]) -> tuple[Landmark, ...]:
 def _readings(
     angles: Rows,
     landmarks: tuple[Landmark, ...],
-    world: World,
-    reading: DocumentReading,
+    targets: Mapping[int, Target],
     warnings: list[str],
 ) -> list[Reading | None]:
     """What each row of the angles tells; None where the map has no such marker."""
-    _, targets = of_landmarks(world, reading, landmarks, (Markers,))[0]
     marker = angles.values[:, 1]
     unknown = np.flatnonzero(
         (marker < 0) | (marker >= len(landmarks)) | (marker != np.rint(marker))

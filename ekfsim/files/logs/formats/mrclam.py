@@ -168,9 +168,8 @@ def _samples(
         if subject in known:
             for instrument, targets in instruments:
                 target = targets[subject]
-                samples.append(
-                    Sample(t, Reading(target.sensor, _reading(instrument, r, φ), target.name))
-                )
+                read = Reading(target.sensor, _reading(instrument, r, φ), target.name)
+                samples.append(Sample(t, read, target.delay))
         elif subject is None:
             left_out[f"of no known {names.kind}"].append(row)
         else:

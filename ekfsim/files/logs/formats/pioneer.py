@@ -152,15 +152,17 @@ def _samples(folder: Path, asked: Asked, odometry: Rows) -> list[Sample]:
     for instrument in world.told_instruments:
         if instrument.name not in FILES:
             continue
-        wanted.append(instrument.name)
-        table = FILES[instrument.name]
+        called, table = instrument.called, FILES[instrument.name]
+        if called != instrument.name:  # a file of its own name
+            table = table.but(what=f"the {called}", files=(f"{called}*.csv",))
+        wanted.append(called)
         file = find_any(folder, table.what, *table.files)
         if file is None:
-            warnings.append(f"{folder}: no {instrument.name}.csv in it: there are no such readings")
+            warnings.append(f"{folder}: no {called}.csv in it: there are no such readings")
             continue
         found.append(file)
         beams = in_order(read_table(file, table, asked, odometry), warnings)
-        samples += _read(beams, instrument.name, by_name(world, reading, instrument), warnings)
+        samples += _read(beams, called, by_name(world, reading, instrument), warnings)
     if not found:
         names = " nor ".join(f"{name}.csv" for name in wanted or FILES)
         none = (
@@ -183,7 +185,8 @@ def _read(beams: Rows, kind: str, targets: dict[str, Target], warnings: list[str
         if target is None:
             unknown.append(row)
         else:
-            samples.append(Sample(t, Reading(target.sensor, np.array([value]), target.name)))
+            read = Reading(target.sensor, np.array([value]), target.name)
+            samples.append(Sample(t, read, target.delay))
     if unknown:
         row, more = (
             unknown[0],

@@ -20,6 +20,7 @@ from ekfsim.files.yaml.telling import quoted
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.sensors.lidar import LidarOffset
+from ekfsim.models.sensors.mounted import bare, place_of
 from ekfsim.models.sensors.offset import to_global
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.systems.instruments import Lidar, Pylon
@@ -87,7 +88,10 @@ def read_pylon(asked: Asked) -> Recorded:
     beam = np.where((beam == 0).all(axis=1, keepdims=True), np.nan, beam)
     fixes = metres(rows.values[:, 3:5])
     motion, pylon = world.believed_robot.motion(reading), only(world, reading, Pylon, Lidar)
-    z = beam if isinstance(pylon.sensor, LidarOffset) else to_global(beam, θ)
+    if pylon.delay:
+        beam = _when_seen(beam, rows, pylon.delay, warnings)
+    facing = place_of(pylon.sensor, np.column_stack([np.zeros((len(θ), 2)), θ]))[:, 2]
+    z = beam if isinstance(bare(pylon.sensor), LidarOffset) else to_global(beam, facing)
     entries = [Entry(0, None, t=0.0)]
     for t, given, offset, fix in zip(rows.t.tolist(), u, z, fixes, strict=True):
         known = None if np.isnan(fix).any() else fix
@@ -101,6 +105,23 @@ def read_pylon(asked: Asked) -> Recorded:
         )
     first = assumed(world, reading, str(path), warnings)
     return Recorded(Log(tuple(entries), first), None, warnings)
+
+
+def _when_seen(beam: Array, rows: Rows, delay: float, warnings: list[str]) -> Array:
+    """What the lidar saw at each row, where a row holds what it saw `delay` s before : (n, 2)
+
+    A row of this log is one motion, which no reading cuts in two: the nearest row is taken.
+    """
+    when, edges = rows.t - delay, np.concatenate([[0.0], rows.t])
+    row = np.searchsorted((edges[1:] + edges[:-1]) / 2, when) - 1
+    seen, known = np.full_like(beam, np.nan), row >= 0
+    seen[row[known]] = beam[known]
+    off = np.max(np.abs(rows.t[row[known]] - when[known]), initial=0.0)
+    warnings.append(
+        f"{rows.file}: each reading is taken at the row that is nearest to {delay:g} s before its "
+        f"own; at most {off:.3g} s away"
+    )
+    return seen
 
 
 def heading_of(yaw: Array) -> Array:

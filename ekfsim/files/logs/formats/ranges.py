@@ -176,7 +176,7 @@ def _samples(
                 unknown.append(row)
             else:
                 z = np.array([instrument.corrected(raw)])
-                samples.append(Sample(t, Reading(target.sensor, z, target.name)))
+                samples.append(Sample(t, Reading(target.sensor, z, target.name), target.delay))
     if unknown:
         node, more = (
             ranges.values[unknown[0], 1],

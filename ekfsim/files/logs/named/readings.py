@@ -73,7 +73,8 @@ def samples_of(table: Table, fittings: Sequence[Fitting], warnings: list[str]) -
                 unknown.append(row)
                 continue
             z = np.array([numbers[places[column]] for column in one.columns])
-            samples.append(Sample(numbers[0], Reading(target.sensor, _given(one, z), target.name)))
+            read = Reading(target.sensor, _given(one, z), target.name)
+            samples.append(Sample(numbers[0], read, target.delay))
     if unknown:
         row = unknown[0]
         more = f", and so are {len(unknown) - 1} more rows" if len(unknown) > 1 else ""

@@ -83,6 +83,7 @@ def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake
             )
         elif file.value("drive") is not None:
             yield from check_length(file, drive_of(keys.drive), world.robot.rate)
+            yield from check_delays(file, world)
     elif keys.recording is not None and (wanted := misfit(keys.recording.format, system)):
         wrong = (
             f"a '{keys.recording.format}' log is of the system '{wanted}', the world of the "
@@ -93,6 +94,18 @@ def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake
         yield file.mistake(
             ("filter",), "a recording does not tell the way that was planned", "write kf or ekf"
         )
+
+
+def check_delays(file: Sound, world: World) -> Iterator[Mistake]:
+    """A filter that takes readings for older than they are, and so before they are made."""
+    for true, told in zip(world.instruments, world.told_instruments, strict=True):
+        if told.delay > true.delay:
+            wrong = (
+                f"the filter takes readings of '{true.called}' for {told.delay - true.delay:g} s "
+                "older than they are, and would use them before they are made"
+            )
+            right = f"write at most {true.delay:g} as the delay in the world's belief.sensors"
+            yield file.mistake(("drive",), wrong, right)
 
 
 def check_length(file: Sound, drive: Drive, rate: float) -> Iterator[Mistake]:

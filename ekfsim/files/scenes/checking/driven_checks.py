@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ekfsim.errors import Mistake
-from ekfsim.files.keys.faults import FaultKeys
-from ekfsim.files.keys.fields import aliases
+from ekfsim.files.keys.faults import FaultKeys, FaultySensorsKeys
+from ekfsim.files.keys.fields import aliases, keys_of_kind
 from ekfsim.files.keys.sensors import SensorKeys
 from ekfsim.files.keys.system import (
     ODOMETRY,
@@ -19,9 +19,10 @@ from ekfsim.files.keys.system import (
     not_carried,
     robot_fields,
 )
+from ekfsim.files.keys.told import ToldSensorsKeys
 from ekfsim.files.scenes.checking.checks import Sound, check_items
 from ekfsim.files.yaml.marked import Path
-from ekfsim.files.yaml.telling import one_of
+from ekfsim.files.yaml.telling import nearest, one_of, quoted
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.instrument import Instrument
 from ekfsim.systems.instruments import (
@@ -116,15 +117,42 @@ def check_faults(file: Sound, whose: str, names: list[str]) -> Iterator[Mistake]
 
 def check_carried(file: Sound, system: str, path: Path) -> Iterator[Mistake]:
     """Sensors that are told of and that the robot does not carry."""
-    carried = [instrument.name for instrument in SYSTEMS[system].instruments]
+    carried = {instrument.called: instrument.name for instrument in SYSTEMS[system].instruments}
     if file.root.at(("sensors",)):
-        items = (file.root.at(("sensors", index)) for index in range(file.count("sensors")))
-        carried = [kind for item in items if item is not None for kind in item.keys]
-    told = file.root.at(path)
-    for kind in told.keys if told else ():
-        if kind in aliases(SensorKeys).values() and kind not in carried:
-            wrong = f"the world has no sensor '{kind}'"
-            yield file.mistake((*path, kind), wrong, f"it has: {', '.join(carried) or 'none'}")
+        carried = {called: kind for _, called, kind in named_sensors(file)}
+    told, model = file.root.at(path), ToldSensorsKeys if path[0] == "belief" else FaultySensorsKeys
+    for name in told.keys if told else ():
+        if name not in carried:
+            near = nearest(name, list(carried))
+            right = f"did you mean '{near}'?" if near else f"it has: {', '.join(carried) or 'none'}"
+            yield file.mistake((*path, name), f"the world has no sensor {quoted(name)}", right)
+        elif name != carried[name]:
+            known = aliases(keys_of_kind(model, carried[name])).values()
+            of_others = keys_of_all(model) - {*known}
+            held = file.root.at((*path, name))
+            for key in held.keys if held else ():
+                if key in of_others:
+                    wrong = f"unknown key {quoted(key)}"
+                    right = f"known keys of a sensor {carried[name]}: {', '.join(known)}"
+                    yield file.mistake((*path, name, key), wrong, right)
+
+
+def keys_of_all(sensors: type[ToldSensorsKeys] | type[FaultySensorsKeys]) -> set[str]:
+    """The keys that a sensor of any kind has in a mapping of them."""
+    kinds = aliases(sensors).values()
+    return {key for kind in kinds for key in aliases(keys_of_kind(sensors, kind)).values()}
+
+
+def named_sensors(file: Sound) -> Iterator[tuple[int, str, str]]:
+    """The sensors of a file that are of a kind, by their number: what each is called, and its
+    kind.
+    """
+    for index in range(file.count("sensors")):
+        item = file.root.at(("sensors", index))
+        kind = next(iter(item.keys)) if item is not None and len(item.keys) == 1 else ""
+        if kind in aliases(SensorKeys).values():
+            name = file.value("sensors", index, kind, "name")
+            yield index, name or kind, kind
 
 
 def check_carriable(file: Sound, system: str) -> Iterator[Mistake]:
@@ -145,11 +173,11 @@ def check_carriable(file: Sound, system: str) -> Iterator[Mistake]:
 
 def check_sensors(file: Sound) -> Iterator[Mistake]:
     """Items that hold no sensor or two,
-    a second sensor of a kind, and beams that can measure nothing.
+    a second sensor of a name, and beams that can measure nothing.
     """
     kinds = list(aliases(SensorKeys).values())
     yield from check_items(file, ("sensors",), kinds, "sensor")
-    yield from check_kinds(file, kinds)
+    yield from check_names(file, kinds)
     for index in range(file.count("sensors")):
         for kind, document in BEAMS.items():
             path = ("sensors", index, kind)
@@ -165,31 +193,35 @@ def check_sensors(file: Sound) -> Iterator[Mistake]:
                     yield file.mistake(path, wrong, "write a range that is more than the nearest")
 
 
-def check_kinds(file: Sound, kinds: list[str]) -> Iterator[Mistake]:
-    """A second sensor of a kind: its readings would go by the names of the first one's."""
+def check_names(file: Sound, kinds: list[str]) -> Iterator[Mistake]:
+    """A second sensor of a name: its readings would go by the names of the first one's."""
     lines = dict[str, int]()
-    for index in range(file.count("sensors")):
+    for index, called, kind in named_sensors(file):
         item = file.root.at(("sensors", index))
-        kind = next(iter(item.keys)) if item is not None and len(item.keys) == 1 else ""
-        if item is None or kind not in kinds:
-            continue
-        if kind in lines:
-            wrong = f"the sensor '{kind}' on line {lines[kind]} goes by the same name"
-            yield file.mistake(
-                ("sensors", index, kind), wrong, f"keep one of them{ALL_IN_ONE.get(kind, '')}"
-            )
-        lines.setdefault(kind, item.keys[kind][0])
+        assert item is not None
+        path: Path = ("sensors", index, kind)
+        if called in lines:
+            wrong = f"the sensor '{called}' on line {lines[called]} goes by the same name"
+            if called == kind:
+                right = f"give one a 'name', or keep one of them{ALL_IN_ONE.get(kind, '')}"
+            else:
+                path, right = (*path, "name"), "give each a name of its own"
+            yield file.mistake(path, wrong, right)
+        elif called != kind and called in kinds:
+            wrong = f"'{called}' is what sensors of another kind are called"
+            yield file.mistake((*path, "name"), wrong, f"write e.g. name: my-{called}")
+        lines.setdefault(called, item.keys[kind][0])
 
 
 def doubts(instrument: Instrument, world: World, logged: bool) -> Iterator[tuple[str, str]]:
     """Why a sensor hardly does what is meant, and the way out."""
-    name, robot = instrument.name, world.robot
-    if name in OF_LANDMARKS and not world.landmarks and not logged:
+    name, kind, robot = instrument.called, instrument.name, world.robot
+    if kind in OF_LANDMARKS and not world.landmarks and not logged:
         yield (
             f"the sensor '{name}' sees landmarks, and the world has none",
             "list them under 'landmarks'",
         )
-    if name in BEAMS and not any(world.map.outlines()):
+    if kind in BEAMS and not any(world.map.outlines()):
         yield (
             f"the sensor '{name}' sees walls, and the world has none",
             "write a 'boundary', 'obstacles' or 'walls'",

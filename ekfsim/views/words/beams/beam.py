@@ -12,14 +12,15 @@ import numpy as np
 import shapely
 
 from ekfsim.diagnostics.ambiguity import BeamSensor, Sighting, sighting_of
-from ekfsim.filters.belief import Refused, posed
+from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.models.sensors.mounted import bare
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.picture.sights import beam_length
 from ekfsim.views.picture.written.lettering import shortened
-from ekfsim.views.words.beams.told import elsewhere, others_met
+from ekfsim.views.words.beams.told import elsewhere, origin, others_met
 from ekfsim.views.words.numbers import length
 from ekfsim.world import BOUNDARY, Map
 
@@ -61,13 +62,11 @@ def beam(step: Step, scene: Scene) -> Beam | None:
     given, correction, sighting = step.entry.given, step.correction, sighting_of(step)
     if not isinstance(given, Reading) or correction is None or sighting is None:
         return None
-    sensor = given.sensor
+    sensor = bare(given.sensor)
     if not isinstance(sensor, BeamSensor):
         return None
-    pose, wall = (
-        posed(step.prior, scene.world.layout).mean + np.array([0.0, 0.0, sensor.bearing]),
-        int(sighting.wall),
-    )
+    start, wall = origin(step), int(sighting.wall)
+    pose = start + np.array([0.0, 0.0, sensor.bearing])
     measured, predicted = (
         beam_length(sensor, float(given.z[0])),
         beam_length(sensor, float(correction.predicted[0])),
@@ -87,9 +86,7 @@ def beam(step: Step, scene: Scene) -> Beam | None:
         bool(sighting.ambiguous),
         float(sighting.incidence) if sighting.grazing else None,
         tuple(astray(sensor, sighting)),
-        doubt(sensor, sighting, posed(step.prior, scene.world.layout).mean)
-        if sighting.ambiguous
-        else "",
+        doubt(sensor, sighting, start) if sighting.ambiguous else "",
         sensor.walls.segments[others],
         solid,
         ending,

@@ -11,6 +11,7 @@ import numpy as np
 from ekfsim.diagnostics.ambiguity import GRAZING, Sighting, sighting_of
 from ekfsim.filters.belief import posed
 from ekfsim.geometry import Array
+from ekfsim.models.sensors.mounted import bare, place_of
 from ekfsim.raycast.walls import Walls
 from ekfsim.records import Reading, Step
 from ekfsim.views.words.numbers import number, point, turn
@@ -45,7 +46,7 @@ def doubts(step: Step, guarded: bool) -> str:
         return ""
     told = ""
     if sighting.ambiguous and guarded:
-        x, walls = posed(step.prior, step.layout).mean, walls_of(step)
+        x, walls = origin(step), walls_of(step)
         others = [
             f"({elsewhere(x, sighting.probes[i])}) it would meet "
             f"{wall_name(step, int(sighting.probe_walls[i]))}"
@@ -143,4 +144,10 @@ def corners(step: Step, wall: int) -> str:
 def walls_of(step: Step) -> Walls:
     """The walls that the beam of a step may meet, as the filter is told."""
     assert isinstance(step.entry.given, Reading)
-    return cast("Beam", step.entry.given.sensor).walls
+    return cast("Beam", bare(step.entry.given.sensor)).walls
+
+
+def origin(step: Step) -> Array:
+    """From where the estimate lets the sensor of a step look : (3,)"""
+    assert isinstance(step.entry.given, Reading)
+    return place_of(step.entry.given.sensor, posed(step.prior, step.layout).mean)
