@@ -34,9 +34,10 @@ START, KEY = 0.7, 0.015  # what is to be reached: of the older build's time, and
 
 @dataclass
 class Played:
-    """`play tour --show text` of a build, on a terminal of its own."""
+    """`play SCENE --show text` of a build, on a terminal of its own."""
 
     build: Build
+    scene: str = "tour"
     began: float = field(default_factory=perf_counter)
 
     def __post_init__(self) -> None:
@@ -48,7 +49,7 @@ class Played:
         # whoever has installed it has it compiled
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
         self.process = subprocess.Popen(
-            [*program, "play", "tour", "--show", "text"], stdin=its, stdout=its,
+            [*program, "play", self.scene, "--show", "text"], stdin=its, stdout=its,
             stderr=subprocess.DEVNULL, env=environment, start_new_session=True,
         )  # fmt: skip
         os.close(its)
@@ -76,9 +77,9 @@ class Played:
         os.close(self.ours)
 
 
-def to_the_first_picture(build: Build) -> tuple[float, float]:
+def to_the_first_picture(build: Build, scene: str = "tour") -> tuple[float, float]:
     """Wall and processor time until the first picture stands there, in s."""
-    played = Played(build)
+    played = Played(build, scene)
     played.read(PICTURED)
     taken = perf_counter() - played.began, played.processor
     played.end()
