@@ -54,7 +54,7 @@ class Length(click.ParamType):  # type: ignore[type-arg]  # as above
         return metres
 
 
-@click.command(short_help="Make a world of a plan: a ROS map.")
+@click.command(short_help="Make a world of a ROS map or a drawing.")
 @click.argument("plan", metavar="FROM", type=Source())
 @click.option("--out", "-o", type=Result(), required=True, help="The world file.")
 @click.option("--start", type=Pose(), metavar="X,Y,THETA",
@@ -63,19 +63,27 @@ class Length(click.ParamType):  # type: ignore[type-arg]  # as above
               help="How far a wall may be drawn from where the plan has it, in m.")  # fmt: skip
 @click.option("--unknown", type=Word(["wall", "free"]), default="wall", show_default=True,
               help="What the cells of a ROS map are that nobody has seen.")  # fmt: skip
+@click.option("--units", type=Word(["degrees", "m", "cm", "mm", "in", "ft"]),
+              help="What one of a drawing's coordinates is, where it does not say so.")  # fmt: skip
+@click.option("--boundary", type=Word(["auto", "none"]), default="auto", show_default=True,
+              help="Whether the outline about all else is the room, or an obstacle.")  # fmt: skip
+@click.option("--outlines", type=Word(["solid", "walls"]), default="solid", show_default=True,
+              help="Whether outlines are solid, or rooms with walls about them.")  # fmt: skip
 @click.option("--picture", type=Result(), metavar="FILE",
               help="Plan and walls over each other, .png, .svg or .pdf; beside the world, if "
               "left out.")  # fmt: skip
 @click.option("--name", help="Of the world; that of the file, if left out.")
 @FORCE
 def world(
-    plan: str, out: Path, start: "Start | None", tolerance: float | None, unknown: Any,
-    picture: Path | None, name: str | None, force: bool,
+    plan: str, out: Path, start: "Start | None", tolerance: float | None, unknown: Any, units: Any,
+    boundary: Any, outlines: Any, picture: Path | None, name: str | None, force: bool,
 ) -> None:  # fmt: skip
     """Make a world file of a plan that another program wrote, and draw both over each other.
 
-    FROM is a ROS map: its map.yaml, whose picture is read with it. Walls become straight within the
-    tolerance; all that was assumed and left out is told, and stands in the head of the world file.
+    FROM is a ROS map (its map.yaml, whose picture is read with it), GeoJSON or WKT. Walls of pixels
+    become straight within the tolerance; of a drawing, polygons become obstacles, lines walls, and
+    points with an id landmarks. All that was assumed and left out is told, and stands in the head
+    of the world file.
     """
     from ekfsim.files.maps.making import make
     from ekfsim.files.maps.plan import Asked
@@ -91,7 +99,7 @@ def world(
         refuse(drawn, force)
         if drawn.resolve() == out.resolve():
             raise UsageError(f"{out}: world and picture cannot be one file")
-    made = make(Path(plan), plan, Asked(tolerance, unknown, start), name)
+    made = make(Path(plan), plan, Asked(tolerance, unknown, start, units, boundary, outlines), name)
     warn(made.told)
     with whole_text(out, force) as file:
         file.write(made.text)

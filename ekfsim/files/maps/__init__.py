@@ -3,6 +3,10 @@
 plan.py      what every reader makes of a plan, and what it is asked
 reading.py   which plan a file holds, and its reader
 formats/     the readers, a file for each kind of plan
+drawing.py   what a reader of drawings finds, shape after shape
+units.py     what one of a drawing's coordinates is
+earth.py     longitude and latitude as metres
+json_text.py JSON, and places in it
 standing.py  where a robot can start among its walls
 holes.py     outlines with holes → outlines without
 writing.py   a plan → the text of a world file

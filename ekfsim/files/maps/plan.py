@@ -7,6 +7,8 @@ from ekfsim.geometry import Array
 from ekfsim.world import Landmark
 
 Unknown = Literal["wall", "free"]
+Units = Literal["degrees", "m", "cm", "mm", "in", "ft"]
+METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 Start = tuple[float, float, float]  # x, y in m, θ in degrees, as people write them
 
 
@@ -17,6 +19,9 @@ class Asked:
     tolerance: float | None = None  # m, how far a wall may be drawn from where the plan has it
     unknown: Unknown = "wall"  # what the cells are that nobody has seen
     start: Start | None = None  # tells which of several rooms is wanted
+    units: Units | None = None  # what one of a drawing's coordinates is
+    boundary: Literal["auto", "none"] = "auto"  # whether the outline about all else is the room
+    outlines: Literal["solid", "walls"] = "solid"  # whether a robot can stand inside of one
 
 
 @dataclass(frozen=True, slots=True)

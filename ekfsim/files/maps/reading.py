@@ -3,8 +3,10 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from ekfsim.errors import InputError, UsageError
+from ekfsim.files.maps.json_text import data_of
 from ekfsim.files.maps.plan import Asked, Plan
 from ekfsim.files.source import bytes_of
 from ekfsim.files.yaml.marked import Node
@@ -19,7 +21,8 @@ class Head:
     path: Path
     shown: str  # how messages name it
     raw: bytes
-    root: Node | None  # the tree of a YAML or JSON text, None of any other
+    root: Node | None  # the tree of a YAML text, None of any other
+    data: Any = None  # what a JSON text holds
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +34,14 @@ class Format:
     read: str  # "module:function", (Head, Asked) → Plan
 
 
+SIGNS = "ekfsim.files.maps.signs"
 FORMATS = (
     Format("a ROS map", "ekfsim.files.maps.signs:is_ros_map", "ekfsim.files.maps.formats.ros:read"),
+    Format("GeoJSON", f"{SIGNS}:is_geojson", "ekfsim.files.maps.formats.geojson:read"),
+    Format("WKT", f"{SIGNS}:is_wkt", "ekfsim.files.maps.formats.wkt:read"),
 )
-TREES = (".yaml", ".yml", ".json", ".geojson")
+TREES = (".yaml", ".yml")
+JSON = (".json", ".geojson")
 PICTURES = (".pgm", ".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff")
 
 
@@ -69,7 +76,8 @@ def head_of(path: Path, shown: str) -> Head:
         from ekfsim.files.source import as_written
 
         root, _ = parse(as_written(path, shown), shown)
-    return Head(path, shown, raw, root)
+    is_json = path.suffix.lower() in JSON
+    return Head(path, shown, raw, root, data_of(raw, shown) if is_json else None)
 
 
 def recognised(head: Head) -> Format | None:

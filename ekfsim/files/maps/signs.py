@@ -1,5 +1,6 @@
 """By what each kind of plan is recognised. Nothing heavy is imported here: every `check` asks."""
 
+import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -7,6 +8,15 @@ if TYPE_CHECKING:
 
 OF_ROS_MAPS = {"image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"}
 MOST_OF_THEM = 3
+OF_GEOJSON = {
+    *("FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon"),
+    *("LineString", "MultiLineString", "Point", "MultiPoint"),
+}
+WKT = re.compile(
+    rb"\s*(#[^\n]*\n\s*)*(SRID\s*=\s*\d+\s*;\s*)?"
+    rb"(MULTI)?(POINT|LINESTRING|POLYGON|GEOMETRYCOLLECTION)\b",
+    re.IGNORECASE,
+)
 
 
 def is_ros_map(head: "Head") -> bool:
@@ -14,3 +24,14 @@ def is_ros_map(head: "Head") -> bool:
     if head.root is None or not isinstance(head.root.value, dict):
         return False
     return len(OF_ROS_MAPS & head.root.value.keys()) >= MOST_OF_THEM
+
+
+def is_geojson(head: "Head") -> bool:
+    """A JSON file whose type is one of GeoJSON's."""
+    return isinstance(head.data, dict) and head.data.get("type") in OF_GEOJSON
+
+
+def is_wkt(head: "Head") -> bool:
+    """A text that begins with the name of a geometry."""
+    named = head.path.suffix.lower() == ".wkt"
+    return named or (head.root is None and WKT.match(head.raw[:4096]) is not None)
