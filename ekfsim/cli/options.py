@@ -238,6 +238,12 @@ def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 "several make a grid.",
             ),
             *SETTINGS,
+            click.option(
+                "--log",
+                type=Source(),
+                metavar="PATH",
+                help="A recorded log, each cell played once: see play.",
+            ),
             *MADE_WHERE,
             click.option("--resume", is_flag=True, help="Go on with a study that did not end."),
             click.option(

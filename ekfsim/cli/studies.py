@@ -1,7 +1,7 @@
 """The commands that make many runs: study, compare."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -9,7 +9,10 @@ from ekfsim.cli.asked import engine_of
 from ekfsim.cli.options import compare_options, study_options
 from ekfsim.cli.process import part_with, say, shown, warn, width
 from ekfsim.cli.progress import blocks_bar, study_into
-from ekfsim.errors import RunError
+from ekfsim.errors import RunError, UsageError
+
+if TYPE_CHECKING:
+    from ekfsim.files.scenes.load_study import Request
 
 
 @click.command(short_help="Run COMMANDS many times: is the filter honest?")
@@ -30,7 +33,7 @@ def study(
     from ekfsim.files.scenes import load_study
     from ekfsim.files.scenes.checking.filter_checks import refuse_unread
     from ekfsim.study.expectation import promised, verified
-    from ekfsim.study.plan import Plan
+    from ekfsim.study.plan import Plan, is_recorded
     from ekfsim.study.running.doing import unkept
     from ekfsim.study.running.engines import Paced
     from ekfsim.views.study.promises import broken, verify
@@ -38,7 +41,11 @@ def study(
 
     if out is None and resume:
         raise click.MissingParameter(param_hint="'--out' / '-o'", param_type="option")
-    plan = Plan.of(load_study.asked(**asked))
+    request = load_study.asked(**asked)
+    if is_recorded(request):
+        refuse_of_many(asked["runs"], workers, cluster, asked["fast"], resume, expect)
+        return study_recorded(request, out, force)
+    plan = Plan.of(request)
     refuse_unread(plan.settings, plan.filters)
     warn(plan.warnings)
     plan = promised(plan, asked["runs"]) if expect else plan
@@ -61,6 +68,43 @@ def study(
     click.echo(shown(verify(plan, found)), nl=False)
     if told := broken(plan, found):
         raise RunError(told)
+
+
+def refuse_of_many(
+    runs: int | None, workers: int, cluster: str | None, fast: bool, resume: bool, expect: bool
+) -> None:
+    """Raises UsageError for an option that means something of many runs only."""
+    given = {
+        "--runs": runs is not None, "--workers": workers > 1, "--cluster": cluster is not None,
+        "--fast": fast, "--resume": resume, "--expect": expect,
+    }  # fmt: skip
+    for option, is_given in given.items():
+        if is_given:
+            raise UsageError(f"{option}: a recording is one run, played once; leave this out")
+
+
+def study_recorded(request: "Request", out: Path | None, force: bool) -> None:
+    """Play each cell of a study of a recorded log, and say what came of it."""
+    from ekfsim.files.scenes.checking.filter_checks import refuse_unread
+    from ekfsim.study.recorded import Recorded
+    from ekfsim.views.study.recorded_words import conclude
+
+    plan = Recorded.of(request)
+    refuse_unread(plan.settings, plan.filters)
+    warn(plan.warnings)
+    if out is not None:
+        from ekfsim.views.picture.look import get_ready
+
+        get_ready()
+        from ekfsim.files.results.writing import refuse_existing_folder
+        from ekfsim.views.study.recorded_folder import FILES, write_recorded
+
+        refuse_existing_folder(out, *FILES, force=force)
+    with blocks_bar(len(plan.cases), "cells") as done:
+        found = plan.played(lambda: done(None, None))
+    if out is not None:
+        write_recorded(plan, found, out, force)
+    click.echo(shown(conclude(plan, found, width())), nl=False)
 
 
 @click.command(short_help="Put two settings side by side, on the same draws.")

@@ -7,6 +7,7 @@ counting.py    the runs at one step → counts      expectation.py  what a scene
 tally.py       records that add                   tables.py       CSV
 comparison.py  two settings side by side, by      running/        engines, clusters, the journal
 pairs.py       differences of pairs of runs       code.py         that of filters of one's own
+recorded.py    one run that was recorded, in each cell
 
 `ekfsim.study` is this package, which can be called: `ekfsim.study(scene, runs=1000)`.
 """

@@ -70,32 +70,12 @@ class Plan:
             )
         if request.fast and not compiles():
             raise UsageError("--fast needs Numba; install it with: pip install 'ekfsim[fast]'")
-        keys = read(request.commands, str(request.commands), "commands").keys
-        if isinstance(keys, CommandsKeys) and keys.recording is not None:
+        if is_recorded(request):
             raise UsageError(
-                f"{request.commands_name}: a recording is one run only; study a simulated one"
+                f"{request.commands_name}: a recording is one run only; sweep its settings with "
+                "`ekfsim study`"
             )
-        if request.excess:
-            raise UsageError("; ".join(request.excess))
-        cases, warnings = list[Case](), dict[str, None]()
-        if request.written_by not in ("", VERSION):
-            told = (
-                f"{request.name}: the study was written by ekfsim {request.written_by}, this "
-                f"is {VERSION}"
-            )
-            warnings[f"{told}: its numbers may differ"] = None
-        for values in itertools.product(*request.sweep):
-            loaded = read_scene(
-                request.commands, request.world, None, request.reading, (*request.settings, *values)
-            )
-            scene = loaded.get()
-            warnings |= dict.fromkeys(loaded.warnings)
-            seeded = scene if request.seed is None else replace(scene, seed=request.seed)
-            cases += [
-                Case(values, replace(seeded, filter=name))
-                for name in request.filters or (scene.filter,)
-            ]
-        return cls(request, tuple(cases), tuple(warnings))
+        return cls(request, *cases_of(request))
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -171,6 +151,40 @@ class Plan:
             "fast": way_of(request) == "compiled",
             "plain": way_of(request) == "plain",
         }
+
+
+def is_recorded(request: Request) -> bool:
+    """Whether it is of a recorded log, which is one run."""
+    keys = read(request.commands, str(request.commands), "commands").keys
+    named = isinstance(keys, CommandsKeys) and keys.recording is not None
+    return named or request.log is not None
+
+
+def cases_of(request: Request) -> tuple[tuple[Case, ...], tuple[str, ...]]:
+    """Every cell that is asked for, watched by every filter, and what is to be warned of.
+
+    Raises UsageError or InputError where a cell is no sound scene.
+    """
+    if request.excess:
+        raise UsageError("; ".join(request.excess))
+    cases, warnings = list[Case](), dict[str, None]()
+    if request.written_by not in ("", VERSION):
+        told = (
+            f"{request.name}: the study was written by ekfsim {request.written_by}, this "
+            f"is {VERSION}"
+        )
+        warnings[f"{told}: its numbers may differ"] = None
+    for values in itertools.product(*request.sweep):
+        settings = (*request.settings, *values)
+        loaded = read_scene(request.commands, request.world, request.log, request.reading, settings)
+        scene = loaded.get()
+        warnings |= dict.fromkeys(loaded.warnings)
+        seeded = scene if request.seed is None else replace(scene, seed=request.seed)
+        cases += [
+            Case(values, replace(seeded, filter=name))
+            for name in request.filters or (scene.filter,)
+        ]
+    return tuple(cases), tuple(warnings)
 
 
 def way_of(request: Request) -> Way:

@@ -52,6 +52,13 @@ class StudyKeys(Strict):
         "this file, or the name of one that comes along.",
         examples=["../worlds/classroom.yaml"],
     )
+    log: Name | None = Field(
+        None,
+        description="The recorded log that is studied, relative to this file, in place of the one "
+        "that the commands file names. A recording is one run: each cell is played once, and "
+        "`runs` and `seed` say nothing.",
+        examples=["log"],
+    )
     description: Text = Field("", description="What this study is to show.")
     runs: int = Field(
         10_000,

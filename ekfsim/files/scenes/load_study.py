@@ -60,6 +60,7 @@ class Request:
     name: str = ""  # of the file that asks, as it was given
     commands_name: str = ""  # as a person writes them on a command line
     world_name: str | None = None
+    log: str | None = None  # the recorded log that is studied, in place of the commands file's own
     in_python: bool = False  # of a scene that a notebook holds, not of files
 
     def overruled(
@@ -97,6 +98,7 @@ def asked(
     sweeps: Sequence[str],
     settings: Sequence[str], gate: float | str | None, guard: str | None,
     reading: DocumentReading | None, fast: bool, particles: int | None = None,
+    log: str | None = None,
 ) -> Request:  # fmt: skip
     """What the command line asks for:
     a file, overruled by its options. Raises UsageError or InputError.
@@ -117,7 +119,7 @@ def asked(
     return replace(
         request, filters=watching, runs=request.runs if runs is None else runs,
         seed=request.seed if seed is None else seed, reading=reading or request.reading,
-        fast=fast or request.fast,
+        fast=fast or request.fast, log=log or request.log,
     ).checked()  # fmt: skip
 
 
@@ -154,6 +156,7 @@ def read_request(name: str) -> Request:
         commands, world, keys.runs, keys.seed, watching, fixed, sweep,
         keys.reading, keys.fast, a, b,
         keys.ekfsim, name, commands_name, world_name,
+        None if keys.log is None else os.path.normpath(path.parent / keys.log),
     )  # fmt: skip
 
 

@@ -19,6 +19,7 @@ from ekfsim.scene import Scene
 from ekfsim.study.comparison import Comparison
 from ekfsim.study.pairs import Pairs
 from ekfsim.study.plan import Case, Plan
+from ekfsim.study.recorded import Played, Recorded
 from ekfsim.study.results import Result
 from ekfsim.study.running.doing import total, unkept
 from ekfsim.study.running.engines import Engine, pool, serial
@@ -26,7 +27,7 @@ from ekfsim.study.tables import write_summary
 from ekfsim.twins import compiles
 from ekfsim.views.notebook.cells import page, png
 from ekfsim.views.notebook.table import framed
-from ekfsim.views.study import compare_words, words
+from ekfsim.views.study import compare_words, recorded_words, words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -74,6 +75,36 @@ class Study:
 
 
 @dataclass(frozen=True, repr=False)
+class LogStudy:
+    """What became of one recorded run in each cell, by each filter."""
+
+    plan: Recorded
+    results: tuple[Played, ...]
+
+    def __repr__(self) -> str:
+        """The table, and what the innovations of each row show."""
+        return recorded_words.conclude(self.plan, self.results)
+
+    def table(self) -> Any:
+        """The columns of summary.csv: a DataFrame where pandas is installed."""
+        file = io.StringIO()
+        recorded_words.write_summary(file, self.plan, self.results)
+        return _of_csv(file.getvalue())
+
+    def figure(self) -> "Figure":
+        """NIS, and the error where the truth is known, over what was swept."""
+        from ekfsim.views.study.recorded_folder import picture
+
+        return picture(self.plan, self.results)
+
+    def _repr_html_(self) -> str:
+        return page(repr(self), [self._repr_png_()])
+
+    def _repr_png_(self) -> bytes:
+        return png(self.figure())
+
+
+@dataclass(frozen=True, repr=False)
 class Compared:
     """Two settings side by side on the same draws: what `ekfsim compare` says and draws."""
 
@@ -105,15 +136,15 @@ def study(
     seed: int | None = None,
     workers: int = 1,
     fast: bool = False,
-) -> Study:
+) -> Study | LogStudy:
     """Run a scene many times: how often is it lost, and is the filter honest? The numbers are those
-    of `ekfsim study`.
+    of `ekfsim study`. A scene of a recorded log is one run: each cell is played once.
 
     sweep : values of a number, {"noise.rangeSigmaRatio": [0.01, 0.1]}; several keys make a grid;
     filters : that watch the same runs, "ekf,ukf" or a list; workers : processes; fast : by code
     that Numba compiles. Raises UsageError or InputError where what is asked is no sound scene.
     """
-    scene, told = _asked(scene, seed=seed, filter=filters)
+    scene, told = _asked(scene, True, seed=seed, filter=filters)
     grid = tuple(_values(key, values) for key, values in (sweep or {}).items())
     request = _request(scene, runs, fast, grid)
     if request.excess:
@@ -125,6 +156,9 @@ def study(
         told += remarks
         cases += [Case(values, one) for one in cell.alone()]
     _warn(told, 4)  # beneath the call of the package
+    if scene.log is not None:
+        recorded = Recorded(request, tuple(cases), ())
+        return LogStudy(recorded, tuple(recorded.played()))
     plan = Plan(request, tuple(cases), ())
     return Study(plan, tuple(unkept(plan, _engine(workers), _unheard)))
 
@@ -170,12 +204,14 @@ def compare(
     return Compared(comparison, total(comparison, comparison.tasks(), _engine(workers), _unheard))
 
 
-def _asked(scene: Scene | str | Path, **own: object) -> tuple[Scene, list[str]]:
+def _asked(
+    scene: Scene | str | Path, recorded: bool = False, **own: object
+) -> tuple[Scene, list[str]]:
     """The scene that is meant, with its own seed and filters where they are given."""
     meant = scene if isinstance(scene, Scene) else load_scene(scene)
-    if meant.log is not None:
+    if meant.log is not None and not recorded:
         name = meant.commands_source
-        raise UsageError(f"{name}: a recording is one run only; study a simulated one")
+        raise UsageError(f"{name}: a recording is one run only; sweep its settings with `study`")
     return scene_with(meant, {key: value for key, value in own.items() if value is not None})
 
 
