@@ -52,7 +52,7 @@ NO_NOISE = Noise(0.0, 0.0, 0.0, 0.0, 0.0)  # of the classroom's robot, where ano
 
 def world_of(keys: WorldKeys) -> World:
     """The world that a file describes."""
-    floor_plan = Map(array(keys.boundary), obstacles_of(keys.obstacles), lines_of(keys.walls))
+    floor_plan = Map(ring(keys.boundary), obstacles_of(keys.obstacles), lines_of(keys.walls))
     start, noise = pose(keys.start), Noise(**dict(keys.noise)) if keys.noise else NO_NOISE
     return World(
         name=keys.name,
@@ -202,7 +202,7 @@ def told_map(belief: BeliefKeys, floor_plan: Map) -> Map:
         return floor_plan
     missing = belief.missing or []
     return Map(
-        boundary=floor_plan.boundary if belief.boundary is None else array(belief.boundary),
+        boundary=floor_plan.boundary if belief.boundary is None else ring(belief.boundary),
         obstacles=obstacles_of(belief.obstacles)
         if belief.obstacles is not None
         else tuple(obstacle for obstacle in floor_plan.obstacles if obstacle.name not in missing),
@@ -214,7 +214,7 @@ def told_map(belief: BeliefKeys, floor_plan: Map) -> Map:
 
 def obstacles_of(obstacles: Iterable[ObstacleKeys]) -> tuple[Obstacle, ...]:
     """Obstacles with their corners as arrays."""
-    return tuple(Obstacle(keys.name, array(keys.points)) for keys in obstacles)
+    return tuple(Obstacle(keys.name, ring(keys.points)) for keys in obstacles)
 
 
 def lines_of(walls: Iterable[list[list[float]] | LineKeys]) -> tuple[WallLine, ...]:
@@ -242,6 +242,10 @@ def still(numbers: Array) -> Array:
     return numbers
 
 
+@overload
+def ring(points: list[list[float]]) -> Array: ...
+@overload
+def ring(points: None) -> None: ...
 def ring(points: list[list[float]] | None) -> Array | None:
     """The corners of an outline : (n, 2) m, the first not repeated at its end"""
     if points and len(points) > 2 and points[0] == points[-1]:

@@ -291,3 +291,18 @@ def test_a_beam_without_noise_is_warned_of_where_the_place_is_in_doubt(tmp_path)
         == check(resolve("no-noise", "worlds")).warnings
         == []
     )
+
+
+def test_an_outline_may_repeat_its_first_point_at_its_end():
+    """As every GeoJSON, WKT and shapely outline does: it is the same world."""
+    text = (
+        "name: t\nsystem: pioneer\nboundary: [[0, 0], [9, 0], [9, 9], [0, 9]{}]\n"
+        "obstacles: [{{name: a, points: [[4, 4], [6, 4], [6, 6]{}]}}]\n"
+        "start: {{x: 1, y: 1, theta: 0}}\nbelief: {{boundary: [[0, 0], [9, 0], [9, 8]{}]}}\n"
+    )
+    closed = load_world(text.format(", [0, 0]", ", [4.0, 4]", ", [0, 0]"))
+    plain = load_world(text.format("", "", ""))
+    for one, other in ((closed.map, plain.map), (closed.told.map, plain.told.map)):
+        np.testing.assert_array_equal(one.boundary, other.boundary)
+        np.testing.assert_array_equal(one.obstacles[0].points, other.obstacles[0].points)
+        np.testing.assert_array_equal(one.walls.segments, other.walls.segments)

@@ -194,10 +194,10 @@ WORLDS = {
         ["5:23: obstacles[0].points: the polygon has no area: its points lie on one line; move a "
          "point off that line"],
     ),
-    "closed": (
-        HEAD + "boundary: [[0, 0], [9, 0], [9, 9], [0, 0]]\n",
-        ["4:36: boundary[3]: the last point [0, 0] repeats the first; delete it: an outline "
-         "closes by itself"],
+    "closed, and nothing in it": (
+        HEAD + "boundary: [[0, 0], [9, 0], [0, 0]]\n",
+        ["4:11: boundary: the polygon has no area: its points lie on one line; move a point off "
+         "that line"],
     ),
     "repeated point": (
         HEAD + "boundary: [[0, 0], [9, 0], [9, 0], [9, 9]]\n",

@@ -16,15 +16,11 @@ Fault = tuple[int | None, str, str]  # the point it is about, what is wrong, wha
 
 
 def fault_of(points: Sequence[Sequence[float]]) -> Fault | None:
-    """Why points are no simple polygon; None where they are one."""
+    """Why points are no simple polygon; None where they are one. The last may repeat the first."""
     if fault := fault_of_line(points):
         return fault
     if points[0] == points[-1]:
-        return (
-            len(points) - 1,
-            f"the last point {pair(points[0])} repeats the first",
-            "delete it: an outline closes by itself",
-        )
+        points = points[:-1]
     if without_area(points):
         return (
             None,
