@@ -16,6 +16,7 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.localization import play
 from ekfsim.models.layout import SPEED_POSE
 from ekfsim.models.motions.wheel_speeds import WheelSpeeds
+from ekfsim.models.sensors.mounted import Mount
 from ekfsim.models.sensors.position import Position
 from ekfsim.records import Control, Entry, Reading
 from ekfsim.scene import Scene
@@ -155,6 +156,24 @@ def test_the_first_fix_is_the_start_and_not_read_again(tmp_path):
     assert told.endswith(
         "; say otherwise with --set start.x=… (y, theta) and --set belief.sigma.x=… (y, theta)"
     )
+
+
+def test_an_antenna_ahead_of_the_robot_is_not_where_the_robot_is(tmp_path):
+    """2 m ahead on a robot that looks north: it starts 2 m south of its first fix, sideways as
+    unsure as its heading is over the arm: σ² + (2 σ_θ)².
+    """
+    wheels = [[k / 10, 1.0, 1.0] for k in range(51)]
+    fixes = [[0.2 * k, 5.0, 7.0 + k / 5] for k in range(1, 20)]
+    folder = lay(tmp_path / "log", **{"wheelspeeds.csv": table("t,vl,vr", wheels),
+                                      "gnss.csv": table("t,x,y", fixes)})  # fmt: skip
+    mean, P = read(
+        "gnss", folder, world("gnss", instruments=(Gnss(mount=Mount(2.0, 0.0, 0.0)),))
+    ).log.first
+    np.testing.assert_allclose(mean[1:], [math.pi / 2, 5.0, 5.2], atol=0.03)
+    across, along, turn = P[2, 2], P[3, 3], P[1, 1]
+    assert across == pytest.approx(0.15**2 + 4 * turn, rel=1e-3)
+    assert along == pytest.approx(0.15**2, rel=1e-2)
+    assert P[1, 2] == pytest.approx(2 * turn, rel=1e-3)  # turned left, the robot is farther right
 
 
 def test_the_mower_of_the_document_needs_no_truth(tmp_path):
