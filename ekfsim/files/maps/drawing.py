@@ -61,8 +61,10 @@ class Drawing:
         """Note what no world can hold."""
         self.left_out.setdefault(why, []).append(what)
 
-    def plan(self, name: str, asked: Asked, start: Start | None = None) -> Plan:
-        """All of it, with what is to be told."""
+    def plan(
+        self, name: str, asked: Asked, start: Start | None = None, edge: Array | None = None
+    ) -> Plan:
+        """All of it, with what is to be told. edge : (n, 2) m, the room's, where the file tells"""
         outlines = self.outlines
         told = [*self.told]
         for why, names in self.left_out.items():
@@ -77,8 +79,8 @@ class Drawing:
                 for ring in (one.points, *one.holes)
             ]
             outlines = []
-        boundary = None
-        if asked.boundary == "auto" and (room := self._room(outlines)) is not None:
+        boundary = edge if asked.boundary == "auto" else None
+        if edge is None and asked.boundary == "auto" and (room := self._room(outlines)) is not None:
             told.append(
                 f"{room.name!r} lies about all else, and is taken for the room's boundary; "
                 "--boundary none makes an obstacle of it"

@@ -37,6 +37,7 @@ class Format:
 SIGNS = "ekfsim.files.maps.signs"
 FORMATS = (
     Format("a ROS map", "ekfsim.files.maps.signs:is_ros_map", "ekfsim.files.maps.formats.ros:read"),
+    Format("an ir-sim world", f"{SIGNS}:is_irsim", "ekfsim.files.maps.formats.irsim:read"),
     Format("GeoJSON", f"{SIGNS}:is_geojson", "ekfsim.files.maps.formats.geojson:read"),
     Format("WKT", f"{SIGNS}:is_wkt", "ekfsim.files.maps.formats.wkt:read"),
 )

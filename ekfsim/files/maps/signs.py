@@ -8,6 +8,8 @@ if TYPE_CHECKING:
 
 OF_ROS_MAPS = {"image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"}
 MOST_OF_THEM = 3
+OF_IRSIM = {"robot", "obstacle", "robots", "obstacles"}
+OF_ITS_WORLD = {"height", "width", "step_time", "sample_time", "obstacle_map"}
 OF_GEOJSON = {
     *("FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon"),
     *("LineString", "MultiLineString", "Point", "MultiPoint"),
@@ -24,6 +26,16 @@ def is_ros_map(head: "Head") -> bool:
     if head.root is None or not isinstance(head.root.value, dict):
         return False
     return len(OF_ROS_MAPS & head.root.value.keys()) >= MOST_OF_THEM
+
+
+def is_irsim(head: "Head") -> bool:
+    """A YAML file with a mapping `world`, and robots or obstacles, or the world's measures."""
+    if head.root is None or not isinstance(head.root.value, dict):
+        return False
+    world = head.root.value.get("world")
+    if world is None or not isinstance(world.value, dict):
+        return False
+    return bool(OF_IRSIM & head.root.value.keys()) or bool(OF_ITS_WORLD & world.value.keys())
 
 
 def is_geojson(head: "Head") -> bool:
