@@ -10,6 +10,10 @@ from ekfsim.printable import in_a_line
 MOST_TOLD = 50  # lines of one kind at once: nobody reads more
 
 
+class LogRemark(UserWarning):
+    """What is odd in a recorded log, or was taken for granted: told in Python as a warning."""
+
+
 @dataclass(frozen=True, slots=True)
 class Place:
     """Where in a file a mistake was made. line and column count from 1; 0 where there is no text,
@@ -30,6 +34,7 @@ class EkfsimError(Exception):
     """
 
     status = 1
+    remarks: tuple[str, ...] = ()  # what was found to be odd before, and is told with it
 
     def __init__(self, *lines: str) -> None:
         super().__init__("\n".join(map(in_a_line, lines)))

@@ -37,8 +37,8 @@ def scene_of(
     read = resolve(commands, "commands") if isinstance(commands, str) else commands
     overruling = [*(setting(text) for text in settings), *particles_of(particles)]
     found = read_scene(read, world_file, log, cast("DocumentReading", reading), overruling)
-    warn(found.warnings)
     scene = found.get()
+    warn(found.warnings)
     refuse_unread(overruling, names or (scene.filter,))
     if gate == "off":
         scene, gate = replace(scene, gate=None), None

@@ -73,6 +73,7 @@ def _status(program: click.Group) -> int:
             mistake.show()
         return mistake.exit_code
     except EkfsimError as error:
+        warn(error.remarks)
         say(*str(error).split("\n"))
         return error.status
     except (KeyboardInterrupt, click.Abort, _InterruptedError):

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 from ekfsim.errors import InputError, Mistake, Place, UsageError
+from ekfsim.files.foreign import of_bytes
 from ekfsim.files.looking import contents, current_folder, read_from
 
 MAX_BYTES = 10_000_000
@@ -29,6 +30,8 @@ def as_written(path: Path, shown: str) -> str:
             "the file is larger than 10 MB",
             "write a smaller one: no world needs that much",
         )
+    if foreign := of_bytes(raw):
+        raise mistake(shown, 1, 1, f"this is {foreign.what}, no text", foreign.cure)
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
         raise mistake(
             shown, 1, 1, "the file is UTF-16, not UTF-8", "save it as UTF-8 in your editor"

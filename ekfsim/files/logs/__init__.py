@@ -6,6 +6,7 @@ from pathlib import Path
 from ekfsim.errors import UsageError
 from ekfsim.files.keys.recording import SYSTEM_OF, RecordingKeys, misfit
 from ekfsim.files.logs.asked import Asked
+from ekfsim.files.logs.folder import refuse_foreign
 from ekfsim.files.logs.formats.classroom import read_classroom
 from ekfsim.files.logs.formats.gnss import GNSS, read_gnss
 from ekfsim.files.logs.formats.mower import MOWER, read_mower
@@ -57,5 +58,6 @@ def read_log(
     if (system := misfit(format, world.system)) is not None:
         wrong = f"a log of the format {format} belongs to a world with system: {system}"
         raise UsageError(f"{path}: {wrong}; {world.name!r} has system: {world.system}")
+    refuse_foreign(path)
     found = [] if warnings is None else warnings
     return FORMATS[format](Asked(path, world, reading, recording, found))

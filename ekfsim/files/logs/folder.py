@@ -5,7 +5,8 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from ekfsim.errors import UsageError
-from ekfsim.files.looking import exists, is_folder, read_from
+from ekfsim.files.foreign import ENOUGH, of_bytes
+from ekfsim.files.looking import contents, exists, is_file, is_folder, read_from
 
 
 def folder_of(path: Path, holds: str) -> Path:
@@ -16,6 +17,14 @@ def folder_of(path: Path, holds: str) -> Path:
         if is_folder(path):
             return path
     raise UsageError(f"{path}: is a file; name the folder that holds {holds}")
+
+
+def refuse_foreign(path: Path) -> None:
+    """Raise UsageError where a path names a bag, a picture, an archive: none is read here."""
+    with read_from(path):
+        foreign = of_bytes(contents(path, ENOUGH)) if is_file(path) else None
+    if foreign is not None:
+        raise UsageError(f"{path}: this is {foreign.what}, no text; {foreign.cure}")
 
 
 def find(folder: Path, what: str, *patterns: str) -> Path:

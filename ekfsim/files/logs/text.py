@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ekfsim.errors import UsageError
+from ekfsim.files.foreign import of_bytes
 from ekfsim.files.looking import contents, read_from
 from ekfsim.files.source import mistake, position
 
@@ -49,6 +50,8 @@ def lines_of(path: Path) -> Lines:
             f"the file is larger than {MAX_BYTES // 10**6} MB",
             "cut the log into parts",
         )
+    if foreign := of_bytes(raw):
+        raise mistake(shown, 1, 1, f"this is {foreign.what}, no text", foreign.cure)
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
         raise mistake(shown, 1, 1, "the file is UTF-16, not UTF-8", "save it as UTF-8")
     try:

@@ -1,11 +1,12 @@
 """World and commands files → World and Scene; all mistakes of a file at once."""
 
 import os
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from ekfsim.errors import Mistake, UsageError
+from ekfsim.errors import LogRemark, Mistake, UsageError
 from ekfsim.files.given.given import Given, called, given_in
 from ekfsim.files.keys.commands import (
     WAYS,
@@ -66,7 +67,15 @@ def load_scene(
     if world is not None and not isinstance(world, World):
         is_file = given_in(world) is None
         world = resolve(path_in(world), "worlds") if is_file else load_world(world)
-    return read_scene(given, world, log, reading).get()
+    return _told(read_scene(given, world, log, reading)).get()
+
+
+def _told(found: Loaded[Scene]) -> Loaded[Scene]:
+    """The same; what is odd in a log, or was found before a mistake, as warnings of Python."""
+    of_a_log = found.value is not None and found.value.log is not None
+    for remark in found.warnings if of_a_log or found.value is None else ():
+        warnings.warn(remark, LogRemark, stacklevel=3)
+    return found
 
 
 def path_in(what: object) -> str | Path:

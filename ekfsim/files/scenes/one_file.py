@@ -7,7 +7,8 @@ from typing import Generic, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from ekfsim.errors import InputError, Mistake, UsageError
+from ekfsim.errors import InputError, Mistake, Place, UsageError
+from ekfsim.files.foreign import of_text
 from ekfsim.files.given.given import Given
 from ekfsim.files.keys.commands import WAYS
 from ekfsim.files.keys.fields import aliases
@@ -50,12 +51,14 @@ class Loaded(Generic[T]):
     refusal: UsageError | None = None  # of the log that was named, which is no file's mistake
 
     def get(self) -> T:
-        """The value. Raises InputError with all mistakes, or what the log was refused with."""
-        if self.refusal is not None:
-            raise self.refusal
-        if self.value is None or self.mistakes:
-            raise InputError(self.mistakes)
-        return self.value
+        """The value. Raises InputError with all mistakes, or what the log was refused with; what is
+        odd goes with it.
+        """
+        if self.value is not None and not self.mistakes and self.refusal is None:
+            return self.value
+        error = InputError(self.mistakes) if self.refusal is None else self.refusal
+        error.remarks = tuple(self.warnings)
+        raise error
 
 
 @without_collection()
@@ -70,12 +73,12 @@ def read(
         given = path if isinstance(path, Given) else Given.file(path, shown)
         root, mistakes = given.tree()
     except InputError as error:
-        return File(kind or "world", error.mistakes)
+        return File(kind or "world", foreign_in(path, shown) or error.mistakes)
     given = given.overruled(tuple(settings))
     shown, settings = given.shown, given.settings
     kind = kind or kind_of_tree(root)
     if other := other_kind(root, kind):
-        return File(kind, [*mistakes, at(shown, *other)])
+        return File(kind, foreign_in(path, shown) or [*mistakes, at(shown, *other)])
     warnings = [] if kind == "commands" else list(pinned(root, settings))
     root = overruled(root, kind, settings)
     keys, wrong = None, set[tuple[str | int, ...]]()
@@ -90,8 +93,26 @@ def read(
         if kind == "world"
         else (*check_commands(sound), *check_ways(sound))
     )
+    if mistakes and (plan := foreign_in(path, shown)):
+        return File(kind, plan)
     warnings += [remark(warning, settings) for warning in angle_warnings(sound)]
     return File(kind, sorted(mistakes, key=in_order_of_place), sound, keys, warnings, given)
+
+
+def foreign_in(path: Path | Given, shown: str) -> list[Mistake]:
+    """What a file is that is none of ours, and what reads it; nothing where it may be one."""
+    from ekfsim.files.maps.reading import plan_in
+
+    if isinstance(path, Given):
+        return []
+    if (plan := plan_in(path, shown)) is not None:
+        wrong, _, right = plan.removeprefix(f"{shown}: ").partition("; ")
+        return [Mistake(Place(shown), "", wrong, right)]
+    try:
+        found = of_text(as_written(path, shown))
+    except UsageError:
+        return []
+    return [Mistake(Place(shown), "", f"this is {found.what}", found.cure)] if found else []
 
 
 def kind_of(path: str | Path) -> Kind:

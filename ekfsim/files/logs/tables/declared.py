@@ -73,9 +73,9 @@ class Table:
         if self.places == tuple(range(len(self.columns))):
             return f"wanted are {listed}, in this order"
         placed = sorted(zip(self.places, self.columns, strict=True), key=lambda one: one[0])
-        width = f" of {self.widths[-1]}" if len(self.widths) == 1 else ""
-        return "wanted are " + ", ".join(
-            f"{column.with_unit} (column {place + 1}{width})" for place, column in placed
+        width = f"{self.widths[0]}{'' if len(self.widths) == 1 else ' or more'} columns"
+        return f"wanted are {width}: " + ", ".join(
+            f"{column.with_unit} ({place + 1})" for place, column in placed
         )
 
 

@@ -84,10 +84,11 @@ def unit_beside(t: Array, motion: Array) -> tuple[str, str]:
 
 
 def _share(t: Array, motion: Array) -> float:
-    """How many of some instants lie within the motion."""
+    """How many of some instants lie within the motion, but for one: 0 does in every unit."""
     if not len(t) or not len(motion):
         return 0.0
-    return float(np.mean((t >= motion.min()) & (t <= motion.max())))
+    within = int(np.sum((t >= motion.min()) & (t <= motion.max())))
+    return max(within - 1, 0) / max(len(t) - 1, 1)
 
 
 def _unit_of_date(t: Array) -> str | None:

@@ -1,0 +1,78 @@
+"""What a file is that is none of ours, and what reads it: told in place of what is wrong in it."""
+
+import re
+from typing import NamedTuple, get_args
+
+from ekfsim.files.keys.recording import LogFormat
+
+ENOUGH = 4096  # bytes from the beginning, by which a file is recognised
+NUMBERS = re.compile(r"[-+\d.eEnaif]+")
+SEPARATORS = re.compile(r"[,;\t ]+")
+ROWS = 3  # of numbers that make a table
+
+
+class Foreign(NamedTuple):
+    """A kind of file."""
+
+    what: str  # as in "this is …"
+    cure: str
+
+
+PICTURE = "of a ROS map name its map.yaml: ekfsim world map.yaml -o world.yaml"
+UNPACK = "unpack it first"
+LOG = "a commands file names a log: recording: {format: …, path: …}; see `ekfsim schema recording`"
+TABLE_CURE = f"{LOG}, or `ekfsim run log --log DIR`"
+SIGNS: tuple[tuple[bytes, str, str], ...] = (
+    (b"#ROSBAG V", "a ROS 1 bag", "bag"),
+    (b"\x89MCAP0", "an MCAP file", "bag"),
+    (b"SQLite format 3\0", "an SQLite file, as bags of ROS 2 have", "bag"),
+    (b"\x89PNG", "a PNG picture", PICTURE),
+    (b"\xff\xd8\xff", "a JPEG picture", PICTURE),
+    (b"GIF8", "a GIF picture", PICTURE),
+    (b"BM", "a BMP picture", PICTURE),
+    (b"II*\0", "a TIFF picture", PICTURE),
+    (b"MM\0*", "a TIFF picture", PICTURE),
+    (b"P5", "a PGM picture", PICTURE),
+    (b"PK\x03\x04", "a zip archive or a spreadsheet", "unpack it, or save the sheet as CSV"),
+    (b"\x1f\x8b", "a gzip archive", UNPACK),
+    (b"7z\xbc\xaf", "a 7z archive", UNPACK),
+    (b"BZh", "a bzip2 archive", UNPACK),
+    (b"\xfd7zXZ", "an xz archive", UNPACK),
+    (b"%PDF", "a PDF document", "save its numbers as CSV"),
+    (b"MATLAB 5.0 MAT-file", "a MATLAB file", "save its arrays as CSV: writematrix(a, 'a.csv')"),
+    (b"\x89HDF", "an HDF5 file", "save its arrays as CSV"),
+    (b"\x93NUMPY", "a numpy array", "save it as CSV: numpy.savetxt"),
+    (b"\x80\x04\x95", "a Python pickle", "save its arrays as CSV"),
+    (b"\x80\x03", "a Python pickle", "save its arrays as CSV"),
+    (b"\x80\x05\x95", "a Python pickle", "save its arrays as CSV"),
+)
+
+
+def of_bytes(raw: bytes) -> Foreign | None:
+    """What a file is that begins with these bytes; None where it may be a text."""
+    for sign, what, cure in SIGNS:
+        if raw.startswith(sign) and (len(sign) > 2 or _is_binary(raw)):
+            return Foreign(what, _bag_cure() if cure == "bag" else cure)
+    return None
+
+
+def of_text(text: str) -> Foreign | None:
+    """What a text is that is no YAML file of ours: rows of numbers, or JSON of a plan."""
+    lines = [line for line in text[:ENOUGH].splitlines() if line.strip()[:1] not in ("", "#", "%")]
+    rows = [SEPARATORS.split(line.strip().strip(",;")) for line in lines]
+    numbers = [len(row) > 1 and all(NUMBERS.fullmatch(field) for field in row) for row in rows]
+    if sum(numbers[:-1]) >= ROWS and all(numbers[1:-1]):
+        return Foreign("a table of numbers", TABLE_CURE)
+    return None
+
+
+def _is_binary(raw: bytes) -> bool:
+    """Whether a file whose sign is short is more than a text that begins so."""
+    return any(byte < 9 or byte > 126 for byte in raw[:ENOUGH])
+
+
+def _bag_cure() -> str:
+    """What reads a bag."""
+    if "bag" in get_args(LogFormat):
+        return "a commands file reads it: recording: {format: bag, path: …}"
+    return "write its topics as CSV files: `ekfsim schema recording` tells which"
