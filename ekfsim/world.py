@@ -9,6 +9,7 @@ import numpy as np
 
 from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array
+from ekfsim.geometry.circle import circle_outline
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.printable import in_a_line
 from ekfsim.raycast.walls import BOUNDARY as BOUNDARY
@@ -29,6 +30,26 @@ class Obstacle:
 
     name: str
     points: Array
+
+    @property
+    def outline(self) -> Array:
+        """(n, 2) m, its rim as a line that ends where it begins."""
+        return np.vstack([self.points, self.points[:1]])
+
+
+@dataclass(frozen=True)
+class RoundObstacle:
+    """A circle that stops robots and beams."""
+
+    name: str
+    centre: Array  # (2,) m
+    radius: float  # m
+
+    @property
+    def outline(self) -> Array:
+        """(n, 2) m, its rim as a line to be drawn, which ends where it begins."""
+        x, y = self.centre.tolist()
+        return circle_outline(x, y, self.radius)
 
 
 @dataclass(frozen=True)
@@ -53,7 +74,7 @@ class Map:
     """A floor plan: the true one, or the one that the filter believes."""
 
     boundary: Array | None = None  # (n, 2) m
-    obstacles: tuple[Obstacle, ...] = ()
+    obstacles: tuple[Obstacle | RoundObstacle, ...] = ()
     lines: tuple[WallLine, ...] = ()
 
     def rings(self) -> Iterator[tuple[str, Array]]:
@@ -61,14 +82,21 @@ class Map:
         if self.boundary is not None:
             yield BOUNDARY, self.boundary
         for obstacle in self.obstacles:
-            yield obstacle.name, obstacle.points
+            if isinstance(obstacle, Obstacle):
+                yield obstacle.name, obstacle.points
+
+    def circles(self) -> Iterator[RoundObstacle]:
+        """Every obstacle that is round."""
+        return (one for one in self.obstacles if isinstance(one, RoundObstacle))
 
     def outlines(self) -> Iterator[tuple[str, Array]]:
         """All walls with their names, as lines to be drawn : (n, 2) m each; where one is closed, it
         ends where it begins.
         """
-        for name, ring in self.rings():
-            yield name, np.vstack([ring, ring[:1]])
+        if self.boundary is not None:
+            yield BOUNDARY, np.vstack([self.boundary, self.boundary[:1]])
+        for obstacle in self.obstacles:
+            yield obstacle.name, obstacle.outline
         for line in self.lines:
             yield line.name, line.points
 
@@ -83,12 +111,16 @@ class Map:
         from shapely import Polygon  # seldom asked, and slow to import
 
         boundary = None if self.boundary is None else Polygon(self.boundary)
-        return boundary, tuple(Polygon(obstacle.points) for obstacle in self.obstacles)
+        return boundary, tuple(Polygon(obstacle.outline) for obstacle in self.obstacles)
 
     @cached_property
     def walls(self) -> Walls:
         """All edges, ready for ray casting; built once."""
-        return Walls.of(dict(self.rings()), {line.name: line.points for line in self.lines})
+        return Walls.of(
+            dict(self.rings()),
+            {line.name: line.points for line in self.lines},
+            {one.name: np.append(one.centre, one.radius) for one in self.circles()},
+        )
 
 
 @dataclass(frozen=True)
@@ -271,18 +303,14 @@ class World:
         """P₀ : (n, n) of a robot that is driven or was recorded: the document's own, but for the
         entries of the pose of which somebody says how sure they are.
         """
-        P = self.believed_robot.first_covariance(reading).copy()
-        for axis in np.flatnonzero(self.sigma_said):
-            place = self.layout.places[axis]
+        told, P = self.told, self.believed_robot.first_covariance(reading).copy()
+        said = told.sigma_said or (bool(told.sigma.any()),) * 3
+        for place, sigma in zip(
+            np.array(self.layout.places)[list(said)], told.sigma[list(said)], strict=True
+        ):
             P[place, :] = P[:, place] = 0
-            P[place, place] = self.told.sigma[axis] ** 2
+            P[place, place] = sigma**2
         return P
-
-    @property
-    def sigma_said(self) -> Axes:
-        """Of which of x, y, θ of the first belief somebody says how sure they are."""
-        told = self.told
-        return (bool(told.sigma.any()),) * 3 if told.sigma_said is None else told.sigma_said
 
     def targets(self, reading: DocumentReading) -> list[tuple[Instrument, Target]]:
         """Everything that the instruments may read, with the sensors as the filter is told."""

@@ -7,7 +7,16 @@ import numpy as np
 
 from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
 from ekfsim.scene import Scene
-from ekfsim.world import Faults, Map, Noise, Obstacle, Told, World
+from ekfsim.world import (
+    Faults,
+    Map,
+    Noise,
+    Obstacle,
+    RoundObstacle,
+    Told,
+    WallLine,
+    World,
+)
 
 NOISE = Noise(0.05, 0.04, 0.02, 0.03, 0.01)
 SILENT = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -67,6 +76,16 @@ def rich(seed=3, gate=0.9, guard="warn"):
         noise=replace(NOISE, odometry_distance=0.03),
         start=np.array([1.05, 0.95, 0.5]),
     )
+
+
+def among_pillars(seed=3):
+    """The same course among walls that stand free and round ones, one of which is on no map."""
+    made = rich(seed)
+    lines = (WallLine("hook", np.array([[6.5, 0], [6.5, 2.5], [8, 2.5]])),)
+    thick = RoundObstacle("thick", np.array([5.5, 4.5]), 0.8)
+    unknown = RoundObstacle("unknown", np.array([2.5, 3.5]), 0.3)
+    world = replace(made.world, map=Map(ROOM, (DESK, thick, unknown), lines))
+    return told(replace(made, world=world), map=Map(ROOM, (thick, STEP), lines))
 
 
 def unbounded(seed=1):

@@ -83,7 +83,8 @@ def sighting(beam: BeamSensor, x: Array, P: Array) -> Sighting:
     hit = beam.walls.cast(poses[..., :2], direction)
     line, wall = _line(beam, hit.wall), hit.wall[..., 0]
     d = np.stack([np.cos(direction[..., 0]), np.sin(direction[..., 0])], axis=-1)
-    sine = np.minimum(np.abs(np.vecdot(_normal(beam, wall), d)), 1.0)
+    n = beam.walls.normal_at(wall, x[..., :2] + hit.range[..., :1] * d)
+    sine = np.minimum(np.abs(np.vecdot(n, d)), 1.0)
     incidence = np.where(wall >= 0, np.arcsin(sine), np.nan)
     astray = line[..., 1:] != line[..., :1]
     return Sighting(wall, incidence, probes, hit.range[..., 1:], hit.wall[..., 1:], astray)
@@ -92,10 +93,3 @@ def sighting(beam: BeamSensor, x: Array, P: Array) -> Sighting:
 def _line(beam: BeamSensor, wall: Integers) -> Integers:
     """The straight line that each wall lies on, −1 where there is no wall."""
     return np.where(wall >= 0, beam.walls.line[wall], -1) if len(beam.walls.line) else wall
-
-
-def _normal(beam: BeamSensor, wall: Integers) -> Array:
-    """Unit normals : (…, 2), zero where there is no wall."""
-    if not len(beam.walls.normals):
-        return np.zeros((*wall.shape, 2))
-    return np.where(wall[..., None] >= 0, beam.walls.normals[wall], 0.0)

@@ -1,4 +1,6 @@
-"""Where a robot can stand: inside the room and outside every obstacle."""
+"""Where a robot can stand: inside the room and outside every obstacle. Walls that stand free take
+no room.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,6 +14,8 @@ from ekfsim.twins import twinned
 CLEARANCE = 1e-3  # m; how near a robot comes to a wall
 HAIR = 1e-9  # of a wall's length: how far beyond its ends a way is cut, too
 
+NONE = np.empty((0, 3))  # no circle
+
 Edge = tuple[float, float, float, float]
 
 
@@ -21,11 +25,12 @@ class Ground:
 
     rings: tuple[Array, ...]  # (n, 2, 2) m each: the edges of every polygon
     room: int  # which of them walls in what is free rather than what is not, -1 where none does
-    low: Array  # (p, 2) m: the corners of their boxes
-    high: Array  # (p, 2) m
+    circles: Array  # (c, 3) m: centre and radius of every round obstacle
+    low: Array  # (p + c, 2) m: the corners of the boxes of all polygons, then of all circles
+    high: Array  # (p + c, 2) m
 
     @classmethod
-    def of(cls, segments: Array, polygon: Integers, room: int) -> Self:
+    def of(cls, segments: Array, polygon: Integers, room: int, circles: Array = NONE) -> Self:
         """segments : (W, 2, 2) m, all edges; polygon : (W,) which polygon each belongs to"""
         order = np.argsort(polygon, kind="stable")
         first = np.flatnonzero(np.diff(polygon[order])) + 1
@@ -33,7 +38,14 @@ class Ground:
         rings = np.split(segments[order], first) if len(order) else []
         corners = [(ring.min(axis=(0, 1)), ring.max(axis=(0, 1))) for ring in rings]
         low, high = np.array(corners).reshape(-1, 2, 2).swapaxes(0, 1)
-        return cls(tuple(rings), numbers.index(room) if room in numbers else -1, low, high)
+        centre, radius = circles[:, :2], circles[:, 2:]
+        return cls(
+            tuple(rings),
+            numbers.index(room) if room in numbers else -1,
+            circles,
+            np.concatenate([low, centre - radius]),
+            np.concatenate([high, centre + radius]),
+        )
 
     def free(self, places: Array) -> Booleans:
         """Whether a robot can stand there : (…). places : (…, 2) m"""
@@ -45,12 +57,20 @@ class Ground:
             boxed = np.flatnonzero(
                 ((self.low[number] <= points) & (points <= self.high[number])).all(axis=-1)
             )
-            within = boxed[_inside(self.rings[number], points[boxed])]
+            within = boxed[self._holds(number, points[boxed])]
             (indoors if number == self.room else taken)[within] = True
         free: Booleans = (indoors & ~taken & np.isfinite(points).all(axis=-1)).reshape(
             places.shape[:-1]
         )
         return free
+
+    def _holds(self, number: int, points: Array) -> Booleans:
+        """Whether points (n, 2) lie in a polygon or circle : (n,)"""
+        if number < len(self.rings):
+            return _inside(self.rings[number], points)
+        x, y, radius = self.circles[number - len(self.rings)].tolist()
+        holds: Booleans = np.hypot(points[:, 0] - x, points[:, 1] - y) < radius
+        return holds
 
     @twinned
     def reach(self, place: Array, ways: Array) -> Array:
@@ -94,21 +114,29 @@ class Ground:
         ends = place + ways
         low = np.fmin.reduce([place, ends]).min(axis=0)
         high = np.fmax.reduce([place, ends]).max(axis=0)
+        touched = self.near(low, high)
         near = [
-            np.empty((0, 2, 2)),
-            *(_touching(self.rings[number], low, high) for number in self.near(low, high)),
+            _touching(self.rings[number], low, high)
+            for number in touched
+            if number < len(self.rings)
         ]
-        a, along = (edges := np.concatenate(near))[:, 0], edges[:, 1] - edges[:, 0]
+        circles = [number - len(self.rings) for number in touched if number >= len(self.rings)]
+        round_ = _round_cuts(place, ways, self.circles[circles])
+        edges = np.concatenate([np.empty((0, 2, 2)), *near])
+        a, along = edges[:, 0], edges[:, 1] - edges[:, 0]
         offset, ways = a - place[:, None], ways[:, None]
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             across = _cross(ways, along)
             cut, where = _cross(offset, along) / across, _cross(offset, ways) / across
             met = (cut > 0) & (cut < 1) & (np.abs(where - 0.5) <= 0.5 + HAIR)
         one = np.ones((len(place), 1))
-        return -np.sort(-np.concatenate([one, np.where(met, cut, 0.0), 0 * one], axis=1), axis=1)
+        cuts = [one, np.where(met, cut, 0.0), round_, 0 * one]
+        return -np.sort(-np.concatenate(cuts, axis=1), axis=1)
 
     def near(self, low: Array, high: Array) -> list[int]:
-        """The polygons whose boxes touch the box from its corner `low` (2,) to `high` (2,)."""
+        """The polygons whose boxes touch the box from its corner `low` (2,) to `high` (2,); circles
+        are numbered after them.
+        """
         return self.touching(np.concatenate([high, -low]))
 
     def touching(self, box: Array) -> list[int]:
@@ -137,6 +165,11 @@ class Ground:
         """Those that were asked for: a robot comes near few of a building's."""
         return {}
 
+    @cached_property
+    def rounds(self) -> list[tuple[float, float, float]]:
+        """The circles in plain numbers."""
+        return [(x, y, radius) for x, y, radius in self.circles.tolist()]
+
 
 def _touching(ring: Array, low: Array, high: Array) -> Array:
     """The edges of a ring whose boxes, a hair wider, touch that from `low` (2,) to `high` (2,)."""
@@ -161,6 +194,21 @@ def _inside(ring: Array, points: Array) -> Booleans:
         np.count_nonzero(beside & (x > ax + (bx - ax) * (y - ay) / rise), axis=-1) % 2 == 1
     )
     return odd
+
+
+def _round_cuts(place: Array, ways: Array, circles: Array) -> Array:
+    """Where ways (n, 2) from places (n, 2) meet circles (c, 3), as shares of them : (n, 2c); 0
+    where they do not.
+
+    p + s w lies on a circle of centre c and radius ρ where s² w·w + 2 s w·(p − c) = ρ² − |p − c|²
+    """
+    offset = place[:, None] - circles[:, :2]
+    square = np.vecdot(ways, ways)[:, None]
+    half = np.vecdot(ways[:, None], offset)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        root = np.sqrt(half**2 - square * (np.vecdot(offset, offset) - circles[:, 2] ** 2))
+        cuts = np.concatenate([(-half - root) / square, (-half + root) / square], axis=1)
+        return np.where((cuts > 0) & (cuts < 1), cuts, 0.0)
 
 
 def _cross(v: Array, w: Array) -> Array:

@@ -15,6 +15,17 @@ coordinates:
 - A beam along a wall hits its nearer end.
 - A beam that starts within reach of a wall has range 0, whatever its direction.
 - Of several walls at the same range (within `tie`), the one with the lowest index is hit.
+
+A round wall is a circle of centre c and radius ρ. Its centre lies `along` ahead and `across` to the
+right, and the beam's line cuts it where |across| < ρ:
+
+    r = along ∓ half      half = √((ρ − |across|) (ρ + |across|))
+
+From outside the nearer of the two is met, from inside the other, which lies ahead. Within `reach`:
+
+- A beam that passes within reach of the circle touches it, where it comes nearest to the centre.
+- A beam that starts within reach of the circle has range 0, whatever its direction.
+- Round walls follow all straight ones in the order of their indices.
 """
 
 import numpy as np
@@ -52,4 +63,20 @@ def meet(seen: Array, reach: Array) -> Array:
     r = np.where(at_b, along_b, r)
     r = np.where(at_a, np.where(at_b, np.minimum(along_a, along_b), along_a), r)
     r = np.where(distance <= reach, 0.0, r)
+    return np.where(r >= 0, r, np.inf)
+
+
+def meet_round(circles: Array, x: Array, y: Array, dx: Array, dy: Array, reach: Array) -> Array:
+    """The ranges at which beams meet round walls, by the rules above : (…) m, inf where they do
+    not.
+
+    circles : (…, 3) m, centre and radius, broadcast with origins and directions as in `see`
+    """
+    east, north, ρ = circles[..., 0] - x, circles[..., 1] - y, circles[..., 2]
+    along, across = east * dx + north * dy, np.abs(east * dy - north * dx)
+    distance = np.hypot(along, across)
+    half = np.sqrt(np.maximum((ρ - across) * (ρ + across), 0.0))
+    r = np.where(distance < ρ, along + half, along - half)
+    r = np.where(across > ρ + reach, np.inf, r)
+    r = np.where(np.abs(distance - ρ) <= reach, 0.0, r)
     return np.where(r >= 0, r, np.inf)

@@ -14,8 +14,10 @@ from typing import Self
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
+from ekfsim.geometry.circle import circle_outline
 from ekfsim.raycast.brute import brute_force
 from ekfsim.raycast.ground import Ground
+from ekfsim.raycast.round_walls import RoundWalls
 from ekfsim.raycast.searches.flat_grid import FlatGrid
 from ekfsim.raycast.searches.grid import Grid
 from ekfsim.twins import twinned
@@ -34,31 +36,43 @@ class Hit:
 
 @dataclass(frozen=True, eq=False)
 class Walls:
-    """Every edge of every polygon of one map, and of every line of walls that stands free."""
+    """All walls of one map: every edge of every polygon and of every line of walls that stands
+    free, W in all, and then every circle, C in all.
+    """
 
-    segments: Array  # (W, 2, 2) m: the ends of each wall
-    # (W, 2) unit normal of each wall, to the left on the way from its first end to its second
+    segments: Array  # (W, 2, 2) m: the ends of each straight wall
+    # (W, 2) unit normal of each, to the left on the way from its first end to its second
     normals: Array
-    polygon: Integers  # (W,) which polygon, or line of walls, the wall belongs to
-    # (W,) which edge of it: edge j joins points j and j + 1, the last closes the ring
+    circles: Array  # (C, 3) m: centre and radius of each round wall
+    polygon: Integers  # (W + C,) which polygon, line of walls or circle the wall belongs to
+    # (W + C,) which edge of it: edge j joins points j and j + 1, the last closes the ring; a
+    # circle is its own edge 0
     edge: Integers
-    line: Integers  # (W,) edges of one polygon on one straight line share a number
-    names: tuple[str, ...]  # of the polygons, then of the lines of walls
-    polygons: int  # how many of the names are polygons: the others have no inside
+    # (W + C,) edges of one polygon on one straight line share a number; a circle has its own
+    line: Integers
+    names: tuple[str, ...]  # of the polygons, then of the lines of walls, then of the circles
+    polygons: int  # how many of the names are polygons
 
     def __post_init__(self) -> None:
         """Every step of a run hands out the same walls: nobody may move them."""
-        for numbers in (self.segments, self.normals, self.polygon, self.edge, self.line):
+        each = self.segments, self.normals, self.circles, self.polygon, self.edge, self.line
+        for numbers in each:
             numbers.flags.writeable = False
 
     @classmethod
-    def of(cls, rings: Mapping[str, Array], lines: Mapping[str, Array] | None = None) -> Self:
+    def of(
+        cls,
+        rings: Mapping[str, Array],
+        lines: Mapping[str, Array] | None = None,
+        circles: Mapping[str, Array] | None = None,
+    ) -> Self:
         """Collect the edges of all rings, closed or not, and of all lines of walls, which stay
-        open: both given by name as (n, 2) points in m.
+        open: both given by name as (n, 2) points in m; and circles as x, y of the centre and
+        radius, (3,) m.
 
         Edges of no length are no walls; the others keep their number in the ring.
         """
-        lines = lines or {}
+        lines, circles = lines or {}, circles or {}
         polygon, edge, segments = [], [], []
         edges = chain(map(_edges, rings.values()), map(_open_edges, lines.values()))
         for number, ends in enumerate(edges):
@@ -69,21 +83,46 @@ class Walls:
         ends = np.concatenate([np.empty((0, 2, 2)), *segments])
         east, north = (ends[:, 1] - ends[:, 0]).T
         normals = np.stack([-north, east], -1) / np.hypot(east, north)[:, None]
-        none = np.empty(0, np.int64)
+        none, round_ = np.empty(0, np.int64), np.arange(len(circles))
         numbers = np.concatenate([none, *polygon])
+        line = _lines(ends, numbers)
         return cls(
             ends,
             normals,
-            numbers,
-            np.concatenate([none, *edge]),
-            _lines(ends, numbers),
-            (*rings, *lines),
+            np.array(list(circles.values()), float).reshape(-1, 3),
+            np.concatenate([numbers, len(rings) + len(lines) + round_]),
+            np.concatenate([none, *edge, 0 * round_]),
+            np.concatenate([line, line.max(initial=-1) + 1 + round_]),
+            (*rings, *lines, *circles),
             len(rings),
         )
 
     def name(self, wall: int) -> tuple[str, int]:
         """The polygon or line that a wall belongs to, and which edge of it: ("desk", 2)."""
         return self.names[self.polygon[wall]], int(self.edge[wall])
+
+    def is_round(self, wall: int) -> bool:
+        """Whether a wall is a circle."""
+        return wall >= len(self.segments)
+
+    def normal_at(self, wall: Integers, place: Array) -> Array:
+        """Unit normals where walls (…) are met at places (…, 2) : (…, 2), zero where there is no
+        wall. That of a circle points outwards.
+        """
+        W = len(self.segments)
+        straight = np.vstack([self.normals, np.zeros(2)])  # no wall, −1, takes the last
+        n = straight[np.where(wall < W, wall, -1)]
+        if not len(self.circles):
+            return n
+        circle = self.circles[np.maximum(wall - W, 0)]
+        with np.errstate(invalid="ignore"):  # where no wall is met
+            outwards = (place - circle[..., :2]) / circle[..., 2:]
+        return np.where((wall >= W)[..., None], outwards, n)
+
+    def outline(self, wall: int) -> Array:
+        """A wall as a line to be drawn : (n, 2) m"""
+        W = len(self.segments)
+        return self.segments[wall] if wall < W else circle_outline(*self.circles[wall - W].tolist())
 
     @twinned
     def cast(self, origin: Array, heading: Array) -> Hit:
@@ -93,7 +132,8 @@ class Walls:
         x, y, heading = np.broadcast_arrays(origin[..., 0], origin[..., 1], heading)
         with np.errstate(invalid="ignore"):
             dx, dy = np.cos(heading), np.sin(heading)
-        return Hit(*brute_force(self.segments, x, y, dx, dy))
+        found = brute_force(self.segments, x, y, dx, dy)
+        return Hit(*(found if self.round is None else self.round.before(found, x, y, dx, dy)))
 
     @twinned
     def first(self, x: float, y: float, heading: float) -> tuple[float, int]:
@@ -105,22 +145,39 @@ class Walls:
 
     def near(self, low: Array, high: Array) -> Integers:
         """The walls whose bounding boxes touch a box from its corner `low` (2,) to `high` (2,)."""
-        first, last = self._boxes
+        first, last = self.boxes
         return np.flatnonzero(((first <= high) & (last >= low)).all(axis=-1))
 
     @cached_property
-    def _boxes(self) -> tuple[Array, Array]:
-        return self.segments.min(axis=1), self.segments.max(axis=1)
+    def boxes(self) -> tuple[Array, Array]:
+        """The lower left and the upper right corner of each wall's bounding box : (W + C, 2) m"""
+        centre, radius = self.circles[:, :2], self.circles[:, 2:]
+        return (
+            np.concatenate([self.segments.min(axis=1), centre - radius]),
+            np.concatenate([self.segments.max(axis=1), centre + radius]),
+        )
+
+    @cached_property
+    def round(self) -> RoundWalls | None:
+        """The round walls; None where there is none."""
+        return RoundWalls(self.circles, len(self.segments)) if len(self.circles) else None
 
     @cached_property
     def ground(self) -> Ground:
         """Where a robot can stand among these walls."""
-        areas = self.polygon < self.polygons
+        numbers = self.polygon[: len(self.segments)]
+        areas = numbers < self.polygons
         return Ground.of(
             self.segments[areas],
-            self.polygon[areas],
+            numbers[areas],
             self.names.index(BOUNDARY) if BOUNDARY in self.names else -1,
+            self.circles,
         )
+
+    @cached_property
+    def recent(self) -> dict[tuple[float, float, float], tuple[float, int]]:
+        """The last few single beams, with what they met."""
+        return {}
 
     @cached_property
     def grid(self) -> Grid | None:

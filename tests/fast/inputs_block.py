@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from scenes import rich
+from scenes import among_pillars, rich
 from twin_inputs import inputs
 
 from ekfsim.filters.belief import Correction, Gaussian
@@ -17,6 +17,7 @@ def scenes_of_the_classroom(random, runs):
     seed = int(random.integers(2**32))
     made = rich(seed)
     yield replace(made, commands=made.commands[:8]), 0, runs or 1
+    yield replace(among_pillars(seed), commands=made.commands[:8]), 0, runs or 1
     yield replace(rich(seed), filter="ukf"), 0, 1  # which is left to the text
 
 

@@ -30,7 +30,13 @@ SEVERAL = {  # of each kind: as it comes, and without noise
     "Unicycle": (Unicycle(0.02, 0.1), Unicycle(0.0, 0.0)),
     "WheelSpeeds": (WheelSpeeds(0.27, 0.1, 0.3), WheelSpeeds(0.27, 0.0, 0.0)),
 }
-WALLS = (Walls.of({BOUNDARY: ROOM, "desk": DESK}), Walls.of({"desk": DESK}), Walls.of({}))
+PILLARS = {"pillar": np.array([7, 2, 1.0]), "vault": np.array([4.5, 5, 1.5])}
+WALLS = (
+    Walls.of({BOUNDARY: ROOM, "desk": DESK}),
+    Walls.of({BOUNDARY: ROOM, "desk": DESK}, circles=PILLARS),
+    Walls.of({"desk": DESK}),
+    Walls.of({}),
+)
 # of a range, see inputs_rays.py; of its derivative by the heading, where a beam grazes a wall
 SHORT = 1e-9
 
@@ -188,7 +194,7 @@ def sightings(random, runs):
     within : the eigenvectors of P have half its digits where two eigenvalues are near each other
     """
     axes = axes_of(runs)
-    for walls in WALLS[:2]:
+    for walls in WALLS[:3]:
         x = random.uniform((0, 0, -math.pi), (10, 8, math.pi), (*axes, 3))
         root = random.normal(size=(*axes, 3, 3)) * [[0.2], [0.2], [0.1]]
         for P in (root @ root.mT, 0 * root, root[..., :1] * root[..., None, :, 0]):

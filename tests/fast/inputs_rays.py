@@ -7,6 +7,13 @@ from ekfsim.raycast.walls import BOUNDARY, Walls
 
 ROOM = np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])
 DESK = np.array([[2, 2], [4, 2], [4, 3], [2, 3.0]])
+LINES = {"hook": np.array([[7, 0], [7, 5], [9, 5.0]]), "bow": np.array([[1, 5], [3, 7], [3, 5.0]])}
+CIRCLES = {
+    "pillar": np.array([7, 2, 1.0]),  # across a line
+    "tun": np.array([4, 2, 2.0]),  # about a corner of the desk
+    "vault": np.array([4.5, 5, 1.5]),  # round where most stand
+    "pea": np.array([9, 7, 0.01]),
+}
 PLACES = (0.0, 2.0, 3.0, 4.0, 10.0)  # of corners, and on walls
 TURNS = np.array([-np.pi, -np.pi / 2, 0.0, np.pi / 4, np.pi / 2, np.pi])
 # of a range: it has the digits of the coordinates, and those are up to a thousand times as large
@@ -14,7 +21,9 @@ SHORT = 1e-9
 
 
 def worlds(random):
-    """A room with a desk; one that is full of triangles; triangles alone; nothing."""
+    """A room with a desk; one that is full of triangles; triangles alone; nothing; a room with
+    lines and circles; circles alone, which cross; lines alone.
+    """
     full = {
         str(i): random.uniform(0.5, 7.5, 2) + random.uniform(-0.4, 0.4, (3, 2)) for i in range(80)
     }
@@ -22,6 +31,9 @@ def worlds(random):
     yield Walls.of({BOUNDARY: ROOM, **full})
     yield Walls.of(dict(list(full.items())[:25]))
     yield Walls.of({})
+    yield Walls.of({BOUNDARY: ROOM, "desk": DESK}, LINES, CIRCLES)
+    yield Walls.of({}, circles=CIRCLES)
+    yield Walls.of({}, LINES)
 
 
 @inputs("ekfsim.raycast.walls:Walls.cast", within=SHORT)

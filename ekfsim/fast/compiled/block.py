@@ -14,6 +14,7 @@ from ekfsim.commands import Kidnap, Move, Say, Sense, expand
 from ekfsim.diagnostics.nees import OUTSIDE, RANK, ROUNDING, squared_mahalanobis
 from ekfsim.diagnostics.verdict import LOST
 from ekfsim.fast.compiled import beams, judging, steps
+from ekfsim.fast.compiled.models import normals_met
 from ekfsim.fast.many.nees import CLEAR
 from ekfsim.filters.arithmetic import tolerances
 from ekfsim.filters.arithmetic.chi_square import quantile
@@ -23,7 +24,7 @@ from ekfsim.geometry.ellipse import cone_factor, radius_factor
 from ekfsim.models.sensors.laser import ALONG
 from ekfsim.raycast.ground import CLEARANCE
 from ekfsim.raycast.rules import REACH, TIE
-from ekfsim.raycast.walls import Walls
+from ekfsim.raycast.walls import Hit, Walls
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import Draws, true_start
 from ekfsim.study.block import Readings, Watched, length_of, steps_told
@@ -101,9 +102,12 @@ class Block:
     def _until_wall(self, way: Array) -> Array:
         """The ways (N,), cut short of the first wall."""
         walls, some = self.world.map.walls, self.some
+        heading = np.where(way < 0, self.truth[2] + np.pi, self.truth[2])
+        if walls.round is not None:
+            free = walls.cast(self.truth[:2].T, heading).range - CLEARANCE
+            return np.copysign(np.fmin(np.maximum(free, 0.0), np.abs(way)), way)
         if walls.grid is None:
             return way
-        heading = np.where(way < 0, self.truth[2] + np.pi, self.truth[2])
         tolerances = CLEARANCE, walls.grid.size, TIE, 4 * REACH
         ends = walls.segments.reshape(-1, 4)
         if left := beams.stop(ends, self.truth, heading, way, *tolerances, some):
@@ -126,8 +130,9 @@ class Block:
         z = faults.range_scale * r + faults.range_bias + noise.range * r * normals[0]
         walls = self.world.told.map.walls
         h, wall, way = cast(walls, self.x, bearing)
+        n, wall = normals_met(walls, Hit(h, wall), self.x[:2], self.x[2] + bearing)
         self.readings += steps.read(
-            self.x, self.P, np.maximum(z, 0.0), h, wall, way, walls.normals,
+            self.x, self.P, np.maximum(z, 0.0), h, wall, way, n,
             self.world.told.noise.range, ALONG, tolerances.SHARP, tolerances.ROUNDING, self.gate,
             self.nis, self.nis_dof,
         )  # fmt: skip
@@ -184,4 +189,6 @@ def cast(walls: Walls, place: Array, bearing: float) -> tuple[Array, Integers, A
             some = np.flatnonzero(wall == beams.DOUBT)
             hit = walls.cast(place[:2, some].T, place[2, some] + bearing)
             ranges[some], wall[some] = hit.range, hit.wall
+    if walls.round is not None:
+        ranges, wall = walls.round.before((ranges, wall), place[0], place[1], way[0], way[1])
     return ranges, wall, way

@@ -11,6 +11,7 @@ from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.soa import from_soa, soa_zeros, to_soa
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import ALONG, Laser
+from ekfsim.raycast.walls import Hit, Walls
 from ekfsim.twins import compiled
 
 
@@ -35,10 +36,21 @@ def laser(sensor: Laser, x: Array) -> tuple[Array, Array, Array] | None:
     direction, walls = x[:, 2] + sensor.bearing, sensor.walls
     hit = walls.cast(x[:, :2], direction)
     h, H, R = np.empty(len(x)), soa_zeros((len(x),), 1, 3), np.empty(len(x))
-    _beam(
-        direction, hit.range, hit.wall, walls.normals, sensor.range_ratio, ALONG, h, to_soa(H)[0], R
-    )
+    normals, which = normals_met(walls, hit, x[:, :2].T, direction)
+    _beam(direction, hit.range, which, normals, sensor.range_ratio, ALONG, h, to_soa(H)[0], R)
     return h[:, None], H, R[:, None, None]
+
+
+def normals_met(walls: Walls, hit: Hit, place: Array, heading: Array) -> tuple[Array, Integers]:
+    """Normals (n, 2), and which of them is that of the wall that each beam meets : (N,), −1 where
+    it meets none. place : (2, N) m, heading : (N,) rad
+
+    Straight walls have one each; among round ones every beam has its own.
+    """
+    if walls.round is None:
+        return walls.normals, hit.wall
+    met = place + hit.range * np.stack([np.cos(heading), np.sin(heading)])
+    return walls.normal_at(hit.wall, met.T), np.where(hit.wall < 0, -1, np.arange(len(hit.wall)))
 
 
 @compiled

@@ -31,8 +31,7 @@ def _may_bump(walls: Walls, pose: Array, way: Array) -> Integers:
     near = walls.near(np.fmin.reduce(place, axis=1) - far, np.fmax.reduce(place, axis=1) + far)
     if not 0 < len(near) <= FEW:
         return np.arange(len(way) if len(near) else 0)
-    ends = walls.segments[near]
-    first, last = ends.min(axis=1)[..., None], ends.max(axis=1)[..., None]
+    first, last = (corners[near, :, None] for corners in walls.boxes)
     return np.flatnonzero(
         ((first <= place + reach) & (last >= place - reach)).all(axis=1).any(axis=0)
     )

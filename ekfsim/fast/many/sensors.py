@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ekfsim.geometry import Array, Integers
+from ekfsim.geometry import Array
 from ekfsim.geometry.soa import from_soa, soa_zeros, to_soa
 from ekfsim.models.sensors.frozen import Frozen
 from ekfsim.models.sensors.infrared import InfraredBeam
@@ -10,7 +10,7 @@ from ekfsim.models.sensors.laser import ALONG, Laser
 from ekfsim.models.sensors.laser_by_reading import LaserByReading
 from ekfsim.models.sensors.mounted import Mounted
 from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
-from ekfsim.raycast.walls import Walls
+from ekfsim.raycast.walls import Hit, Walls
 
 Linearized = tuple[Array, Array, Array]  # h, H, R
 
@@ -19,8 +19,8 @@ def laser(sensor: Laser, x: Array) -> Linearized:
     """Twin of h, H and R of `Laser`."""
     direction = x[..., 2] + sensor.bearing
     hit = sensor.walls.cast(x[..., :2], direction)
-    nx, ny = to_soa(_normal(sensor.walls, hit.wall), 1)
     c, s = np.cos(direction), np.sin(direction)
+    nx, ny = to_soa(_normal(sensor.walls, hit, x, c, s), 1)
     n_d = nx * c + ny * s
     met = np.abs(n_d) > ALONG
     r = hit.range
@@ -77,8 +77,12 @@ def mounted(sensor: Mounted, x: Array) -> Linearized:
     return h, sensor._placed(H, x), R
 
 
-def _normal(walls: Walls, wall: Integers) -> Array:
+def _normal(walls: Walls, hit: Hit, x: Array, c: Array, s: Array) -> Array:
     """Unit normals : (…, 2), zero where there is no wall."""
+    wall = hit.wall
+    if walls.round:
+        place = np.stack([x[..., 0] + hit.range * c, x[..., 1] + hit.range * s], axis=-1)
+        return walls.normal_at(wall, place)
     if not len(walls.normals):
         return np.zeros((*wall.shape, 2))
     normals = from_soa(to_soa(walls.normals, 1)[:, wall], 1)

@@ -6,6 +6,7 @@ import numpy as np
 
 from ekfsim.diagnostics.ambiguity import FLAT, REACH, BeamSensor, Sighting
 from ekfsim.fast.one.ground import reach_of_each
+from ekfsim.fast.one.normal import normal_one
 from ekfsim.geometry import Array
 from ekfsim.raycast.searches.single_beam import first, found
 
@@ -27,19 +28,17 @@ def sighting(beam: BeamSensor, x: Array, P: Array) -> Sighting | None:
     probes = [
         (px + t * dx, py + t * dy, θ + t * dθ) for t, (dx, dy, dθ) in zip(shares, arms, strict=True)
     ]
-    wall = (here := first(walls, px, py, θ + bearing))[1]
-    grid = walls.grid
+    r, wall = here = first(walls, px, py, θ + bearing)
     hits = [
-        found(grid, x_i, y_i, θ_i + bearing) if grid is not None and any(arm) else here
+        found(walls, x_i, y_i, θ_i + bearing) if any(arm) else here
         for (x_i, y_i, θ_i), arm in zip(probes, arms, strict=True)
     ]
     ranges, met = zip(*hits, strict=True)
     incidence, line = math.nan, walls.line
     if wall >= 0:
-        nx, ny = walls.normals[wall].tolist()
-        incidence = math.asin(
-            min(abs(nx * math.cos(θ + bearing) + ny * math.sin(θ + bearing)), 1.0)
-        )
+        dx, dy = math.cos(θ + bearing), math.sin(θ + bearing)
+        nx, ny = normal_one(walls, wall, px + r * dx, py + r * dy)
+        incidence = math.asin(min(abs(nx * dx + ny * dy), 1.0))
     astray = [
         other != wall and (wall < 0 or other < 0 or line[other] != line[wall]) for other in met
     ]

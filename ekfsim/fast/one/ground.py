@@ -38,11 +38,19 @@ def _free(ground: Ground, near: list[int], x: float, y: float) -> bool:
     """Whether a robot can stand at a place. near : the polygons that may hold it"""
     indoors = ground.room < 0
     for number in near:
-        if _inside(ground.edges(number), x, y):
+        if _holds(ground, number, x, y):
             if number != ground.room:
                 return False
             indoors = True
     return indoors
+
+
+def _holds(ground: Ground, number: int, x: float, y: float) -> bool:
+    polygons = len(ground.rings)
+    if number < polygons:
+        return _inside(ground.edges(number), x, y)
+    cx, cy, radius = ground.rounds[number - polygons]
+    return math.hypot(x - cx, y - cy) < radius
 
 
 def _inside(ring: list[Edge], x: float, y: float) -> bool:
@@ -58,7 +66,11 @@ def _cut_back(ground: Ground, near: list[int], x: float, y: float, dx: float, dy
     may meet
     """
     cuts = [1.0, 0.0]
+    polygons = len(ground.rings)
     for number in near:
+        if number >= polygons:
+            cuts += _round_cuts(ground.rounds[number - polygons], x, y, dx, dy)
+            continue
         for ax, ay, bx, by in ground.edges(number):
             east, north, across = bx - ax, by - ay, dx * (by - ay) - dy * (bx - ax)
             if across:
@@ -72,3 +84,16 @@ def _cut_back(ground: Ground, near: list[int], x: float, y: float, dx: float, dy
         if far > close and _free(ground, near, x + middle * dx, y + middle * dy):
             return max(middle, far - CLEARANCE / math.hypot(dx, dy))
     return 0.0
+
+
+def _round_cuts(
+    circle: tuple[float, float, float], x: float, y: float, dx: float, dy: float
+) -> list[float]:
+    cx, cy, radius = circle
+    x, y = x - cx, y - cy
+    square, half = dx * dx + dy * dy, dx * x + dy * y
+    under = half**2 - square * (x * x + y * y - radius**2)
+    if under < 0 or square == 0:
+        return []
+    root = math.sqrt(under)
+    return [cut for cut in ((-half - root) / square, (-half + root) / square) if 0 < cut < 1]

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ekfsim.fast.one.normal import normal_one
 from ekfsim.geometry import Array
 from ekfsim.models.sensors.laser import ALONG, Laser
 from ekfsim.raycast.searches.single_beam import first
@@ -19,7 +20,7 @@ def laser(sensor: Laser, x: Array) -> Linearized | None:
     direction = θ + sensor.bearing
     r, wall = first(sensor.walls, px, py, direction)
     dx, dy = math.cos(direction), math.sin(direction)
-    nx, ny = sensor.walls.normals[wall].tolist() if wall >= 0 else (0.0, 0.0)
+    nx, ny = normal_one(sensor.walls, wall, px + r * dx, py + r * dy)
     n_d = nx * dx + ny * dy
     if not abs(n_d) > ALONG:
         return np.array([math.nan]), np.zeros((1, 3)), np.array([[math.nan]])

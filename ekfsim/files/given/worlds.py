@@ -7,7 +7,7 @@ import numpy as np
 
 from ekfsim.files.given.given import Given
 from ekfsim.files.keys.world import NoiseKeys
-from ekfsim.world import Noise, Obstacle, WallLine, World
+from ekfsim.world import Noise, Obstacle, RoundObstacle, WallLine, World
 
 OF = "World.of"  # how messages name what was handed over
 POSE = ("x", "y", "theta")
@@ -41,16 +41,25 @@ def _as_in_a_file(key: str, value: Any) -> Any:
         case (("start" | "sigma"), (list() | tuple())) if len(value) == len(POSE):
             return dict(zip(POSE, value, strict=True))
         case "obstacles", Mapping():
-            return [{"name": name, "points": points} for name, points in value.items()]
+            return [
+                {"name": name, **(shape if isinstance(shape, Mapping) else {"points": shape})}
+                for name, shape in value.items()
+            ]
         case "walls", Mapping():
             return [{"name": name, "points": points} for name, points in value.items()]
         case (("obstacles" | "walls"), list() | tuple()):
-            named = Obstacle | WallLine
-            return [
-                {"name": one.name, "points": one.points} if isinstance(one, named) else one
-                for one in value
-            ]
+            return [_shape(one) for one in value]
         case "noise", Noise():
             aliases = {name: field.alias for name, field in NoiseKeys.model_fields.items()}
             return {alias: getattr(value, name) for name, alias in aliases.items()}
     return value
+
+
+def _shape(one: Any) -> Any:
+    match one:
+        case Obstacle() | WallLine():
+            return {"name": one.name, "points": one.points}
+        case RoundObstacle():
+            x, y = one.centre.tolist()
+            return {"name": one.name, "circle": {"x": x, "y": y, "radius": one.radius}}
+    return one

@@ -14,6 +14,7 @@ from ekfsim.files.keys.fields import (
     Name,
     Polygon,
     Pose,
+    Positive,
     Ratio,
     Spread,
     Strict,
@@ -38,6 +39,9 @@ SEE = "See noise."
 POSE = {"x": 1.0, "y": 1.0, "theta": 90}
 SIGMA = {"x": 0.1, "y": 0.1, "theta": 5}
 DESK: JsonDict = {"name": "desk", "points": [[4, 3], [5, 3], [5, 4], [4, 4]]}
+SHAPES = ("points", "circle")  # an obstacle has exactly one of them
+POINTS_OR_CIRCLE: JsonDict = {"oneOf": [{"required": [shape]} for shape in SHAPES]}
+CIRCLE: JsonDict = {"x": 3, "y": 2, "radius": 0.4}
 WALL = [[7, 0], [7, 5]]
 PANEL: JsonDict = {"name": "panel", "points": [[7, 0], [7, 5]]}
 LANDMARK: JsonDict = {"id": 3, "x": 5.0, "y": -5.0}
@@ -114,16 +118,31 @@ class ToldNoiseKeys(Strict):
     range: Ratio | None = Field(None, alias="rangeSigmaRatio", description=SEE)
 
 
-class ObstacleKeys(Strict):
-    """A polygon that stops robots and beams."""
+class CircleKeys(Strict):
+    """A circle."""
 
-    model_config = ConfigDict(title="an obstacle", json_schema_extra={"examples": [DESK]})
+    model_config = ConfigDict(title="a circle")
+
+    x: Coordinate = Field(description="Of its centre, m", examples=[3])
+    y: Coordinate = Field(description="Of its centre, m", examples=[2])
+    radius: Positive = Field(description="m", examples=[0.4])
+
+
+class ObstacleKeys(Strict):
+    """A polygon or a circle that stops robots and beams: it has either points or a circle."""
+
+    model_config = ConfigDict(
+        title="an obstacle", json_schema_extra={"examples": [DESK], **POINTS_OR_CIRCLE}
+    )
 
     name: Name = Field(
         description="What messages and pictures call it; no two obstacles share a name."
     )
-    points: Polygon = Field(
-        description="Its corners in order, [x, y] in m; the outline closes by itself."
+    points: Polygon | None = Field(
+        None, description="Its corners in order, [x, y] in m; the outline closes by itself."
+    )
+    circle: CircleKeys | None = Field(
+        None, description="Its centre and radius, m, where it is round.", examples=[CIRCLE]
     )
 
 
@@ -258,8 +277,8 @@ class WorldKeys(Strict):
     )
     obstacles: list[ObstacleKeys] = Field(
         [],
-        description="Polygons that stop robots and beams; they may overlap, and cross the "
-        "boundary.",
+        description="Polygons and circles that stop robots and beams; they may overlap, and cross "
+        "the boundary.",
         examples=[[DESK]],
     )
     walls: list[WallKeys] = Field(

@@ -23,7 +23,7 @@ from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Control, Entry, Reading
 from ekfsim.scene import Scene
 from ekfsim.version import VERSION
-from ekfsim.world import Told
+from ekfsim.world import Obstacle, RoundObstacle, Told
 
 ABOUT = "about.txt"  # only beside the truth
 NAME = "classroom"  # of the world: its own may tell what is wrong in it
@@ -85,7 +85,7 @@ def _world(told: Told) -> Iterator[str]:
         yield "obstacles:\n"
     for obstacle in told.map.obstacles:
         name = json.dumps(obstacle.name, ensure_ascii=False)
-        yield f"  - {{name: {name}, points: {_points(obstacle.points)}}}\n"
+        yield f"  - {{name: {name}, {_shape(obstacle)}}}\n"
     if told.map.lines:
         yield "walls:\n"
     for line in told.map.lines:
@@ -95,6 +95,13 @@ def _world(told: Told) -> Iterator[str]:
     yield f"start: {{{_pose(told.start)}{sigma}}}\nnoise:\n"
     for name, key in aliases(NoiseKeys).items():
         yield f"  {key}: {getattr(told.noise, name)!r}\n"
+
+
+def _shape(obstacle: Obstacle | RoundObstacle) -> str:
+    if isinstance(obstacle, Obstacle):
+        return f"points: {_points(obstacle.points)}"
+    x, y = obstacle.centre.tolist()
+    return f"circle: {{x: {x!r}, y: {y!r}, radius: {obstacle.radius!r}}}"
 
 
 def _points(corners: Array) -> str:

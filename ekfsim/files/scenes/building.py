@@ -34,6 +34,7 @@ from ekfsim.world import (
     Map,
     Noise,
     Obstacle,
+    RoundObstacle,
     Told,
     WallLine,
     World,
@@ -212,9 +213,18 @@ def told_map(belief: BeliefKeys, floor_plan: Map) -> Map:
     )
 
 
-def obstacles_of(obstacles: Iterable[ObstacleKeys]) -> tuple[Obstacle, ...]:
-    """Obstacles with their corners as arrays."""
-    return tuple(Obstacle(keys.name, ring(keys.points)) for keys in obstacles)
+def obstacles_of(obstacles: Iterable[ObstacleKeys]) -> tuple[Obstacle | RoundObstacle, ...]:
+    """Obstacles with their corners, or centres, as arrays."""
+    return tuple(map(obstacle_of, obstacles))
+
+
+def obstacle_of(keys: ObstacleKeys) -> Obstacle | RoundObstacle:
+    """One of them; of none that is neither, which is told of as a mistake, it is a polygon without
+    points.
+    """
+    if (circle := keys.circle) is not None:
+        return RoundObstacle(keys.name, np.array([circle.x, circle.y]), circle.radius)
+    return Obstacle(keys.name, ring(keys.points) if keys.points else np.empty((0, 2)))
 
 
 def lines_of(walls: Iterable[list[list[float]] | LineKeys]) -> tuple[WallLine, ...]:

@@ -38,6 +38,9 @@ class Laser(Sensor):
         A beam of direction d from p meets the wall through a with normal n:
 
             r = n·(a − p) / n·d      ∂r/∂p = −n / n·d      ∂r/∂θ = −r n·d⊥ / n·d
+
+        So it is of a round wall, with the normal where the beam meets it: there the wall's tangent
+        and the wall itself are one to the first order.
         """
         r, n, d = self._met(x)
         aside = np.stack([-d[..., 1], d[..., 0]], axis=-1)  # d⊥
@@ -60,6 +63,5 @@ class Laser(Sensor):
         heading = x[..., 2] + self.bearing
         hit = self.walls.cast(x[..., :2], heading)
         d = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
-        normals = np.vstack([self.walls.normals, np.zeros(2)])  # the wall −1, none, takes the last
-        n = normals[hit.wall]
+        n = self.walls.normal_at(hit.wall, x[..., :2] + hit.range[..., None] * d)
         return np.where(np.abs(np.vecdot(n, d)) > ALONG, hit.range, np.nan), n, d

@@ -53,17 +53,20 @@ def in_blocks(search: Search, walls: Walls, x: Array, y: Array, heading: Array) 
     shape = heading.shape
     x, y, heading = x.ravel(), y.ravel(), heading.ravel()
     ranges, met = np.full(x.shape, np.nan), np.full(x.shape, -1)
-    for start in range(0, len(x) if walls.grid else 0, BLOCK):
+    for start in range(0, len(x) if walls.grid or walls.round else 0, BLOCK):
         part = slice(start, start + BLOCK)
         beams = np.empty((4, len(x[part])))
         beams[0], beams[1] = x[part], y[part]
         with np.errstate(invalid="ignore"):
             np.cos(heading[part], out=beams[2])
             np.sin(heading[part], out=beams[3])
-        ranges[part], met[part], doubtful = search(walls, beams)
-        if doubtful.size:
-            again = start + doubtful
-            ranges[again], met[again] = _surely(walls, beams[:, doubtful])
+        if walls.grid:
+            ranges[part], met[part], doubtful = search(walls, beams)
+            if doubtful.size:
+                again = start + doubtful
+                ranges[again], met[again] = _surely(walls, beams[:, doubtful])
+        if walls.round:
+            ranges[part], met[part] = walls.round.before((ranges[part], met[part]), *beams)
     return Hit(ranges.reshape(shape), met.reshape(shape))
 
 

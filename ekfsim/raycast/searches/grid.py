@@ -6,7 +6,7 @@ own, so that a town of walls in a wide plain is found as fast.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
 
@@ -49,10 +49,6 @@ class Grid:
     walls: Integers  # (listed,) which of the segments, cell after cell
     border: Booleans  # (cells,)
     crowded: Mapping[int, "Grid"]  # the grids of the cells that have one of their own
-    # single beams that were followed not long ago, with their ranges and walls
-    recent: dict[tuple[float, float, float], tuple[float, int]] = field(
-        default_factory=dict, repr=False
-    )
 
     @classmethod
     def over(cls, segments: Array) -> Self:

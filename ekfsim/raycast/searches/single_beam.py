@@ -1,10 +1,11 @@
 """One beam from cell to cell of a grid, in plain floats: where no array is worth its while."""
 
-from math import cos, hypot, inf, isfinite, nan, sin
+from math import cos, hypot, inf, isfinite, nan, sin, sqrt
 
 import numpy as np
 
 from ekfsim.raycast.brute import brute_force
+from ekfsim.raycast.round_walls import RoundWalls
 from ekfsim.raycast.rules import REACH, TIE
 from ekfsim.raycast.searches.grid import Grid, Wall
 from ekfsim.raycast.walls import Walls
@@ -17,23 +18,49 @@ def first(walls: Walls, x: float, y: float, heading: float) -> tuple[float, int]
     """`Walls.first`. The last few beams are remembered: one is looked along before its reading is
     used, and followed again when it is.
     """
-    grid = walls.grid
-    if grid is None:
-        return nan, -1
-    beam = x, y, heading
-    hit = grid.recent.get(beam)
+    beam, recent = (x, y, heading), walls.recent
+    hit = recent.get(beam)
     if hit is None:
-        if len(grid.recent) >= RECENT:
-            grid.recent.clear()
-        hit = grid.recent[beam] = found(grid, x, y, heading)
+        if len(recent) >= RECENT:
+            recent.clear()
+        hit = recent[beam] = found(walls, x, y, heading)
     return hit
 
 
-def found(grid: Grid, x: float, y: float, heading: float) -> tuple[float, int]:
+def found(walls: Walls, x: float, y: float, heading: float) -> tuple[float, int]:
     """The same of a beam that nobody will ask for again."""
     if not isfinite(x + y + heading):
         return nan, -1
-    return follow(grid, x, y, cos(heading), sin(heading))
+    grid, dx, dy = walls.grid, cos(heading), sin(heading)
+    straight = (nan, -1) if grid is None else follow(grid, x, y, dx, dy)
+    return straight if walls.round is None else _before(walls.round, straight, x, y, dx, dy)
+
+
+def _before(
+    round_: RoundWalls, straight: tuple[float, int], x: float, y: float, dx: float, dy: float
+) -> tuple[float, int]:
+    """`RoundWalls.before` of one beam."""
+    span = round_.extent + abs(x) + abs(y)
+    reach, tie, best = REACH * span, TIE * span, inf
+    met: list[tuple[float, int]] = []
+    for wall, (east, north, radius) in enumerate(round_.plain, round_.first):
+        east, north = east - x, north - y
+        across = abs(east * dy - north * dx)
+        if across > radius + reach:
+            continue
+        along = east * dx + north * dy
+        distance = hypot(along, across)
+        half = sqrt(max((radius - across) * (radius + across), 0.0))
+        r = along + half if distance < radius else along - half
+        if abs(distance - radius) <= reach:
+            r = 0.0
+        if 0 <= r <= best + tie:
+            met.append((r, wall))
+            best = min(best, r)
+    r, wall = straight
+    if not met or r <= best + tie:
+        return (min(r, best) if wall >= 0 else nan), wall
+    return best, min(wall for r, wall in met if r <= best + tie)
 
 
 def follow(grid: Grid, x: float, y: float, dx: float, dy: float) -> tuple[float, int]:

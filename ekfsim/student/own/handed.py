@@ -142,11 +142,14 @@ def vector(what: str, name: str, value: Any, n: int) -> Array:
 
 
 def numbers_of(model: Any) -> dict[str, Any]:
-    """The numbers of a model by their names; of walls their ends : (n, 2, 2) m"""
+    """The numbers of a model by their names; of straight walls their ends, walls : (n, 2, 2) m, and
+    of round ones centre and radius, circles : (n, 3) m
+    """
     found: dict[str, Any] = {}
     for one in dataclasses.fields(model):
         value = getattr(model, one.name)
         if isinstance(value, Walls):
+            found["circles"] = value.circles
             value = value.segments
         if isinstance(value, tuple):
             value = np.array(value, float)

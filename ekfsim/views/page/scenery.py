@@ -122,7 +122,7 @@ def _map(floor: Map, origin: Array) -> dict[str, Any]:
     obstacles = [
         {
             "name": in_a_line(shortened(each.name, 20)),
-            "ring": points(each.points, origin),
+            "ring": points(each.outline, origin),
             "at": points(_middle(area), origin),
         }
         for each, area in zip(floor.obstacles, areas, strict=True)

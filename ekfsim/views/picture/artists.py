@@ -51,7 +51,7 @@ class WorldArtists:
                 Polygon(floor.boundary, facecolor=FLOOR, edgecolor="none", zorder=0.5, gid="floor")
             )
         self.obstacles = PolyCollection(
-            [obstacle.points for obstacle in floor.obstacles],
+            [obstacle.outline for obstacle in floor.obstacles],
             facecolors=OBSTACLE, edgecolors=EDGE, linewidths=0.9,
             zorder=1.0, gid="obstacles", label="obstacle",
         )  # fmt: skip

@@ -136,7 +136,7 @@ def _draw_world(canvas: Canvas, world: World) -> list[Item]:
     canvas.polylines([true[name] for name in both], WALL)
     for obstacle in world.map.obstacles:
         name = printable(obstacle.name, canvas.ascii)
-        place = _place(obstacle.points, canvas.cell * np.array([len(name) + 2, 4]))
+        place = _place(obstacle.outline[:-1], canvas.cell * np.array([len(name) + 2, 4]))
         if place is not None and cells(name) == len(name):
             canvas.text(place, name)
     legend = [Item("%%" if canvas.ascii else "⠒⠂", "not on its map")] if unknown else []

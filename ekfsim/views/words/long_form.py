@@ -152,6 +152,8 @@ class LongForm(Form):
         sighting = sighting_of(step)
         if tangent or sighting is None or (wall := int(sighting.wall)) < 0:
             return ""
+        if walls_of(step).is_round(wall):
+            return f"That is a circle {corners(step, wall)}\n"
         return f"That edge, counted from 1 in the file's order, goes {corners(step, wall)}\n"
 
     def noise(self, c: Correction) -> str:

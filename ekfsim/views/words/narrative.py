@@ -11,7 +11,7 @@ from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.playback.view import View
 from ekfsim.views.words import driven as driven_narrative
-from ekfsim.views.words.beams.told import doubts, expected_wall
+from ekfsim.views.words.beams.told import doubts, edge_of, expected_wall
 from ekfsim.views.words.driven import REFUSED
 from ekfsim.views.words.long_form import SHORT, Form, LongForm
 from ekfsim.views.words.numbers import fill, fill_vector, fine, matrix, number, pose, turn
@@ -103,11 +103,8 @@ def _bump(step: Step, scene: Scene) -> str:
     bump = step.entry.bump
     if bump is None or bump < 0:
         return ""
-    name, edge = scene.world.map.walls.name(int(bump))
-    return (
-        f"It bumped into edge {edge + 1} of {name} and stopped short of it; the filter was not "
-        f"told\n"
-    )
+    wall = edge_of(scene.world.map.walls, int(bump))
+    return f"It bumped into {wall} and stopped short of it; the filter was not told\n"
 
 
 def _beam(step: Step, angle: float, scene: Scene, form: Form) -> str:

@@ -94,6 +94,10 @@ def _map(scene: Scene) -> str:
         f"{line.name}: {' '.join(point(x, y) for x, y in line.points.tolist())} (open)"
         for line in scene.world.told.map.lines
     ]
+    rings += [
+        f"{one.name}: a circle about {point(*one.centre.tolist())} of radius {number(one.radius)} m"
+        for one in scene.world.told.map.circles()
+    ]
     return _fenced(rings or ["there is no wall"])
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import ekfsim
 from ekfsim.errors import InputError, UsageError
-from ekfsim.world import Obstacle, WallLine
+from ekfsim.world import Obstacle, RoundObstacle, WallLine
 
 RATIOS = ("executionDst", "executionAng", "odometryDst", "odometryAng", "range")
 NOISE = {f"{name}SigmaRatio": 0.02 for name in RATIOS}
@@ -75,6 +75,26 @@ def test_walls_are_the_same_by_text_dict_and_python():
         (1.0, 8),
         (4.0, 1),
     )
+
+
+def test_circles_are_the_same_by_text_dict_and_python():
+    circle = {"x": 7, "y": 2, "radius": 0.5}
+    text = FILE.replace(
+        "obstacles: [", "obstacles: [{name: pillar, circle: {x: 7, y: 2, radius: 0.5}}, "
+    )
+    worlds = [
+        ekfsim.load_world(text),
+        lab(obstacles={"pillar": {"circle": circle}, "desk": DESK}),
+        lab(obstacles=[
+            RoundObstacle("pillar", np.array([7, 2.0]), 0.5), Obstacle("desk", np.array(DESK))
+        ]),
+    ]  # fmt: skip
+    for world in worlds:
+        pillar, desk = world.map.obstacles
+        assert (pillar.name, pillar.centre.tolist(), pillar.radius) == ("pillar", [7, 2], 0.5)
+        assert desk.points.tolist() == DESK
+        assert world.told.map.obstacles == (pillar,)
+        assert world.map.walls.first(1.0, 2.0, 0.0) == (5.5, 8)
 
 
 def test_a_scene_is_the_same_by_file_text_and_dict(tmp_path):

@@ -2,7 +2,6 @@
 
 import math
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -51,7 +50,7 @@ def given(found, kind):
 
 
 def where_it_begins(found):
-    return [told for told in found.warnings if told.startswith("log: starts at ")]
+    return [told for told in found.warnings if told.startswith("log: no truth tells where")]
 
 
 LOG = Path("log")
@@ -454,11 +453,9 @@ def test_a_truth_that_ends_long_before_the_log_is_told(log):
     assert read("gnss", LOG).warnings == [told]
 
 
-def test_without_truth_the_filter_starts_where_it_is_told(log):
+def test_without_truth_the_filter_starts_where_the_world_says(log):
     log(truth="absent")
-    place = world("gnss", start=(3.0, 4.0, 0.5))
-    told = replace(place.told, start_said=(True, True, True))
-    found = read("gnss", LOG, replace(place, told=told))
+    found = read("gnss", LOG, world("gnss", start=(3.0, 4.0, 0.5)))
     np.testing.assert_array_equal(found.log.first.mean, [0, 0.5, 3, 4])
     assert {entry.truth is None for entry in found.log.entries} == {True}
 

@@ -203,6 +203,28 @@ WORLDS = {
         HEAD + "boundary: [[0, 0], [9, 0], [9, 0], [9, 9]]\n",
         ["4:28: boundary[2]: the point [9, 0] repeats the one before it; delete one of them"],
     ),
+    "circles that are none": (
+        HEAD + "obstacles:\n - {name: b, circle: {x: 1, y: 9, radius: 0}}\n - {name: c, circle: [1, 2, 3]}\n"
+        " - {name: d}\n - {name: e, circle: {x: 9, y: 9, radius: 1}, points: [[5, 5], [6, 5], [6, 6]]}\n"
+        " - {name: f, cirle: {x: 9, y: 9, radius: 1}}\n - {name: g, circle: {x: 9, y: 9, r: -1}}\n",
+        [
+            "5:43: obstacles[0].circle.radius: 0 is too small; write more than 0",
+            "6:22: obstacles[1].circle: a list stands where a circle belongs; write e.g. {x: 3, y: 2, radius: 0.4}",
+            "7:4: obstacles[2].points: the key is missing; write points: [[4, 3], [5, 3], [5, 4]], or circle: {x: 3, y: 2, radius: 0.4}",
+            "8:22: obstacles[3].circle: a polygon and a circle stand in one obstacle; delete one of them",
+            "9:14: obstacles[4]: unknown key 'cirle'; did you mean 'circle'?",
+            "10:22: obstacles[5].circle.radius: the key is missing; write radius: 0.4",
+            "10:35: obstacles[5].circle: unknown key 'r'; known keys here: x, y, radius",
+        ],
+    ),
+    "start in a circle, and on its rim": (
+        HEAD + "obstacles: [{name: a, circle: {x: 1, y: 2, radius: 1}}, {name: b, circle: {x: 0, y: 1, radius: 3}},"
+        " {name: c, circle: {x: 1, y: 2, radius: 0.999}}]\n",
+        [
+            f"2:8: start: the robot starts at [1, 1], inside the obstacle '{name}' or on its wall; start it where it can move"
+            for name in "ab"
+        ],
+    ),
     "walls that are none": (
         HEAD + "walls:\n - [[7, 0]]\n - [[7, 0], [7, 0]]\n - 7\n - [1, 2]\n - []\n"
         " - {name: panel, point: [[2, 6], [4, 6]]}\n - {name: a, points: [[2, x], [4]]}\n"

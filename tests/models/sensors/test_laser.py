@@ -16,6 +16,8 @@ from ekfsim.twins import taking
 ROOM = np.array([[0, 0], [10, 0], [10, 8], [0, 8.0]])
 KITE = np.array([[4, 3], [6, 2.5], [6.5, 4], [5, 5.5]])
 WALLS = Walls.of({"boundary": ROOM, "kite": KITE})
+PILLARS = {"pillar": np.array([5, 4, 1.0]), "post": np.array([8, 6, 0.3])}
+ROUND = Walls.of({"boundary": ROOM}, circles=PILLARS)
 NORTH = math.pi / 2
 poses = st.tuples(st.floats(0.1, 9.9), st.floats(0.1, 7.9), st.floats(-3.14, 3.14)).map(np.array)
 bearings = st.floats(-3.14, 3.14)
@@ -52,6 +54,33 @@ def test_H_equals_central_differences(x, bearing):
     h, H, _ = sensor.linearize(x)
     assert h == pytest.approx(sensor.h(x))
     np.testing.assert_allclose(H, jacobian(sensor.h, x, step), atol=1e-4, rtol=1e-6)
+
+
+@given(poses, bearings)
+def test_H_of_a_round_wall_equals_central_differences(x, bearing):
+    sensor = laser(bearing, ROUND)
+    seen = sighting(sensor, x, np.eye(3) * 1e-10)
+    assume(not seen.ambiguous and seen.incidence > 0.1)
+    h, H, _ = sensor.linearize(x)
+    assert h == pytest.approx(sensor.h(x))
+    np.testing.assert_allclose(H, jacobian(sensor.h, x, 1e-6), atol=1e-4, rtol=1e-5)
+
+
+def test_a_beam_past_the_middle_of_a_pillar_grazes_it_by_the_normal_where_it_is_met():
+    x, ratio = np.array([0.0, 4.8, 0.0]), 0.8  # of the radius aside: 0.6 of it is half of the way
+    sensor = laser(walls=Walls.of({}, circles={"pillar": np.array([5, 4, 1.0])}))
+    h, H, _ = sensor.linearize(x)
+    assert h == pytest.approx(4.4)
+    np.testing.assert_allclose(H, [[-1, ratio / 0.6, 4.4 * ratio / 0.6]], rtol=1e-12)
+    seen = sighting(sensor, x, np.zeros((3, 3)))
+    assert seen.incidence == pytest.approx(math.asin(0.6))
+
+
+def test_a_beam_along_the_tangent_of_a_pillar_has_no_usable_derivative():
+    alone = Walls.of({}, circles={"pillar": np.array([5, 4, 1.0])})
+    h, H, R = laser(walls=alone).linearize(np.array([0.0, 5.0, 0.0]))
+    assert np.isnan([h[0], R[0, 0]]).all()
+    assert not H.any()
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,9 @@ from typing import Any
 
 from ekfsim.errors import MOST_TOLD, Mistake
 from ekfsim.files.keys.commands import MAX_COMMANDS, CommandKeys
+from ekfsim.files.keys.world import SHAPES, ObstacleKeys
 from ekfsim.files.scenes.checking import polygons
-from ekfsim.files.scenes.checking.polygons import FloorPlan, Points
+from ekfsim.files.scenes.checking.polygons import Circle, FloorPlan, Points
 from ekfsim.files.yaml.marked import Node, Path
 from ekfsim.files.yaml.telling import at, nearest
 from ekfsim.printable import quoted, short, some
@@ -64,12 +65,15 @@ def check_world(file: Sound) -> Iterator[Mistake]:
     """Mistakes of a world file that lie between its keys."""
     yield from check_polygons(file)
     for owner in ((), ("belief",)):
+        yield from check_shapes(file, owner)
         yield from check_names(file, owner)
     yield from check_landmarks(file)
     yield from check_missing(file)
     x, y = file.value("start", "x"), file.value("start", "y")
     if x is not None and y is not None:
-        plan = FloorPlan(file.value("boundary"), sound_obstacles(file), sound_walls(file))
+        plan = FloorPlan(
+            file.value("boundary"), sound_obstacles(file), sound_walls(file), sound_circles(file)
+        )
         for wrong in plan.in_the_way(x, y):
             yield file.mistake(
                 ("start",), f"the robot starts at {wrong}", "start it where it can move"
@@ -82,6 +86,15 @@ def sound_obstacles(file: Sound) -> Iterator[tuple[str, Points]]:
         points = file.value("obstacles", index, "points")
         if points is not None:
             yield file.value("obstacles", index, "name") or f"obstacles[{index}]", points
+
+
+def sound_circles(file: Sound) -> Iterator[tuple[str, Circle]]:
+    """The obstacles that are round, with their names."""
+    for index in range(file.count("obstacles")):
+        circle = file.value("obstacles", index, "circle")
+        if circle is not None:
+            name = file.value("obstacles", index, "name") or f"obstacles[{index}]"
+            yield name, (circle["x"], circle["y"], circle["radius"])
 
 
 def sound_walls(file: Sound) -> Iterator[tuple[str, Points]]:
@@ -118,6 +131,23 @@ def check_polygons(file: Sound) -> Iterator[Mistake]:
             place = path if index is None else (*path, index)
             yield file.mistake(place, wrong, right)
             file.give_up(path)
+
+
+def check_shapes(file: Sound, owner: Path) -> Iterator[Mistake]:
+    """Obstacles that are both a polygon and a circle, or neither."""
+    for index in range(file.count(*owner, "obstacles")):
+        path = (*owner, "obstacles", index)
+        obstacle = file.root.at(path)
+        if obstacle is None or not isinstance(obstacle.value, dict):
+            continue
+        held = [shape for shape in SHAPES if shape in obstacle.keys]
+        unknown = obstacle.keys.keys() - ObstacleKeys.model_fields.keys()  # told of already
+        if len(held) > 1:
+            wrong, right = "a polygon and a circle stand in one obstacle", "delete one of them"
+            yield file.mistake((*path, "circle"), wrong, right)
+        elif not held and not unknown:
+            right = "write points: [[4, 3], [5, 3], [5, 4]], or circle: {x: 3, y: 2, radius: 0.4}"
+            yield file.mistake((*path, "points"), "the key is missing", right)
 
 
 def line_paths(file: Sound) -> Iterator[Path]:

@@ -1,5 +1,6 @@
 """What makes points a polygon, and where a robot can stand."""
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Self
@@ -9,9 +10,10 @@ import shapely
 
 from ekfsim.geometry import Array
 from ekfsim.printable import quoted
-from ekfsim.world import Map
+from ekfsim.world import Map, Obstacle
 
 Points = Sequence[Sequence[float]] | Array
+Circle = tuple[float, float, float]  # x, y, radius in m
 Fault = tuple[int | None, str, str]  # the point it is about, what is wrong, what would be right
 
 
@@ -97,9 +99,10 @@ class FloorPlan:
         boundary: Points | None,
         obstacles: Iterable[tuple[str, Points]],
         lines: Iterable[tuple[str, Points]] = (),
+        circles: Iterable[tuple[str, Circle]] = (),
     ) -> None:
         self._boundary = None if boundary is None else shapely.Polygon(boundary)
-        areas, walls = list(obstacles), list(lines)
+        areas, walls, self._circles = list(obstacles), list(lines), list(circles)
         self._told = [f"inside the obstacle {quoted(name)} or on its wall" for name, _ in areas]
         self._told += [f"on the wall {quoted(name)}" for name, _ in walls]
         self._tree = shapely.STRtree(
@@ -114,8 +117,9 @@ class FloorPlan:
         """That of a map."""
         return cls(
             floor.boundary,
-            [(obstacle.name, obstacle.points) for obstacle in floor.obstacles],
+            [(one.name, one.points) for one in floor.obstacles if isinstance(one, Obstacle)],
             [(line.name, line.points) for line in floor.lines],
+            [(one.name, (*one.centre.tolist(), one.radius)) for one in floor.circles()],
         )
 
     def in_the_way(self, x: float, y: float) -> Iterator[str]:
@@ -127,6 +131,9 @@ class FloorPlan:
             :MOST_IN_THE_WAY
         ]:
             yield f"{where} {self._told[index]}"
+        for name, (east, north, radius) in self._circles:
+            if math.hypot(x - east, y - north) <= radius:
+                yield f"{where} inside the obstacle {quoted(name)} or on its wall"
 
 
 def _shapes(outlines: list[Array]) -> list[Any]:

@@ -58,7 +58,9 @@ def _look(s: Working, x: Array, heading: Heading, choice: Choice, length: Length
 
 
 def _follow(s: Working, x: Array, heading: Heading, choice: Choice, length: Length) -> Seen:
-    walls = s.laser.walls
+    walls = s.laser.walls  # the straight ones
+    if not len(walls.segments):
+        return Seen(np.nan, np.zeros(3))
     a, b = walls.segments[:, 0], walls.segments[:, 1]
     along = heading(x[2], s.laser.bearing)
     d = np.array([np.cos(along), np.sin(along)])
@@ -67,7 +69,7 @@ def _follow(s: Working, x: Array, heading: Heading, choice: Choice, length: Leng
     r = np.where(met, n_a / np.where(met, n_d, 1.0), np.nan)
     share = np.vecdot(x[:2] + r[:, None] * d - a, b - a) / np.vecdot(b - a, b - a)
     on = (share >= -AT_AN_END) & (share <= 1 + AT_AN_END)
-    is_boundary = np.array([name == BOUNDARY for name in walls.names])[walls.polygon]
+    is_boundary = np.array([name == BOUNDARY for name in walls.names])[walls.polygon[: len(a)]]
     i = choice(Crossed(r, on, np.abs(n_a), is_boundary), s)
     n, far = walls.normals[i], length(float(r[i]))
     turned = far * (n @ np.array([-d[1], d[0]]))

@@ -100,7 +100,8 @@ class Names:
         """Of each name all places where it would do, the best first."""
         floor, to_pixels = self._world.map, self._axes.transData.transform
         window = shapely.box(*self._axes.bbox.extents)
-        shapes = [shapely.make_valid(shapely.Polygon(to_pixels(o.points))) for o in floor.obstacles]
+        areas = (shapely.Polygon(to_pixels(obstacle.outline)) for obstacle in floor.obstacles)
+        shapes = [shapely.make_valid(area) for area in areas]
         spots = [to_pixels((mark.x, mark.y)) for mark in self._world.landmarks]
         marks = [_box(spot, np.full(2, MARK)) for spot in spots]
         walls = [] if floor.boundary is None else [shapely.LinearRing(to_pixels(floor.boundary))]

@@ -50,7 +50,7 @@ class Beam:
     probes: tuple[Probe, ...]
     # where the first of them starts and what they meet: "from 0.3 m to the left it would meet …"
     doubt: str
-    walls: Array  # (n, 2, 2) m, the other walls that they meet, each from corner to corner
+    walls: tuple[Array, ...]  # (n, 2) m each, the other walls that they meet, from end to end
     # whether the measured end lies in, on or behind a wall rather than in the air before it
     solid: bool
     ending: str  # the same in words: "in the air, 4 cm short of desk"
@@ -87,7 +87,7 @@ def beam(step: Step, scene: Scene) -> Beam | None:
         float(sighting.incidence) if sighting.grazing else None,
         tuple(astray(sensor, sighting)),
         doubt(sensor, sighting, start) if sighting.ambiguous else "",
-        sensor.walls.segments[others],
+        tuple(sensor.walls.outline(wall) for wall in others),
         solid,
         ending,
         reaching=isinstance(sensor, Laser),
@@ -150,6 +150,8 @@ def _edge_of(sensor: BeamSensor, wall: int) -> str:
     if wall < 0:
         return "no wall"
     name, edge = sensor.walls.name(wall)
+    if sensor.walls.is_round(wall):
+        return called(name)
     return f"edge {edge + 1} of {called(name)}"
 
 

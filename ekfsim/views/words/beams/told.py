@@ -129,15 +129,22 @@ def wall_name(step: Step, wall: int) -> str:
     """A wall by the number of its edge,
     counted from 1 in the file's order, and its polygon's name.
     """
-    if wall < 0:
-        return "no wall"
-    name, edge = walls_of(step).name(wall)
-    return f"edge {edge + 1} of {name}"
+    return "no wall" if wall < 0 else edge_of(walls_of(step), wall)
+
+
+def edge_of(walls: Walls, wall: int) -> str:
+    """The same of a wall that there is; a circle has no edges to tell apart."""
+    name, edge = walls.name(wall)
+    return name if walls.is_round(wall) else f"edge {edge + 1} of {name}"
 
 
 def corners(step: Step, wall: int) -> str:
-    """From which corner to which a wall goes."""
-    a, b = walls_of(step).segments[wall].tolist()
+    """From which corner to which a wall goes, or about which centre."""
+    walls = walls_of(step)
+    if walls.is_round(wall):
+        x, y, radius = walls.circles[wall - len(walls.segments)].tolist()
+        return f"about {point(x, y)}, with the radius {number(radius)} m"
+    a, b = walls.segments[wall].tolist()
     return f"from {point(*a)} to {point(*b)}"
 
 
