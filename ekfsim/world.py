@@ -303,14 +303,18 @@ class World:
         """P₀ : (n, n) of a robot that is driven or was recorded: the document's own, but for the
         entries of the pose of which somebody says how sure they are.
         """
-        told, P = self.told, self.believed_robot.first_covariance(reading).copy()
-        said = told.sigma_said or (bool(told.sigma.any()),) * 3
-        for place, sigma in zip(
-            np.array(self.layout.places)[list(said)], told.sigma[list(said)], strict=True
-        ):
+        P = self.believed_robot.first_covariance(reading).copy()
+        for axis in np.flatnonzero(self.sigma_said):
+            place = self.layout.places[axis]
             P[place, :] = P[:, place] = 0
-            P[place, place] = sigma**2
+            P[place, place] = self.told.sigma[axis] ** 2
         return P
+
+    @property
+    def sigma_said(self) -> Axes:
+        """Of which of x, y, θ of the first belief somebody says how sure they are."""
+        told = self.told
+        return (bool(told.sigma.any()),) * 3 if told.sigma_said is None else told.sigma_said
 
     def targets(self, reading: DocumentReading) -> list[tuple[Instrument, Target]]:
         """Everything that the instruments may read, with the sensors as the filter is told."""

@@ -104,11 +104,15 @@ class Late:
         return no_info_plain_validator_function(lambda value: self.reader.validate_python(value))
 
 
+WITH_LATE = ("ekfsim.files.keys.recording",)  # whose models, parts of others, have late parts
+
+
 def whole(model: type[BaseModel]) -> type[BaseModel]:
     """The same model, built with all that else would be imported late, as its schema tells it; and
     so are those parts of it that are built by themselves already.
     """
-    parts = [one for one in Strict.__subclasses__() if one.__module__ == model.__module__]
+    homes = (model.__module__, *WITH_LATE)
+    parts = [one for one in Strict.__subclasses__() if one.__module__ in homes]
     Late.waits = False
     try:
         for one in parts:  # in the order of the module, so that the model itself comes last

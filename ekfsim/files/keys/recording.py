@@ -1,11 +1,28 @@
 """The keys of a commands file that tell of a recorded log."""
 
-from typing import Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
-from ekfsim.files.keys.fields import Name, Strict, SystemName
+from ekfsim.files.keys.fields import Late, Name, Strict, SystemName
 
+if TYPE_CHECKING:
+    from ekfsim.files.keys.columns import (
+        ColumnsKeys,
+        MotionKeys,
+        ReadingsKeys,
+        TableKeys,
+        UnitsKeys,
+    )
+else:
+    HOME = "ekfsim.files.keys.columns"
+    ColumnsKeys = Annotated[Any, Late(f"{HOME}:ColumnsKeys")]
+    UnitsKeys = Annotated[Any, Late(f"{HOME}:UnitsKeys")]
+    MotionKeys = Annotated[Any, Late(f"{HOME}:MotionKeys")]
+    ReadingsKeys = Annotated[Any, Late(f"{HOME}:ReadingsKeys")]
+    TableKeys = Annotated[Any, Late(f"{HOME}:TableKeys")]
+
+Tables = Annotated[list[ReadingsKeys], Field(title="a list of tables", min_length=1)]
 TimeUnit = Literal["s", "ms", "us", "ns"]
 AngleUnit = Literal["radians", "degrees"]
 Targets = Literal["barcodes", "subjects"]
@@ -23,6 +40,8 @@ SYSTEM_OF: dict[str, SystemName] = {  # the system that each other format of a l
     "classroom": "classroom",
 }
 WITH_LANDMARKS = ("mower", "mrclam", "ranges", ANY)  # formats that tell what stands where
+
+OF_ANY = ("columns", "units", "motion", "readings", "landmarks", "truth")  # keys of that log alone
 
 
 def misfit(format: LogFormat, system: str) -> str | None:
@@ -74,7 +93,8 @@ class RecordingKeys(Strict):
         "auto",
         alias="turnTruth",
         description="Whether half a turn is added to the true headings of ranges: auto where they "
-        "point against the first metres of travel as the odometry counts them, never or always.",
+        "point against the first metres of travel as the odometry counts them, never or always. Of "
+        "log where it says always.",
         examples=["never"],
     )
     same_time: SameTime | None = Field(
@@ -85,4 +105,39 @@ class RecordingKeys(Strict):
         "the last of them holds. Where absent, added up where one says 0 of what the other tells, "
         "else shared.",
         examples=["share"],
+    )
+    columns: ColumnsKeys | None = Field(
+        None,
+        description="log: where the columns stand in any of its tables, where they are not called "
+        "as here: a name of the first line, or a number from 1.",
+        examples=[{"t": "time_ns"}],
+    )
+    units: UnitsKeys | None = Field(
+        None,
+        description="log: what they are in, in any of its tables, where not in s, m, rad.",
+        examples=[{"t": "ns"}],
+    )
+    motion: MotionKeys | None = Field(
+        None,
+        description="log: what the robot did, in motion.csv or odometry.csv where nothing is said.",
+        examples=[{"file": "odometry.txt", "holds": "next"}],
+    )
+    readings: (
+        Annotated[list[ReadingsKeys], Field(title="a list of tables", min_length=1)] | None
+    ) = Field(
+        None,
+        description="log: what sensors told, in readings*.csv where nothing is said.",
+        examples=[[{"sensor": "gnss", "file": "fixes.txt"}]],
+    )
+    landmarks: TableKeys | None = Field(
+        None,
+        description="log: what stands where, in landmarks.csv where nothing is said; they take "
+        "the place of the world's.",
+        examples=[{"file": "nodes.txt", "columns": {"id": 1, "x": 2, "y": 3}}],
+    )
+    truth: TableKeys | None = Field(
+        None,
+        description="log: where the robot truly was, in truth.csv or truth.tum where nothing is "
+        "said.",
+        examples=[{"file": "mocap.csv"}],
     )

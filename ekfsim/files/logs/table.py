@@ -22,6 +22,7 @@ from ekfsim.geometry import Array, Booleans, Integers
 NUMBER = re.compile(
     r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?(nan|inf|infinity)", re.IGNORECASE | re.ASCII
 )
+TINY = 1e-50  # no sensor tells less; denormals and their like are memory that nobody wrote
 MOST_TOLD = 20  # mistakes
 MOST_WARNED = 3  # rows of one kind
 EPOCH = 1e10  # s since 1970, until the year 2286; stamps count from then on in
@@ -237,7 +238,7 @@ def sane(rows: Rows, wanted: Wanted, warnings: list[str]) -> Rows:
     """The rows whose numbers can be meant."""
     size = np.abs(rows.values)
     allowed = np.isnan(rows.values) & np.array([name in wanted.maybe for name in wanted.names])
-    odd = ~allowed & (~(size <= wanted.limits()) | ((size > 0) & (size < sys.float_info.min)))
+    odd = ~allowed & (~(size <= wanted.limits()) | ((size > 0) & (size < TINY)))
     odd |= (rows.values <= 0) & np.array([name in wanted.ranges for name in wanted.names])
     bad = np.flatnonzero(odd.any(axis=1))
     whys = list[str]()
@@ -258,8 +259,8 @@ def _why(value: float, name: str, is_range: bool) -> str:
     """Why a number cannot be meant."""
     if not math.isfinite(value):
         return "no number"
-    if 0 < abs(value) < sys.float_info.min:
-        return "a denormal"
+    if 0 < abs(value) < TINY:
+        return "a denormal" if abs(value) < sys.float_info.min else "next to nothing"
     if name in ("t", "time"):
         finer = (
             f" (if these are {unit}: --set recording.timeUnit={short})"

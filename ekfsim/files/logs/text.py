@@ -9,6 +9,7 @@ from ekfsim.files.looking import contents, read_from
 from ekfsim.files.source import mistake, position
 
 MAX_BYTES = 400_000_000
+HEAD_BYTES = 65536  # in which a first line ends
 COMMENTS = ("#", "%")
 
 
@@ -60,6 +61,13 @@ def lines_of(path: Path) -> Lines:
         wrong = f"the byte 0x{raw[error.start]:02x} is not UTF-8"
         raise mistake(shown, line, column, wrong, "a log is plain text in UTF-8") from None
     return _numbered(shown, text)
+
+
+def first_line(path: Path) -> str:
+    """What a file begins with, a comment, too. Raises UsageError where it cannot be read."""
+    with read_from(path):
+        start = contents(path, HEAD_BYTES)
+    return start.decode("utf-8-sig", "replace").partition("\n")[0].strip()
 
 
 def _numbered(shown: str, text: str) -> Lines:

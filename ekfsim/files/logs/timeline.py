@@ -8,7 +8,8 @@ import numpy as np
 
 from ekfsim.errors import UsageError
 from ekfsim.files.logs.recorded import Recorded
-from ekfsim.files.logs.start.belief import assumed, at_truth
+from ekfsim.files.logs.start.belief import assumed, at_fix, at_truth
+from ekfsim.files.logs.start.course import is_fix
 from ekfsim.files.logs.start.instant import first_known, refuse_apart, span, tell_unknown
 from ekfsim.files.logs.truth import Truth
 from ekfsim.geometry import Array, Booleans
@@ -82,36 +83,54 @@ class Timeline:
             if not all(world.told.start_said):
                 known = first_known(truth, start, ends, self.name, warnings)
                 truth, start = (None, start) if known is None else (truth, known)
+        samples, fix = self.samples, None
+        if truth is None and not all(world.told.start_said[:2]):
+            samples, fix = self._first_fix()
+            start = start if fix is None else fix.t
         motions = self.motions.since(start)
         if truth is not None:
             tell_unknown(truth, start, ends, self.name, warnings)
         happened = [
             (start, None, True),
-            *_merged(motions, self._within(start, motions, warnings), self.between),
+            *_merged(motions, self._within(samples, start, motions, warnings), self.between),
         ]
         truths = _truths(truth, np.array([t for t, _, _ in happened]))
         entries = tuple(
             Entry(index, given, truth, t=t, judged=judged)
             for index, ((t, given, judged), truth) in enumerate(zip(happened, truths, strict=True))
         )
-        pose = truths[0]
-        first = (
-            assumed(world, reading, self.name, warnings)
-            if pose is None
-            else at_truth(world, reading, pose)
-        )
+        if (pose := truths[0]) is not None:
+            first = at_truth(world, reading, pose)
+        elif fix is not None:
+            first = at_fix(world, reading, fix.reading, entries, self.name, warnings)
+        else:
+            first = assumed(world, reading, self.name, warnings)
         return Recorded(Log(entries, first), self.landmarks, warnings)
 
-    def _within(self, start: float, motions: Motions, warnings: list[str]) -> list[Sample]:
+    def _first_fix(self) -> tuple[Sequence[Sample], Sample | None]:
+        """The readings but for the first that tells the position, and that one, where there is one
+        while the robot moves.
+        """
+        edges = np.concatenate([[self.start], self.motions.end])
+        times = _snapped(_times(self.samples), edges)
+        for i in np.argsort(times, kind="stable").tolist():
+            if edges[0] <= times[i] < edges[-1] and is_fix(self.samples[i].reading):
+                fix = Sample(float(times[i]), self.samples[i].reading)
+                return [*self.samples[:i], *self.samples[i + 1 :]], fix
+        return self.samples, None
+
+    def _within(
+        self, samples: Sequence[Sample], start: float, motions: Motions, warnings: list[str]
+    ) -> list[Sample]:
         """The readings that the motions reach, by time."""
         edges = np.concatenate([[start], motions.end])
-        times = _snapped(np.array([sample.t - sample.delay for sample in self.samples]), edges)
+        times = _snapped(_times(samples), edges)
         kept = [
-            Sample(float(times[i]), self.samples[i].reading)
+            Sample(float(times[i]), samples[i].reading)
             for i in np.argsort(times, kind="stable")
             if start <= times[i] <= edges[-1]
         ]
-        if missed := len(self.samples) - len(kept):
+        if missed := len(samples) - len(kept):
             readings = "1 reading lies" if missed == 1 else f"{missed} readings lie"
             spans = f"readings are of {span(times)}, the motion of {span(edges)}"
             warnings.append(
@@ -120,6 +139,11 @@ class Timeline:
         if not kept:
             warnings.append(f"{self.name}: no reading is left: the filter follows the motion alone")
         return kept
+
+
+def _times(samples: Sequence[Sample]) -> Array:
+    """When each of them was measured : (n,) s"""
+    return np.array([sample.t - sample.delay for sample in samples])
 
 
 def _snapped(t: Array, edges: Array) -> Array:

@@ -188,7 +188,8 @@ def scene_in(
         return Loaded(mistakes=file.mistakes)
     told, along = list[str](), None
     if world is None and sound.root.at(("world",)) is None:
-        along = world_of_log(sound, path, log, told)
+        recording = keys.recording if isinstance(keys, CommandsKeys) else None
+        along = world_of_log(sound, recording, path, log, told)
     logged = sound.value("recording", "format") in WITH_LANDMARKS
     missing, found = list[Mistake](), Loaded[World]()
     if isinstance(world, World):

@@ -72,7 +72,11 @@ def read_into(scene: Scene, recording: RecordingKeys, source: str, warnings: lis
 
 
 def world_of_log(
-    sound: Sound, path: Path, log: str | Path | None, warnings: list[str]
+    sound: Sound,
+    recording: RecordingKeys | None,
+    path: Path,
+    log: str | Path | None,
+    warnings: list[str],
 ) -> Path | Given | None:
     """The world that a log brings, or that is made for it, as `warnings` tell; None where there is
     neither, or no log is named.
@@ -89,7 +93,7 @@ def world_of_log(
         return brought(place)
     from ekfsim.files.logs.named.made_world import world_brought
 
-    return world_brought(place, warnings)
+    return world_brought(place, recording or RecordingKeys(format=ANY), warnings)
 
 
 def brought(log: Path) -> Path:

@@ -2,6 +2,7 @@
 
 import math
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -50,7 +51,7 @@ def given(found, kind):
 
 
 def where_it_begins(found):
-    return [told for told in found.warnings if told.startswith("log: no truth tells where")]
+    return [told for told in found.warnings if told.startswith("log: starts at ")]
 
 
 LOG = Path("log")
@@ -453,9 +454,11 @@ def test_a_truth_that_ends_long_before_the_log_is_told(log):
     assert read("gnss", LOG).warnings == [told]
 
 
-def test_without_truth_the_filter_starts_where_the_world_says(log):
+def test_without_truth_the_filter_starts_where_it_is_told(log):
     log(truth="absent")
-    found = read("gnss", LOG, world("gnss", start=(3.0, 4.0, 0.5)))
+    place = world("gnss", start=(3.0, 4.0, 0.5))
+    told = replace(place.told, start_said=(True, True, True))
+    found = read("gnss", LOG, replace(place, told=told))
     np.testing.assert_array_equal(found.log.first.mean, [0, 0.5, 3, 4])
     assert {entry.truth is None for entry in found.log.entries} == {True}
 

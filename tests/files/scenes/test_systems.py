@@ -587,7 +587,8 @@ SCENES = {
         [
             "2:21: recording.format: 'mowr' is not known here; did you mean 'mower'?",
             "2:33: recording.path: 5 is a number where text belongs; write it in quotes: '5'",
-            "2:36: recording: unknown key 'file'; known keys here: format, path, robot, timeUnit, angleUnit, targets, turnTruth, sameTime",
+            "2:36: recording: unknown key 'file'; known keys here: format, path, robot, timeUnit, "
+            "angleUnit, targets, turnTruth, sameTime, columns, units, motion, readings, landmarks, truth",
         ],
     ),
     "no format": (

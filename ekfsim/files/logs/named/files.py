@@ -1,27 +1,87 @@
-"""Which files of a folder hold what."""
+"""Which files of a log hold what."""
 
 import os
 from pathlib import Path
+from typing import NamedTuple
 
 from ekfsim.errors import UsageError
-from ekfsim.files.logs.folder import find
-from ekfsim.files.looking import read_from
+from ekfsim.files.keys.columns import MotionKeys, ReadingsKeys, TableKeys
+from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.logs.folder import find, find_any
+from ekfsim.files.logs.named.tables import Source
+from ekfsim.files.looking import exists, is_folder, read_from
 
 HOLDS = (
     "motion.csv, readings.csv and, where they are known, landmarks.csv, truth.csv and world.yaml"
 )
+MOTION = ("motion*.csv", "odometry*.csv")
+READINGS = "readings"  # how the names of its tables begin
+LANDMARKS = ("landmarks*.csv",)
+TRUTH = ("truth*.csv", "truth*.tum")
 
 
-def motion_file(folder: Path) -> Path:
-    """The table of what the robot did. Raises UsageError where there is none, or several."""
-    return find(folder, "what the robot did", "motion*.csv", "odometry*.csv")
+class Files(NamedTuple):
+    """Where a log's tables are, and what is said of each."""
+
+    folder: Path
+    alone: Path | None  # the file that is the whole log
+    recording: RecordingKeys
+
+    def motion(self) -> tuple[Source, MotionKeys]:
+        """What the robot did. Raises UsageError where no file holds it, or several may."""
+        keys = self.recording.motion or MotionKeys()
+        file = self._told(keys) or self.alone or find(self.folder, "what the robot did", *MOTION)
+        return Source(file, keys, self.recording), keys
+
+    def readings(self) -> list[tuple[Source, ReadingsKeys]]:
+        """What the sensors told, in the order in which it is named, else of the files' names.
+        Raises UsageError where no file holds it.
+        """
+        found = []
+        for keys in self.recording.readings or [ReadingsKeys()]:
+            told = self._told(keys) or self.alone
+            for file in self._all_readings() if told is None else [told]:
+                found.append((Source(file, keys, self.recording), keys))
+        return found
+
+    def landmarks(self) -> Source | None:
+        """What stands where, None where the log does not tell."""
+        keys = self.recording.landmarks
+        file = self._own(keys, "the landmarks", LANDMARKS)
+        return None if file is None else Source(file, keys or TableKeys(), self.recording)
+
+    def truth(self) -> Source | None:
+        """The true poses, None where the log has none."""
+        keys = self.recording.truth
+        file = self._own(keys, "the true poses", TRUTH)
+        return None if file is None else Source(file, keys or TableKeys(), self.recording)
+
+    def _told(self, keys: TableKeys) -> Path | None:
+        """The file that is named."""
+        return None if keys.file is None else self.folder / keys.file
+
+    def _own(self, keys: TableKeys | None, what: str, usual: tuple[str, ...]) -> Path | None:
+        """The file of a table that a log may lack."""
+        if keys is not None:
+            return self._told(keys) or self.alone or find(self.folder, what, *usual)
+        return None if self.alone else find_any(self.folder, what, *usual)
+
+    def _all_readings(self) -> list[Path]:
+        with read_from(self.folder):
+            names = sorted(name for name in os.listdir(self.folder) if name.endswith(".csv"))
+        found = [self.folder / name for name in names if name.startswith(READINGS)]
+        if not found:
+            wrong = f"no file '{READINGS}*.csv' in it"
+            raise UsageError(f"{self.folder}: {wrong}; it would hold the readings")
+        return found
 
 
-def readings_files(folder: Path) -> list[Path]:
-    """The tables of readings, in the order of their names. Raises UsageError where none is."""
-    with read_from(folder):
-        names = sorted(name for name in os.listdir(folder) if name.endswith(".csv"))
-    found = [folder / name for name in names if name.startswith("readings")]
-    if not found:
-        raise UsageError(f"{folder}: no file 'readings*.csv' in it; it would hold the readings")
-    return found
+def files_of(path: Path, recording: RecordingKeys) -> Files:
+    """The files of a log, a folder or one file. Raises UsageError where there is no such thing."""
+    with read_from(path):
+        if not exists(path):
+            right = f"name a folder that holds {HOLDS}, or one file"
+            raise UsageError(f"{path}: no such file or folder; {right}")
+        return (
+            Files(path, None, recording) if is_folder(path) else Files(path.parent, path, recording)
+        )

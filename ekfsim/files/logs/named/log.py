@@ -1,14 +1,14 @@
-"""A log of anybody's make: a folder of tables whose first lines name their columns."""
+"""A log of anybody's make: tables with named columns, in a folder or in one file."""
 
+from ekfsim.errors import UsageError
 from ekfsim.files.logs.asked import Asked
-from ekfsim.files.logs.folder import folder_of
-from ekfsim.files.logs.named.files import HOLDS, motion_file, readings_files
-from ekfsim.files.logs.named.motion import WANTED as MOTION
-from ekfsim.files.logs.named.motion import motions_of
+from ekfsim.files.logs.named.files import files_of
+from ekfsim.files.logs.named.inputs import WANTED as MOTION
+from ekfsim.files.logs.named.motion import motions_of, rows_of
 from ekfsim.files.logs.named.places import landmarks_in, truth_in
 from ekfsim.files.logs.named.readings import WANTED as READINGS
 from ekfsim.files.logs.named.readings import fittings_of, samples_of
-from ekfsim.files.logs.named.tables import named
+from ekfsim.files.logs.named.tables import Table, opened
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.timeline import Timeline
 
@@ -19,18 +19,31 @@ def read_named(asked: Asked) -> Recorded:
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    path, world, reading, _, warnings = asked
-    folder = folder_of(path, HOLDS)
-    motion = named(motion_file(folder), MOTION)
-    landmarks = landmarks_in(folder, warnings)
-    truth = truth_in(folder, warnings)
-    motions = motions_of(motion, asked, truth)
-    fittings = fittings_of(world, reading, world.landmarks if landmarks is None else landmarks)
-    samples = [
-        sample
-        for file in readings_files(folder)
-        for sample in samples_of(named(file, READINGS), fittings, warnings)
-    ]
+    path, world, reading, recording, warnings = asked
+    files, tables = files_of(path, recording), list[Table]()
+    source, of_motion = files.motion()
+    motion = opened(source, MOTION)
+    rows = rows_of(motion, asked)
+    landmarks, ids = landmarks_in(files, tables, asked)
+    truth = truth_in(files, tables, asked, rows)
+    motions = motions_of(motion, rows, of_motion, asked, truth)
+    known = world.landmarks if landmarks is None else landmarks
+    fittings = fittings_of(world, reading, known, ids)
+    samples = []
+    for source, of_readings in files.readings():
+        tables.append(opened(source, READINGS))
+        samples += samples_of(tables[-1], of_readings, fittings, asked, rows)
+    _refuse_unknown(asked, [motion, *tables])
     start = float(motions.begin[0])
     timeline = Timeline(str(path), start, motions, samples, truth, landmarks, between=False)
     return timeline.recorded(world, reading, warnings)
+
+
+def _refuse_unknown(asked: Asked, tables: list[Table]) -> None:
+    """Raise UsageError for a column that is told for all tables, and stands in none."""
+    told = asked.recording.columns
+    for name, theirs in ({} if told is None else told.model_dump(exclude_unset=True)).items():
+        if not any(name in table.shared for table in tables):
+            wrong = f"recording.columns.{name}: no table of the log has a column {theirs!r}"
+            found = dict.fromkeys(known for table in tables for known in table.places)
+            raise UsageError(f"{asked.path}: {wrong}; found {', '.join(map(repr, found))}")

@@ -3,11 +3,13 @@
 from pathlib import Path
 
 from ekfsim.files.given.given import Given
-from ekfsim.files.logs.folder import find_any, folder_of
-from ekfsim.files.logs.named.files import HOLDS, motion_file, readings_files
-from ekfsim.files.logs.named.motion import WANTED, Form, form_of
+from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.logs.folder import find_any
+from ekfsim.files.logs.named.files import files_of
+from ekfsim.files.logs.named.inputs import WANTED, Form
+from ekfsim.files.logs.named.motion import form_of
 from ekfsim.files.logs.named.readings import WANTED as READINGS
-from ekfsim.files.logs.named.tables import Table, named
+from ekfsim.files.logs.named.tables import Table, opened
 
 WORLD = "world.yaml"
 SYSTEM_FOR: dict[Form, str] = {
@@ -29,17 +31,22 @@ SENSORS = {  # by the columns that they read; the first that fits a table
 }
 
 
-def world_brought(log: Path, warnings: list[str]) -> Path | Given:
+def world_brought(log: Path, recording: RecordingKeys, warnings: list[str]) -> Path | Given:
     """The world in a log's folder, or one that is made to fit its columns, which is told.
 
     Raises UsageError where there is no such log, InputError where its columns name nothing.
     """
-    folder = folder_of(log, HOLDS)
-    if (own := find_any(folder, "the world", WORLD)) is not None:
+    files = files_of(log, recording)
+    own = None if files.alone else find_any(files.folder, "the world", WORLD)
+    if own is not None:
         return own
-    system = SYSTEM_FOR[form_of(named(motion_file(folder), WANTED))]
-    tables = [named(file, READINGS) for file in readings_files(folder)]
-    kinds = dict.fromkeys(kind for table in tables if (kind := sensor_for(table)))
+    motion, _ = files.motion()
+    system = SYSTEM_FOR[form_of(opened(motion, WANTED))]
+    kinds = dict.fromkeys(
+        kind
+        for source, keys in files.readings()
+        if (kind := keys.sensor or sensor_for(opened(source, READINGS)))
+    )
     warnings.append(
         f"{log}: no world is named, and no {WORLD} lies in it: one is made of the columns, system: "
         f"{system}, sensors: {', '.join(kinds) or 'none'}, with the noise that is usual there; "

@@ -1,38 +1,111 @@
 """The landmarks and the true poses of a log."""
 
-from pathlib import Path
+import math
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
-from ekfsim.files.logs.folder import find_any
-from ekfsim.files.logs.formats.targets import landmarks_of
-from ekfsim.files.logs.named.tables import named
-from ekfsim.files.logs.table import Wanted, bare_table
+from ekfsim.errors import InputError, Mistake, Place
+from ekfsim.files.logs.asked import Asked
+from ekfsim.files.logs.named.files import Files
+from ekfsim.files.logs.named.tables import Source, Table, opened
+from ekfsim.files.logs.table import Rows, Wanted, bare_table, is_number
 from ekfsim.files.logs.truth import Truth, truth_of
+from ekfsim.geometry import Array
 from ekfsim.systems.instrument import Landmark
 
 TUM = Wanted(("t", "x", "y", "qx", "qy", "qz", "qw"), (0, 1, 2, 4, 5, 6, 7), range(8, 9))
+POSE = ("t", "x", "y", "theta")
+MOVED = 1e-3  # m; a course is that of a way at least so long
+
+Ids = Mapping[str, int]  # of landmarks that go by names
 
 
-def landmarks_in(folder: Path, warnings: list[str]) -> tuple[Landmark, ...] | None:
-    """What stands where, None where the log does not tell. Raises InputError with what is wrong."""
-    file = find_any(folder, "the landmarks", "landmarks*.csv")
-    if file is None:
-        return None
-    return landmarks_of(named(file, "id,x,y").rows(("id", "x", "y"), warnings))
+def landmarks_in(
+    files: Files, tables: list[Table], asked: Asked
+) -> tuple[tuple[Landmark, ...] | None, Ids]:
+    """What stands where, None where the log does not tell, and the numbers of those with names.
+    `tables` gets what was opened. Raises InputError with what is wrong.
+    """
+    source = files.landmarks()
+    if source is None:
+        return None, {}
+    table = opened(source, "id,x,y")
+    tables.append(table)
+    rows = table.rows(("x", "y"), asked)
+    if not table.has("id"):
+        raise table.lacks("'id'", "write id,x,y")
+    words = table.words("id", rows)
+    ids = _ids(words)
+    found, mistakes = dict[int, Landmark](), list[Mistake]()
+    for row, (word, (x, y)) in enumerate(zip(words, rows.values.tolist(), strict=True)):
+        id, place = ids[word], Place(rows.file, int(rows.lines[row]))
+        if found.setdefault(id, Landmark(id, x, y)) != (id, x, y):
+            there = found[id]
+            told = f"the landmark {word} stood at ({there.x:g}, {there.y:g}) above"
+            mistakes.append(Mistake(place, "", told, "a landmark stays where it is"))
+    if mistakes:
+        raise InputError(mistakes[:20])
+    named = {word: id for word, id in ids.items() if not is_number(word)}
+    if named:
+        told = ", ".join(f"{word} is landmark {id}" for word, id in list(named.items())[:20])
+        asked.warnings.append(f"{table.file}: {told}")
+    return tuple(found.values()), named
 
 
-def truth_in(folder: Path, warnings: list[str]) -> Truth | None:
+def _ids(words: list[str]) -> dict[str, int]:
+    """The number of each landmark: its own where it is a whole one, else the next that is free."""
+    distinct = list(dict.fromkeys(words))
+    whole = {word: int(float(word)) for word in distinct if _is_whole(word)}
+    free = (n for n in range(1, len(distinct) + len(whole) + 1) if n not in whole.values())
+    return {word: whole[word] if word in whole else next(free) for word in distinct}
+
+
+def _is_whole(word: str) -> bool:
+    return is_number(word) and float(word).is_integer() and 0 <= float(word) < 2**31
+
+
+def truth_in(files: Files, tables: list[Table], asked: Asked, motion: Rows) -> Truth | None:
     """The true poses, None where the log has none. Raises InputError with what is wrong in them."""
-    file = find_any(folder, "the true poses", "truth*.csv", "truth*.tum")
-    if file is None:
+    source = files.truth()
+    if source is None:
         told = "no truth.csv and no truth.tum in it: the truth is unknown, and so are the errors"
-        warnings.append(f"{folder}: {told}")
+        asked.warnings.append(f"{files.alone or files.folder}: {told}")
         return None
-    if file.suffix == ".tum":
-        rows = bare_table(file, TUM, warnings)
+    rows = _poses(source, tables, asked, motion)
+    if files.recording.turn_truth == "always":
+        rows = replace(rows, values=rows.values + np.array([0, 0, 0, math.pi]))
+    return truth_of(rows, asked.warnings)
+
+
+def _poses(source: Source, tables: list[Table], asked: Asked, motion: Rows) -> Rows:
+    """The rows of the truth, t, x, y, heading, by the course where no heading is told."""
+    if source.path.suffix == ".tum":
+        rows = bare_table(source.path, TUM, asked.warnings)
         qx, qy, qz, qw = rows.values[:, 3:].T
         θ = np.arctan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy**2 + qz**2))
-        values = np.column_stack([rows.values[:, :3], θ])
-        return truth_of(type(rows)(rows.file, rows.lines, values, rows.left_out), warnings)
-    return truth_of(named(file, "t,x,y,theta").rows(("t", "x", "y", "theta"), warnings), warnings)
+        return replace(rows, values=np.column_stack([rows.values[:, :3], θ]))
+    table = opened(source, ",".join(POSE))
+    tables.append(table)
+    if table.has("theta"):
+        return table.rows(POSE, asked, motion)
+    rows = table.rows(POSE[:3], asked, motion)
+    told = "it tells no heading (theta): taken from the course, so errors of it are not to be taken"
+    asked.warnings.append(f"{table.file}: {told} for the robot's own where it slides or backs up")
+    return replace(rows, values=np.column_stack([rows.values, course_of(rows.values[:, 1:3])]))
+
+
+def course_of(places: Array) -> Array:
+    """The direction in which each place is left for the next that lies apart : (n,) rad; at the end
+    that of before, 0 where nothing moves.  places : (n, 2) m
+    """
+    course, here, since = np.zeros(len(places)), 0, 0.0
+    for k in range(1, len(places)):
+        step = places[k] - places[here]
+        if np.hypot(*step) >= MOVED:
+            since = math.atan2(step[1], step[0])
+            course[here:k] = since
+            here = k
+    course[here:] = since
+    return course

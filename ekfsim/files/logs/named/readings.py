@@ -1,22 +1,28 @@
 """What was measured, a row a reading → readings of the world's sensors."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from ekfsim.files.keys.columns import ReadingsKeys
+from ekfsim.files.logs.asked import Asked
+from ekfsim.files.logs.named.sigmas import as_sure, columns_of_sigmas, sigmas_of
 from ekfsim.files.logs.named.tables import Table
 from ekfsim.files.logs.ordering import in_order, tell_gaps
+from ekfsim.files.logs.table import Rows, is_number
 from ekfsim.files.logs.timeline import Sample
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, Booleans
 from ekfsim.records import Reading
 from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.instrument import Instrument, Landmark, Target
 from ekfsim.systems.instruments import Ranges
 from ekfsim.world import World
 
-RANGES = frozenset({"range"})
 WANTED = "t,target,range,bearing or t,x,y"
+# of the rows, from which on those that repeat the one above hold it: a sensor with noise seldom
+# says the same twice
+HELD = 0.3
 
 
 @dataclass(frozen=True)
@@ -25,14 +31,33 @@ class Fitting:
 
     instrument: Instrument
     columns: tuple[str, ...]
-    targets: dict[int, Target]  # by a landmark's id or a beam's number
+    targets: Mapping[str, Target]  # by a landmark's id or name, or a beam's number
     only: Target | None  # where it reads one thing alone
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """How a log may call it: its own name, and its kind."""
+        return self.instrument.called, self.instrument.name
+
+    @property
+    def is_beam(self) -> bool:
+        """Whether it looks for the first wall: no echo is then a reading, too."""
+        return self.only is None and all(one.place is None for one in self.targets.values())
+
+    def z(self, numbers: Array) -> Array:
+        """A reading as the filter is given it: a radio's range without its scale and bias."""
+        if isinstance(self.instrument, Ranges):
+            return np.array([self.instrument.corrected(float(numbers[0]))])
+        return numbers
 
 
 def fittings_of(
-    world: World, reading: DocumentReading, landmarks: Sequence[Landmark]
+    world: World,
+    reading: DocumentReading,
+    landmarks: Sequence[Landmark],
+    ids: Mapping[str, int] | None,
 ) -> list[Fitting]:
-    """The world's instruments around these landmarks."""
+    """The world's instruments around these landmarks, which may go by names."""
     around = world.around(reading)._replace(landmarks=tuple(landmarks))
     fittings = []
     for instrument in world.told_instruments:
@@ -41,52 +66,124 @@ def fittings_of(
             continue
         columns = tuple(one.name for one in targets[0].sensor.outputs)
         placed = targets[0].place is not None
-        ids = [mark.id for mark in landmarks] if placed else range(len(targets))
-        by_id = dict(zip(ids, targets, strict=True))
+        numbers = [mark.id for mark in landmarks] if placed else list(range(len(targets)))
+        named = {str(number): target for number, target in zip(numbers, targets, strict=True)}
+        if placed and ids:
+            named.update({name: named[str(number)] for name, number in ids.items()})
         only = targets[0] if len(targets) == 1 and not placed else None
-        fittings.append(Fitting(instrument, columns, by_id, only))
+        fittings.append(Fitting(instrument, columns, named, only))
     return fittings
 
 
-def samples_of(table: Table, fittings: Sequence[Fitting], warnings: list[str]) -> list[Sample]:
-    """The readings of a table, once for each instrument that its columns fit.
+def samples_of(
+    table: Table, keys: ReadingsKeys, fittings: Sequence[Fitting], asked: Asked, motion: Rows
+) -> list[Sample]:
+    """The readings of a table, each once for every instrument that it fits.
 
-    Raises InputError where they fit none.
+    Raises InputError where its columns fit none.
     """
-    found = [one for one in fittings if table.has(*one.columns)]
-    if not found:
-        known = " or ".join(f"t,{','.join(one.columns)}" for one in fittings)
-        raise table.lacks("as the readings of this world's sensors are", f"write {known}")
-    columns = list(dict.fromkeys(column for one in found for column in one.columns))
-    targeted = any(one.only is None for one in found)
-    if targeted and not table.has("target"):
-        raise table.lacks("'target'", "name what is seen: a landmark's id, or a beam's number")
-    names = ["t", *(["target"] if targeted else []), *columns]
-    rows = in_order(table.rows(names, warnings, ranges=RANGES & frozenset(columns)), warnings)
-    tell_gaps(rows, warnings)
-    samples, unknown = list[Sample](), list[int]()
-    places = {name: place for place, name in enumerate(names)}
-    for row, numbers in enumerate(rows.values.tolist()):
-        for one in found:
-            target = one.only or one.targets.get(numbers[places["target"]])
-            if target is None:
-                unknown.append(row)
-                continue
-            z = np.array([numbers[places[column]] for column in one.columns])
-            read = Reading(target.sensor, _given(one, z), target.name)
-            samples.append(Sample(numbers[0], read, target.delay))
-    if unknown:
-        row = unknown[0]
-        more = f", and so are {len(unknown) - 1} more rows" if len(unknown) > 1 else ""
-        target = rows.values[row, 1]
-        warnings.append(
-            f"{rows.at(row)}: target {target:g} is no landmark, and no beam{more}: left out"
-        )
+    fit = _fit(table, keys, fittings)
+    samples = list[Sample]()
+    for one in fit:
+        samples += _of_one(table, one, keys, asked, motion)
     return samples
 
 
-def _given(one: Fitting, z: Array) -> Array:
-    """A reading as the filter is given it: a radio's range without its scale and bias."""
-    if isinstance(one.instrument, Ranges):
-        return np.array([one.instrument.corrected(float(z[0]))])
-    return z
+def _fit(table: Table, keys: ReadingsKeys, fittings: Sequence[Fitting]) -> list[Fitting]:
+    """The instruments whose columns a table has. Raises InputError where there is none."""
+    known = [one for one in fittings if keys.sensor is None or keys.sensor in one.names]
+    if not known:
+        there = ", ".join(one.instrument.called for one in fittings) or "none"
+        raise table.lacks(f"for the sensor {keys.sensor!r}", f"the world has: {there}")
+    fit = [one for one in known if table.has(*one.columns)]
+    if not fit:
+        wanted = " or ".join(f"t,{','.join(one.columns)}" for one in known)
+        raise table.lacks("as the readings of this world's sensors are", f"write {wanted}")
+    return fit
+
+
+def _of_one(
+    table: Table, one: Fitting, keys: ReadingsKeys, asked: Asked, motion: Rows
+) -> list[Sample]:
+    """What a table tells of one instrument."""
+    warnings = asked.warnings
+    ranges = frozenset(one.columns) & {"range"} if not one.is_beam else frozenset[str]()
+    sigmas = columns_of_sigmas(table, one.columns)
+    names = ["t", *one.columns, *sigmas]
+    rows = table.rows(names, asked, motion, frozenset(names[1:]), ranges)
+    rows = in_order(_of_sensor(table, one, rows), warnings)
+    values = rows.values[:, 1 : 1 + len(one.columns)]
+    unread: Booleans = np.all(np.isnan(values), axis=1)
+    if unread.any() and not one.is_beam:
+        rows, values = rows[~unread], values[~unread]
+    rows, values = _fresh(rows, values, keys.held, one, warnings)
+    tell_gaps(rows, warnings)
+    targets, unknown = _targets(table, one, rows), list[int]()
+    σ = sigmas_of(one.columns, sigmas, rows, warnings)
+    samples = list[Sample]()
+    for row, (t, target) in enumerate(zip(rows.t.tolist(), targets, strict=True)):
+        if target is None:
+            unknown.append(row)
+            continue
+        sensor = as_sure(target.sensor, σ[row])
+        read = Reading(sensor, one.z(values[row]), target.name)
+        samples.append(Sample(t, read, target.delay))
+    if unknown:
+        _tell_unknown(table, one, rows, unknown, warnings)
+    return samples
+
+
+def _of_sensor(table: Table, one: Fitting, rows: Rows) -> Rows:
+    """The rows that are of this instrument, where a column tells."""
+    if not table.has("sensor"):
+        return rows
+    words = table.words("sensor", rows)
+    return rows[np.array([word in one.names for word in words], bool)]
+
+
+def _fresh(
+    rows: Rows, values: Array, held: bool | None, one: Fitting, warnings: list[str]
+) -> tuple[Rows, Array]:
+    """The rows without those that hold the reading of the row above, where that is how they are."""
+    same: Booleans = np.zeros(len(rows), bool)
+    same[1:] = (values[1:] == values[:-1]).all(axis=1)
+    if held is False or one.only is None or not same.any():
+        return rows, values
+    if held is None and np.mean(same) < HELD:
+        return rows, values
+    if held is None:
+        told = (
+            f"{same.sum()} of {len(rows)} rows repeat the {one.instrument.called} of the row above"
+        )
+        warnings.append(
+            f"{rows.file}: {told}: taken as one that is held until the next; say otherwise with "
+            "held: false"
+        )
+    return rows[~same], values[~same]
+
+
+def _targets(table: Table, one: Fitting, rows: Rows) -> list[Target | None]:
+    """What each row is of, None where the world has no such thing."""
+    if one.only is not None:
+        return [one.only] * len(rows)
+    if not table.has("target"):
+        right = "name what is seen: a landmark's id, or a beam's number"
+        raise table.lacks("'target'", right)
+    return [one.targets.get(_id(word)) for word in table.words("target", rows)]
+
+
+def _id(word: str) -> str:
+    """How a landmark or a beam is called: 7, also where a program wrote 7.0."""
+    if is_number(word) and float(word).is_integer():
+        return str(int(float(word)))
+    return word
+
+
+def _tell_unknown(
+    table: Table, one: Fitting, rows: Rows, unknown: list[int], warnings: list[str]
+) -> None:
+    row = unknown[0]
+    more = f", nor is that of {len(unknown) - 1} more rows" if len(unknown) > 1 else ""
+    word = table.words("target", rows[row : row + 1])[0]
+    what = "beam" if one.is_beam else "landmark"
+    warnings.append(f"{rows.at(row)}: target {word!r} is no {what} that is known{more}: left out")

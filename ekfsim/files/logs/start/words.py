@@ -35,8 +35,8 @@ def at_fix(world: World, first: Gaussian, t: float, course: str) -> str:
 
 def otherwise(world: World) -> str:
     """How to say otherwise: what nobody has said yet."""
-    sigma = world.told.sigma_said is not None and all(world.told.sigma_said)
-    ways = [*([] if all(world.told.start_said) else [START]), *([] if sigma else [SIGMA])]
+    start, sigma = all(world.told.start_said), all(world.sigma_said)
+    ways = [*([] if start else [START]), *([] if sigma else [SIGMA])]
     return f"; say otherwise with {' and '.join(ways)}" if ways else ""
 
 

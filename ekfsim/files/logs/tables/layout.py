@@ -36,7 +36,7 @@ def layout_of(lines: Lines, table: Table, warnings: list[str]) -> Layout:
     if not len(lines) and table.named:
         right = f"it begins with the line {_header(table)}"
         raise mistake(lines.file, 1, 1, "the file is empty", right)
-    lines = replace(lines, texts=[_unquoted(text) for text in lines.texts])
+    lines = replace(lines, texts=[unquoted(text) for text in lines.texts])
     first = _names_in(lines.texts[0]) if len(lines) else []
     body = replace(lines[1:], ended=lines.ended or len(lines) == 1) if first else lines
     if first:
@@ -44,7 +44,7 @@ def layout_of(lines: Lines, table: Table, warnings: list[str]) -> Layout:
         places, widths, units = found if found else (table.places, table.widths, {})
     else:
         places, widths, units = _by_places(lines, table, warnings)
-    body, separator = _plain(body, lines, places, widths, warnings)
+    body, separator = plain(body, lines, places, widths, warnings)
     columns = table.columns
     wanted = Wanted(
         tuple(column.name for column in columns),
@@ -58,10 +58,10 @@ def layout_of(lines: Lines, table: Table, warnings: list[str]) -> Layout:
     return Layout(body, wanted, separator, units)
 
 
-def _unquoted(text: str) -> str:
+def unquoted(text: str) -> str:
     """A line without quotes, as long as it was: a comma within them is a decimal comma.
 
-    >>> _unquoted('"0,5","1"')
+    >>> unquoted('"0,5","1"')
     ' 0.5 , 1 '
     """
     if '"' not in text:
@@ -172,7 +172,7 @@ def _header(table: Table) -> str:
     return ",".join(column.name for column in table.columns)
 
 
-def _plain(
+def plain(
     body: Lines,
     lines: Lines,
     places: tuple[int, ...],

@@ -1,5 +1,6 @@
 """A file of a log → Rows, in s, m and rad."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -50,10 +51,19 @@ def read_table(path: Path, table: Table, asked: Asked, motion: Rows | None = Non
 
 def read_text(path: Path, table: Table, asked: Asked, motion: Rows | None = None) -> Read:
     """The same, and the text of the rows."""
-    layout = layout_of(lines_of(path), table, asked.warnings)
+    return in_units(layout_of(lines_of(path), table, asked.warnings), table.columns, asked, motion)
+
+
+def in_units(
+    layout: Layout, columns: Sequence[Column], asked: Asked, motion: Rows | None = None
+) -> Read:
+    """The rows of a file that is written so, in s, m and rad.
+
+    Raises InputError with what is wrong in it.
+    """
     layout = layout._replace(lines=whole(layout.lines, layout.separator, asked.warnings))
     values = values_of(layout.lines, layout.wanted, layout.separator)
-    for n, column in enumerate(table.columns):
+    for n, column in enumerate(columns):
         if column.unit == "s":
             values[:, n] = _seconds(layout, n, values[:, n], asked, motion)
         elif column.unit in ANGLES:

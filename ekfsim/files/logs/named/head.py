@@ -1,0 +1,113 @@
+"""The names of a table's columns: in its first line, in a comment above, in the commands file."""
+
+import re
+from pathlib import Path
+
+from ekfsim.errors import InputError, Mistake, Place
+from ekfsim.files.keys.columns import COLUMNS, UNITS
+from ekfsim.files.logs.header import separator_of
+from ekfsim.files.logs.table import is_number
+from ekfsim.files.logs.tables.names import OTHERS, named
+from ekfsim.files.logs.text import first_line
+from ekfsim.files.yaml.telling import quoted
+
+ALSO = {  # how else a first line may call a column, which is not told
+    "t": ("time", "timestamp", "stamp"),
+    "v": ("speed",),
+    "omega": ("turn_rate", "yaw_rate"),
+    "left": ("vl", "v_left"),
+    "right": ("vr", "v_right"),
+    "turn": ("dheading", "dtheta"),
+    "theta": ("heading", "phi", "orientation"),
+    "id": ("landmark", "node", "marker", "subject"),
+    "target": ("landmark", "node", "marker", "id", "beam", "pair"),
+    **{
+        f"variance{of}": (f"var{of}", f"cov{of}", f"variance{of.replace('_', '')}")
+        for of in ("", "_x", "_y", "_range", "_bearing")
+    },
+}
+TWINS = {  # of our columns, those of the other formats that mean the same
+    "v": "speed", "omega": "turn rate", "left": "vl", "right": "vr", "turn": "dheading",
+    "theta": "heading", "id": "node", "target": "node",
+}  # fmt: skip
+BRACKETS = re.compile(r"(.+?)[ _]*[\[(]\s*([^])]+?)\s*[\])]")
+AFTER_BAR = re.compile(r"(.+)_([^_ ]+)")
+
+
+def meant(name: str) -> tuple[str, ...]:
+    """What one would take for a column of this name, where nothing is called so, and tells."""
+    others = OTHERS.get(TWINS.get(name, name), ())
+    return tuple(one for one in others if one not in COLUMNS)
+
+
+def stated(field: str) -> tuple[str, str | None]:
+    """The name of a column, and the unit that stands with it.
+
+    >>> stated("t_ms"), stated("Speed [km/h]"), stated("sigma_x")
+    (('t', 'ms'), ('speed', 'km/h'), ('sigma_x', None))
+    """
+    found = named(field)
+    if found.unit is not None:
+        return found.name, found.unit
+    for pattern in BRACKETS, AFTER_BAR:
+        if (own := pattern.fullmatch(found.whole)) and own[2] in UNITS:
+            return named(own[1]).name, own[2]
+    return found.name, None
+
+
+def fields_of(line: str, separator: str | None) -> list[str]:
+    """What stands in a line, without quotes."""
+    fields = [field.strip().strip('"').strip() for field in line.strip().split(separator)]
+    if fields[-1] == "":
+        fields.pop()
+    return fields
+
+
+def names_in(path: Path, first: list[str]) -> list[str] | None:
+    """The names of the columns: the first row where none of it is a number, or a comment above with
+    as many words; None where there is neither.
+    """
+    if _are_names(first):
+        return first
+    line = first_line(path).lstrip("#% \t")
+    names = fields_of(line, separator_of(line)) if line.strip() else []
+    return names if len(names) == len(first) and _are_names(names) else None
+
+
+def _are_names(fields: list[str]) -> bool:
+    return not any(map(is_number, fields)) and any(field[:1].isalpha() for field in fields)
+
+
+def placed(head: list[str], at: Place) -> tuple[dict[str, int], dict[str, str | float]]:
+    """Where the columns stand that a first line names, and their units where it states them.
+    Raises InputError where two have one name.
+    """
+    places, units = dict[str, int](), dict[str, str | float]()
+    for place, field in enumerate(head):
+        name, unit = stated(field)
+        if name in places:
+            wrong = f"two columns are named {quoted(name)}"
+            raise InputError([Mistake(at, "", wrong, "give one another name")])
+        places[name] = place
+        if unit is not None:
+            units[name] = unit
+    return places, units
+
+
+def place_of(theirs: str | int, head: list[str], width: int) -> int | None:
+    """Where a column stands that goes by a name or a number from 1, None where it does not."""
+    if isinstance(theirs, int):
+        return theirs - 1 if theirs <= width else None
+    wanted = theirs.strip().lower()
+    names = [field.lower() for field in head]
+    bare = [stated(name)[0] for name in names]
+    return next((known.index(wanted) for known in (names, bare) if wanted in known), None)
+
+
+def absent(at: Place, name: str, theirs: str | int, head: list[str] | None) -> InputError:
+    """The mistake that a column is not where the commands file says."""
+    what = f"number {theirs}" if isinstance(theirs, int) else f"named {quoted(theirs)}"
+    found = (
+        f"found {', '.join(map(quoted, head))}" if head else "its rows have no names: number them"
+    )
+    return InputError([Mistake(at, f"columns.{name}", f"no column is {what}", found)])
