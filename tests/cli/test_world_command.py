@@ -22,6 +22,8 @@ def test_a_map_becomes_a_world_that_plays_and_a_picture(place):
     assert told.status == 0
     assert told.out == ("out/hall.yaml: a room; 4 corners; out/hall.png shows it over the plan\n")
     assert told.err == (
+        "ekfsim: map.yaml: walls are straight within 0.1 m of the cells, 0 m from them at most; "
+        "--tolerance says otherwise\n"
         "ekfsim: map.yaml: the robot starts at (1.5, 1), where it has most room, 0.95 m; --start "
         "X,Y,THETA says otherwise\n"
     )

@@ -96,7 +96,7 @@ class Cut:
         margin = 0 if found.re is FLOW else len(found[1]) + 2
         word = f"{self.sign}{len(self.places)}"
         self.places.append(Place(held, found.start(), found.end(), margin))
-        spaces = re.sub(r"[^\n]", " ", text)
+        spaces = "\n".join(" " * len(line) for line in text.split("\n"))
         return spaces[:margin] + word + spaces[margin + len(word) :]
 
     def numbers(self, word: str, mark: Mark, grow: Callable[[str], Node]) -> Numbers | None:

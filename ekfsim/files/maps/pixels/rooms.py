@@ -9,11 +9,12 @@ from scipy import ndimage
 from ekfsim.errors import UsageError
 from ekfsim.files.maps.pixels.cells import Reading
 from ekfsim.files.maps.pixels.image import Grey
-from ekfsim.files.maps.pixels.straight import corners
+from ekfsim.files.maps.pixels.straight import farthest, straightened
 from ekfsim.files.maps.pixels.tracing import outlines, without_corners
 from ekfsim.files.maps.plan import Asked, Outline, Plan, Scan, Start
 from ekfsim.geometry import Array, Booleans
 
+CELLS = 2.0  # the tolerance, in cells, where nobody says another
 NOT_SEEN = 205 / 255  # how bright map savers draw what nobody has seen
 
 
@@ -34,16 +35,19 @@ def plan_of(
     occupied, free = (cells[::-1] for cells in reading.cells(grey))  # row 0 at the bottom
     told += _grey_that_is_free(grey, free[::-1], reading)
     lying = _Lying(resolution, origin)
+    tolerance = CELLS if asked.tolerance is None else asked.tolerance / resolution
     if asked.unknown == "free":
-        free = without_corners(~occupied)
-        return Plan(
-            name, None, _things(outlines(~free), lying), told=tuple(told), scan=lying.scan(grey)
-        )
-    free = without_corners(free)
-    inside = _room(free, lying, asked, told, shown)
-    room, *holes = sorted(outlines(inside), key=_area, reverse=True)
-    things = _things([hole[::-1] for hole in holes], lying)
-    return Plan(name, lying.placed(corners(room)), things, told=tuple(told), scan=lying.scan(grey))
+        stepped = outlines(~without_corners(~occupied))
+    else:
+        inside = _room(without_corners(free), lying, asked, told, shown)
+        room, *holes = sorted(outlines(inside), key=_area, reverse=True)
+        stepped = [room, *(hole[::-1] for hole in holes)]
+    large = [ring for ring in stepped if np.ptp(ring, axis=0).max() > tolerance]
+    straight = straightened(large, tolerance)
+    told += _straightened(stepped, large, straight, tolerance * resolution, resolution)
+    boundary = None if asked.unknown == "free" else lying.placed(straight.pop(0))
+    things = _things(straight, lying)
+    return Plan(name, boundary, things, told=tuple(told), scan=lying.scan(grey))
 
 
 class _Lying:
@@ -102,15 +106,30 @@ def _things(rings: list[Array], lying: _Lying) -> tuple[Outline, ...]:
     for k, ring in enumerate(rings):
         if _area(ring) < 0:
             around = [solid[n] for n in tree.query(shapes[k], predicate="covered_by").tolist()]
-            holes[min(around, key=lambda n: shapes[n].area)].append(corners(ring))
+            holes[min(around, key=lambda n: shapes[n].area)].append(ring)
     return tuple(
         Outline(
             f"thing {number}",
-            lying.placed(corners(rings[k])),
+            lying.placed(rings[k]),
             tuple(lying.placed(hole) for hole in holes[k]),
         )
         for number, k in enumerate(solid, 1)
     )
+
+
+def _straightened(
+    stepped: list[Array], large: list[Array], straight: list[Array], tolerance: float, side: float
+) -> list[str]:
+    """What is to be said of walls that were made straight, and of what was left out."""
+    worst = round(max(map(farthest, large, straight), default=0.0) * side, 4)
+    lines = [
+        f"walls are straight within {tolerance:g} m of the cells, {worst:.2g} m from them at most; "
+        "--tolerance says otherwise"
+    ]
+    if specks := len(stepped) - len(large):
+        things = "thing was" if specks == 1 else "things were"
+        lines.append(f"{specks} {things} left out, no larger than that")
+    return lines
 
 
 def _area(ring: Array) -> float:
