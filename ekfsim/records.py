@@ -81,6 +81,7 @@ class Log:
 
     entries: tuple[Entry, ...]  # the first is the start
     first: Gaussian  # the belief that the filter begins with
+    start_known: bool = True  # whether the truth tells where that is
     # where it was read from; what `replace` makes of it was not, and has none
     given: object = field(default=None, init=False, compare=False, repr=False)
 

@@ -105,6 +105,7 @@ class Summary(Shown):
 
     layout: Layout = POSE
     expected_path: Array | None = None  # (n, 2) m, the outline that was to be driven
+    start_known: bool = True  # False of a log whose truth does not tell where it begins
     steps: int = 0
     inputs: int = 0
     updates: int = 0
@@ -130,7 +131,8 @@ class Summary(Shown):
     @classmethod
     def of(cls, scene: Scene) -> Self:
         """An empty summary for a run of this scene."""
-        return cls(scene.world.layout, scene.world.expected_path)
+        known = scene.log is None or scene.log.start_known
+        return cls(scene.world.layout, scene.world.expected_path, known)
 
     @property
     def readings(self) -> int:

@@ -22,6 +22,11 @@ def lost(measured: Nees) -> bool:
     return bool(measured.impossible) or float(measured.value) > quantile(LOST, int(measured.dof))
 
 
+FIRST = 10  # readings by which a start is judged
+FAR = 20.0  # NIS per number read of these, beyond which no noise is likely to be the cause
+SETTLED = 3.0  # times the NIS of all later ones: a filter that found its way since
+
+
 class Verdict(Enum):
     """What can be said of one run. The value is the word; `Evidence.sentence` gives its reason."""
 
@@ -46,6 +51,10 @@ class Evidence:
     nis_outside_from: int | None = None
     used_sum: float = 0.0  # the same sum without the readings that were refused
     used_dof: int = 0
+    # of the first few readings: the same sum, and how many the gate refused
+    first_sum: float = 0.0
+    first_dof: int = 0
+    first_refused: int = 0
 
     def add(self, step: Step) -> None:
         """Take one more step into account."""
@@ -54,6 +63,9 @@ class Evidence:
             self.nis_sum += nis
             self.nis_dof += correction.innovation.shape[-1]
             self.nis_readings += 1
+            if self.nis_readings <= FIRST:
+                self.first_sum, self.first_dof = self.nis_sum, self.nis_dof
+                self.first_refused += int(correction.refused) == Refused.GATE
             if int(correction.refused) != Refused.NOT:
                 self.nis_refused += 1
             else:
@@ -75,6 +87,18 @@ class Evidence:
     def nis_band(self) -> tuple[float, float]:
         """The two-sided 99 % band of χ² for ΣNIS."""
         return band(BAND, self.nis_dof)
+
+    @property
+    def doubts_start(self) -> bool:
+        """Whether the first readings speak against the start rather than against the noises: nearly
+        all of them were refused, or they are far off and later ones are not.
+        """
+        few, later = min(self.nis_readings, FIRST), self.nis_dof - self.first_dof
+        if few < FIRST / 2 or self.first_sum < FAR * self.first_dof:
+            return False
+        rest = (self.nis_sum - self.first_sum) / later if later else 0.0
+        refused = self.first_refused >= 0.9 * few
+        return refused or self.first_sum > SETTLED * rest * self.first_dof
 
     @property
     def verdict(self) -> Verdict:

@@ -105,7 +105,7 @@ class Timeline:
             first = at_fix(world, reading, fix.reading, entries, self.name, warnings)
         else:
             first = assumed(world, reading, self.name, warnings)
-        return Recorded(Log(entries, first), self.landmarks, warnings)
+        return Recorded(Log(entries, first, pose is not None), self.landmarks, warnings)
 
     def _first_fix(self) -> tuple[Sequence[Sample], Sample | None]:
         """The readings but for the first that tells the position, and that one, where there is one

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from ekfsim.diagnostics.summary import Errors, Summary
-from ekfsim.diagnostics.verdict import BAND, LOST, Evidence, Verdict
+from ekfsim.diagnostics.verdict import BAND, FIRST, LOST, Evidence, Verdict
 from ekfsim.filters.arithmetic.chi_square import band, quantile
 from ekfsim.filters.belief import Refused
 from ekfsim.records import Nees
@@ -38,7 +38,8 @@ def conclude(summary: Summary) -> str:
         lines += [f"Distance to the expected path: {_metres(summary.path)}"]
     if summary.innovations.of:
         lines += [f"Innovations: {whiteness(summary.innovations.found())}"]
-    return "".join(f"{line}\n" for line in [*lines, f"Verdict: {sentence(summary.evidence)}"])
+    lines += [f"Verdict: {sentence(summary.evidence)}", *_cause([summary])]
+    return "".join(f"{line}\n" for line in lines)
 
 
 def conclude_all(
@@ -63,7 +64,23 @@ def conclude_all(
         f"{name}: {sentence(summary.evidence)}"
         for name, summary in zip(names, summaries, strict=True)
     )
-    return "".join(f"{line}\n" for line in (lines if quiet else [*lines, "", *told]))
+    said = [*lines, *_cause(summaries)] if quiet else [*lines, "", *told, *_cause(summaries)]
+    return "".join(f"{line}\n" for line in said)
+
+
+def _cause(summaries: Sequence[Summary]) -> list[str]:
+    """What is the likely cause of a verdict, where it is the start: no other number is to blame."""
+    first = summaries[0]
+    if first.start_known or not all(summary.evidence.doubts_start for summary in summaries):
+        return []
+    evidence = first.evidence
+    mean = figure(evidence.first_sum / evidence.first_dof)
+    few = _count(min(evidence.nis_readings, FIRST), "reading")
+    return [
+        f"Likely cause: the start, of which no truth tells: NIS is {mean} per number read in the "
+        f"first {few}; say where it is with --set start.x=… (y, theta), and how surely with "
+        "--set belief.sigma.x=… (y, theta)"
+    ]
 
 
 def _table(names: Sequence[str], summaries: Sequence[Summary]) -> list[str]:

@@ -8,10 +8,12 @@ import pytest
 from log_worlds import lay, read, table, world
 
 import ekfsim
+from ekfsim.diagnostics.summary import Summary
 from ekfsim.files.packaged import resolve
 from ekfsim.files.scenes.load import check, read_scene
 from ekfsim.files.scenes.settings import setting
 from ekfsim.localization import first_belief, play
+from ekfsim.views.words.closing import conclude
 
 LANDMARKS = "6 5.0 3.0 0 0\n7 6.0 -1.0 0 0\n"
 MRCLAM = {
@@ -214,3 +216,56 @@ def test_a_truth_of_no_instant_of_the_motion_is_none(tmp_path):
     told = "no true pose is of the time of the motion: the truth is unknown"
     assert f"{tmp_path}/log: {told}" in warnings
     assert read("mrclam", tmp_path / "log", world("mrclam")).log.entries[0].t == 0.0
+
+
+# a start that is likely wrong
+# ------------------------------------------------------------------------------------------
+
+
+def seen_from_the_origin(folder):
+    """A robot that drives 5 m along x from (0, 0), and what it sees of two landmarks each 0.2 s, of
+    0.3 m and 0.02 rad noise.
+    """
+    rng, rows = np.random.default_rng(1), []
+    for k in range(1, 25):
+        for barcode, mark in ((63, (5.0, 3.0)), (25, (6.0, -1.0))):
+            east, north = mark[0] - 0.2 * k, mark[1]
+            r, φ = math.hypot(east, north), math.atan2(north, east)
+            rows.append((0.2 * k, barcode, abs(r + rng.normal(0, 0.3)), φ + rng.normal(0, 0.02)))
+    text = "".join(f"{t:.1f} {who} {r} {φ}\n" for t, who, r, φ in rows)
+    return lay(folder, **{**MRCLAM, "Robot1_Measurement.dat": text})
+
+
+@pytest.mark.parametrize(
+    ("settings", "blamed"),
+    [
+        ((), True),  # it begins at (4, 2), and the gate refuses all
+        (("gate=off",), True),  # and without a gate it finds its way
+        (("start.x=3", "start.y=3", "start.theta=90"), True),
+        (("start.x=0", "start.y=0", "start.theta=0"), False),
+        (("belief.sigma.x=4", "belief.sigma.y=4", "belief.sigma.theta=20", "gate=off"), False),
+        # a right start, and a sensor that is told to be sharper than it is
+        (("start.x=0", "start.y=0", "start.theta=0", "gate=off",
+          "sensors.rangeBearing.rangeSigma=0.01", "sensors.rangeBearing.bearingSigma=0.1"), False),
+    ],
+)  # fmt: skip
+def test_a_start_that_the_first_readings_refute_is_named_as_the_cause(tmp_path, settings, blamed):
+    ours, _ = scene("mrclam", seen_from_the_origin(tmp_path / "log"), *settings)
+    summary = Summary.of(ours)
+    for _ in summary.following(play(ours)):
+        pass
+    (verdict, *cause) = conclude(summary).splitlines()[-1 - blamed :]
+    assert verdict.startswith("Verdict: ")
+    assert [line.partition(":")[0] for line in cause] == ["Likely cause"] * blamed
+    if blamed:
+        assert " per number read in the first 10 readings; say where it is with " in cause[0]
+
+
+def test_where_the_truth_tells_the_start_it_is_not_blamed(tmp_path):
+    folder = lay(seen_from_the_origin(tmp_path / "log"), **poses("mrclam", straight((0, 5))))
+    ours, _ = scene("mrclam", folder, "sensors.rangeBearing.rangeSigma=0.001")
+    summary = Summary.of(ours)
+    for _ in summary.following(play(ours)):
+        pass
+    assert "Likely cause" not in conclude(summary)
+    assert ours.log.start_known

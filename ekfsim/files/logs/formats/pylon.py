@@ -104,7 +104,7 @@ def read_pylon(asked: Asked) -> Recorded:
             f"{rows.file}: in {unseen} of {len(rows)} rows the lidar did not see the pylon"
         )
     first = assumed(world, reading, str(path), warnings)
-    return Recorded(Log(tuple(entries), first), None, warnings)
+    return Recorded(Log(tuple(entries), first, start_known=False), None, warnings)
 
 
 def _when_seen(beam: Array, rows: Rows, delay: float, warnings: list[str]) -> Array:
