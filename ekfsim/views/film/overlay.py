@@ -17,7 +17,7 @@ from ekfsim.views.film.still import save
 from ekfsim.views.picture.artists import BLUE, GREEN, ORANGE, VERMILLION, closed
 from ekfsim.views.picture.written.lettering import drawable, shortened
 
-LONGER, SHORTER, NARROWEST = 14.0, 1.2, 5.0  # in: the longer side, room for the title, the shorter
+LONGER, SHORTER, NARROWEST = 14.0, 1.0, 5.0  # in: the longer side, room for the title, the shorter
 EDGE = 0.03  # of the plan, around it
 TITLE = 110  # letters
 DPI = 150
@@ -42,7 +42,7 @@ def draw(plan: Plan, start: Start, target: Path, source: str, force: bool = Fals
         _lay_out(axes, plan.scan)
     _walls(axes, plan)
     _robot(axes, start, 0.012 * float(size.max()))
-    axes.legend(loc="upper right", fontsize=8)
+    figure.legend(loc="outside lower center", fontsize=8, ncols=6, frameon=False)
     save(figure, target, plan.name, source, force)
 
 

@@ -9,7 +9,7 @@ from scipy import ndimage
 from ekfsim.errors import UsageError
 from ekfsim.files.maps.pixels.cells import Reading
 from ekfsim.files.maps.pixels.image import Grey
-from ekfsim.files.maps.pixels.straight import farthest, straightened
+from ekfsim.files.maps.pixels.straight import corners, farthest, straightened
 from ekfsim.files.maps.pixels.tracing import outlines, without_corners
 from ekfsim.files.maps.plan import Asked, Outline, Plan, Scan, Start
 from ekfsim.geometry import Array, Booleans
@@ -37,16 +37,19 @@ def plan_of(
     lying = _Lying(resolution, origin)
     tolerance = CELLS if asked.tolerance is None else asked.tolerance / resolution
     if asked.unknown == "free":
-        stepped = outlines(~without_corners(~occupied))
+        room, stepped = None, outlines(~without_corners(~occupied))
     else:
-        inside = _room(without_corners(free), lying, asked, told, shown)
-        room, *holes = sorted(outlines(inside), key=_area, reverse=True)
-        stepped = [room, *(hole[::-1] for hole in holes)]
+        free = without_corners(free | _slits(occupied, free, tolerance, told))
+        room, *holes = sorted(
+            outlines(_room(free, lying, asked, told, shown)), key=_area, reverse=True
+        )
+        stepped = [hole[::-1] for hole in holes]
     large = [ring for ring in stepped if np.ptp(ring, axis=0).max() > tolerance]
-    straight = straightened(large, tolerance)
-    told += _straightened(stepped, large, straight, tolerance * resolution, resolution)
-    boundary = None if asked.unknown == "free" else lying.placed(straight.pop(0))
-    things = _things(straight, lying)
+    rings = large if room is None else [room, *large]
+    straight = straightened(rings, tolerance)
+    told += _straightened(rings, straight, len(stepped) - len(large), tolerance, resolution)
+    boundary = None if room is None else lying.placed(straight.pop(0))
+    things = _things(large, straight, lying)
     return Plan(name, boundary, things, told=tuple(told), scan=lying.scan(grey))
 
 
@@ -97,36 +100,61 @@ def _room(free: Booleans, lying: _Lying, asked: Asked, told: list[str], shown: s
     return np.asarray(rooms == wanted)
 
 
-def _things(rings: list[Array], lying: _Lying) -> tuple[Outline, ...]:
-    """What takes up room: outlines, counter-clockwise, with the holes in them, clockwise."""
+def _slits(occupied: Booleans, free: Booleans, tolerance: float, told: list[str]) -> Booleans:
+    """The unknown cells among free ones that border on nothing occupied, no wider together than the
+    tolerance: where beams passed on either side, and met nothing.
+    """
+    unknown = ~(occupied | free)
+    places, number = ndimage.label(unknown)
+    side = int(tolerance) + 1
+    wide = ndimage.binary_erosion(unknown, np.ones((side, side), bool))
+    beside = ndimage.binary_dilation(occupied, np.ones((3, 3), bool))
+    edge = np.ones_like(free)
+    edge[1:-1, 1:-1] = False
+    kept = np.zeros(number + 1, bool)
+    kept[places[wide | beside | edge]] = True
+    kept[0] = True
+    if count := int(np.count_nonzero(~kept)):
+        slits = "slit" if count == 1 else "slits"
+        told.append(
+            f"{count} {slits} of unknown cells among free ones, beside nothing occupied, "
+            f"{'is' if count == 1 else 'are'} free"
+        )
+    return np.asarray(~kept[places])
+
+
+def _things(rings: list[Array], straight: list[Array], lying: _Lying) -> tuple[Outline, ...]:
+    """What takes up room: outlines, counter-clockwise, with the holes in them, clockwise; straight,
+    but where a hole would not lie in its outline then.
+    """
     shapes = [shapely.Polygon(ring) for ring in rings]
     solid = [k for k, ring in enumerate(rings) if _area(ring) > 0]
     tree = shapely.STRtree([shapes[k] for k in solid])
-    holes: dict[int, list[Array]] = {k: [] for k in solid}
+    holes: dict[int, list[int]] = {k: [] for k in solid}
     for k, ring in enumerate(rings):
         if _area(ring) < 0:
             around = [solid[n] for n in tree.query(shapes[k], predicate="covered_by").tolist()]
-            holes[min(around, key=lambda n: shapes[n].area)].append(ring)
-    return tuple(
-        Outline(
-            f"thing {number}",
-            lying.placed(rings[k]),
-            tuple(lying.placed(hole) for hole in holes[k]),
-        )
-        for number, k in enumerate(solid, 1)
-    )
+            holes[min(around, key=lambda n: shapes[n].area)].append(k)
+    found = []
+    for number, k in enumerate(solid, 1):
+        own, inside = straight[k], [straight[hole] for hole in holes[k]]
+        if not shapely.Polygon(own, inside).is_valid:
+            own, inside = corners(rings[k]), [corners(rings[hole]) for hole in holes[k]]
+        placed = tuple(lying.placed(hole) for hole in inside)
+        found.append(Outline(f"thing {number}", lying.placed(own), placed))
+    return tuple(found)
 
 
 def _straightened(
-    stepped: list[Array], large: list[Array], straight: list[Array], tolerance: float, side: float
+    rings: list[Array], straight: list[Array], specks: int, tolerance: float, side: float
 ) -> list[str]:
     """What is to be said of walls that were made straight, and of what was left out."""
-    worst = round(max(map(farthest, large, straight), default=0.0) * side, 4)
+    worst = round(max(map(farthest, rings, straight), default=0.0) * side, 4)
     lines = [
-        f"walls are straight within {tolerance:g} m of the cells, {worst:.2g} m from them at most; "
-        "--tolerance says otherwise"
+        f"walls are straight within {tolerance * side:g} m of the cells, {worst:.2g} m from them "
+        "at most; --tolerance says otherwise"
     ]
-    if specks := len(stepped) - len(large):
+    if specks:
         things = "thing was" if specks == 1 else "things were"
         lines.append(f"{specks} {things} left out, no larger than that")
     return lines
