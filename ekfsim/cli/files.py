@@ -88,23 +88,36 @@ def _check_filter(place: str) -> int:
 
 
 @click.command(short_help="Print the JSON Schema by which editors check a file.")
-@click.argument("kind", type=Word(["world", "commands", "study", "homework"]))
+@click.argument("kind", type=Word(["world", "commands", "study", "homework", "recording"]))
 @click.option("--markdown", is_flag=True, help="Tables of all keys, for people to read.")
 def schema(kind: str, markdown: bool) -> None:
     """Print the JSON Schema from which editors complete and check a world,
-    commands, study or homework file.
+    commands, study or homework file; of a recording the files and columns of each format of logs.
     """
-    import json
     from typing import cast
 
     from ekfsim.files.yaml.reference import reference
     from ekfsim.files.yaml.schema import Kind, json_schema
 
+    if kind == "recording":
+        from ekfsim.files.logs import DECLARED
+        from ekfsim.files.logs.tables.telling import all_pages, as_json
+
+        formats = DECLARED.values()
+        click.echo(all_pages(formats) if markdown else _json(as_json(formats)), nl=not markdown)
+        return
     asked = cast("Kind", kind)
     if markdown:
         click.echo(reference(asked), nl=False)
         return
-    click.echo(json.dumps(json_schema(asked), indent=2, ensure_ascii=False))
+    click.echo(_json(json_schema(asked)))
+
+
+def _json(value: object) -> str:
+    """As a person may read it."""
+    import json
+
+    return json.dumps(value, indent=2, ensure_ascii=False)
 
 
 @click.command("list", short_help="List what comes along, or all that is said of NAME.")

@@ -7,7 +7,7 @@ from ekfsim.errors import UsageError
 from ekfsim.files.keys.recording import SYSTEM_OF, RecordingKeys, misfit
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import refuse_foreign
-from ekfsim.files.logs.formats.classroom import read_classroom
+from ekfsim.files.logs.formats.classroom import CLASSROOM, read_classroom
 from ekfsim.files.logs.formats.gnss import GNSS, read_gnss
 from ekfsim.files.logs.formats.mower import MOWER, read_mower
 from ekfsim.files.logs.formats.mrclam import read_mrclam
@@ -15,6 +15,7 @@ from ekfsim.files.logs.formats.mrclam_tables import MRCLAM
 from ekfsim.files.logs.formats.pioneer import PIONEER, read_pioneer
 from ekfsim.files.logs.formats.pylon import PYLON, read_pylon
 from ekfsim.files.logs.formats.ranges import PLAZA, read_ranges
+from ekfsim.files.logs.named.declared import LOG
 from ekfsim.files.logs.named.log import read_named
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.tables.declared import Format
@@ -37,7 +38,7 @@ FORMATS: dict[str, Reader] = {
 }
 # what the files of each hold, for readers, refusals, `ekfsim schema recording` and the docs
 DECLARED: dict[str, Format] = {
-    format.name: format for format in (PYLON, GNSS, MOWER, MRCLAM, PLAZA, PIONEER)
+    format.name: format for format in (LOG, PYLON, GNSS, MOWER, MRCLAM, PLAZA, PIONEER, CLASSROOM)
 }
 
 

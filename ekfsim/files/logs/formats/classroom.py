@@ -20,9 +20,11 @@ from ekfsim.files.keys.fields import FAR, FARTHEST
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.degrees import radians
 from ekfsim.files.logs.folder import find, find_any, folder_of
+from ekfsim.files.logs.formats.groundtruth import X, Y
 from ekfsim.files.logs.header import places_of, separator_of
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.table import is_number
+from ekfsim.files.logs.tables.declared import Column, Format, Table
 from ekfsim.files.logs.text import Lines, lines_of
 from ekfsim.files.yaml.telling import nearest, quoted
 from ekfsim.geometry import Array
@@ -35,6 +37,53 @@ ENTRIES, WORLD, TRUTH = "entries.csv", "world.yaml", "truth.csv"
 HOLDS = f"{ENTRIES}, {WORLD} and, where it is known, {TRUTH}"
 COLUMNS = ("index", "kind", "distance", "angle", "bearing", "range")
 TRUTH_COLUMNS = ("index", "x", "y", "theta")
+CLASSROOM = Format(
+    "classroom",
+    "What the robot of a classroom measured, a row a move or a sense, and its world; "
+    "`ekfsim record` writes it. Rows have no time.",
+    (
+        Table(
+            "what was measured",
+            (ENTRIES,),
+            (
+                Column("index", "", "of the command, from 1, growing"),
+                Column("kind", "", "move or sense"),
+                Column("distance", "m", "of a move, by the odometry"),
+                Column("angle", "degrees", "of a move, by the odometry"),
+                Column("bearing", "degrees", "of the laser, from straight ahead"),
+                Column("range", "m", "of a beam; empty where there was no echo"),
+            ),
+            told=f"Beside it lies {WORLD}, the map and the ratios as the filter is told them.",
+            example="""\
+index,kind,distance,angle,bearing,range
+1,move,1.76,95.9,,
+2,sense,,,90,2.01
+3,move,0.5,0,,
+4,sense,,,0,
+5,sense,,,-90,1.25
+""",
+        ),
+        Table(
+            "the true poses",
+            (TRUTH,),
+            (
+                Column("index", "", "of the command, 0 for the start"),
+                X,
+                Y,
+                Column("theta", "degrees", "counter-clockwise from x"),
+            ),
+            needed=False,
+            example="""\
+index,x,y,theta
+0,1.0,1.0,90
+1,1.0,2.75,180
+2,1.0,2.75,180
+3,0.5,2.75,180
+4,0.5,2.75,180
+""",
+        ),
+    ),
+)
 OF_KIND = {"move": ("distance", "angle"), "sense": ("bearing", "range")}
 MAY_BE_EMPTY = "range"  # no echo
 LARGEST = {"x": FARTHEST, "y": FARTHEST}  # m; of all others it is FAR

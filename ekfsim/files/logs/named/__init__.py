@@ -1,5 +1,6 @@
 """The log format for everybody: tables whose columns have names.
 
+declared.py    what its files hold, for refusals and the docs
 log.py         a folder, or one file → a recorded log
 files.py       which of its files hold what
 head.py        the names of its columns, and their units
