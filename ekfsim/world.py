@@ -255,7 +255,8 @@ class World:
     @property
     def layout(self) -> Layout:
         """What the entries of the filter's state are."""
-        return POSE if self.robot is None else self.robot.layout
+        robot = self.told_robot
+        return POSE if robot is None else robot.layout
 
     def follows(self, reading: DocumentReading) -> bool:
         """Whether anything of robot or instruments is printed, or coded, otherwise than right."""
@@ -343,9 +344,11 @@ class World:
     ) -> Surroundings:
         yaw_sigma = 0.0
         if robot is not None:
-            from ekfsim.systems.robots import PylonCart  # of no use to the classroom
+            from ekfsim.systems.estimating import Estimating  # of no use to the classroom
+            from ekfsim.systems.robots import PylonCart
 
-            yaw_sigma = robot.yaw_sigma if isinstance(robot, PylonCart) else 0.0
+            own = robot.robot if isinstance(robot, Estimating) else robot
+            yaw_sigma = own.yaw_sigma if isinstance(own, PylonCart) else 0.0
         return Surroundings(
             self.landmarks, floor.walls, self.layout, reading, yaw_sigma, float(start[2])
         )

@@ -58,7 +58,9 @@ def drive(scene: Scene, way: Drive, draws: Draws) -> Iterator[Entry]:
     for ticks in _blocks(len(course.speed), start.size // 3):
         moved, truth = driver.advance(ticks)
         ideal = robot.ideal(moved)
-        u = world.drive_faults.misread(ideal, robot.faults) + _noise(motion.M(ideal), inputs)
+        u = world.drive_faults.misread(ideal, robot.faults, robot.over) + _noise(
+            motion.M(ideal), inputs
+        )
         past.goes_on(truth)
         fixes = None if gps is None else gps.fixes(ticks, truth, robot.rate)
         readings = _readings(watches, ticks, past, u, robot.rate, world.layout)

@@ -4,6 +4,7 @@ the log tells.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 from ekfsim.geometry import Array
 
@@ -39,16 +40,19 @@ class DriveFaults:
     # a plain one: workers of a study are sent it
     sensors: Mapping[str, SensorFaults] = field(default_factory=dict)
 
-    def misread(self, u: Array, entries: Mapping[str, int]) -> Array:
+    def misread(
+        self, u: Array, entries: Mapping[str, int], over: Mapping[str, int] = MappingProxyType({})
+    ) -> Array:
         """The motion input that is measured where u : (…, m) is right. entries : which entry each
-        fault is about
+        fault is about; over : the entry, a time, over which a rate of it adds up
         """
         measured = u.copy()
         for name, entry in entries.items():
             if name.endswith("_scale"):
                 measured[..., entry] *= getattr(self, name)
             else:
-                measured[..., entry] += getattr(self, name)
+                rate = getattr(self, name)
+                measured[..., entry] += rate * u[..., over[name]] if name in over else rate
         return measured
 
 

@@ -1,7 +1,7 @@
 """What every robot offers to a filter and a simulation."""
 
 from collections.abc import Mapping
-from typing import ClassVar, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from ekfsim.geometry import Array
 from ekfsim.models.layout import Layout
@@ -33,11 +33,21 @@ class Gps(NamedTuple):
 class Robot(Protocol):
     """What a filter and a simulation need to know of a robot."""
 
-    # in which other equations than the corrected ones are followed
-    readings: ClassVar[tuple[DocumentReading, ...]]
-    # which of DriveFaults it may have, each with the entry of u that it is about
-    faults: ClassVar[Entries]
-    gps: ClassVar[Gps | None]
+    @property
+    def readings(self) -> tuple[DocumentReading, ...]:
+        """In which other equations than the corrected ones it is followed."""
+
+    @property
+    def faults(self) -> Entries:
+        """Which of DriveFaults it may have, each with the entry of u that it is about."""
+
+    @property
+    def over(self) -> Entries:
+        """Those of them that are rates of an entry which adds up, with the entry of its time."""
+
+    @property
+    def gps(self) -> Gps | None:
+        """A receiver that is recorded and not used."""
 
     @property
     def rate(self) -> float:

@@ -24,7 +24,8 @@ from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.robot import Entries, Gps, Tick
 
 WHEELS: Entries = MappingProxyType({"left_scale": 0, "right_scale": 1})
-WAY_AND_TURN: Entries = MappingProxyType({"distance_scale": 0, "turn_scale": 1})
+WAY_AND_TURN: Entries = MappingProxyType({"distance_scale": 0, "turn_scale": 1, "gyro_bias": 1})
+NOTHING: Entries = MappingProxyType({})
 
 
 def _wheel_ways(distance: Array, turn: Array, width: float) -> list[Array]:
@@ -44,6 +45,7 @@ class Mower:
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ("coded",)
     faults: ClassVar[Entries] = MappingProxyType({**WHEELS, "gyro_bias": 2})
+    over: ClassVar[Entries] = NOTHING
     gps: ClassVar[Gps | None] = None
     rate: float = 100.0
     width: float = 1.41  # m, b of eq. 20, as the listing has it
@@ -85,6 +87,7 @@ class Pioneer:
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
     faults: ClassVar[Entries] = WHEELS
+    over: ClassVar[Entries] = NOTHING
     gps: ClassVar[Gps | None] = None
     rate: float = 10.0
     width: float = 0.38  # m, W of eq. 33; the document measures it and does not print it
@@ -131,6 +134,7 @@ class GnssMower:
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ("coded",)
     faults: ClassVar[Entries] = WHEELS
+    over: ClassVar[Entries] = NOTHING
     gps: ClassVar[Gps | None] = None
     rate: float = 200.0
     half_track: float = 0.27  # m, R of the document
@@ -162,6 +166,7 @@ class PylonCart:
     faults: ClassVar[Entries] = MappingProxyType(
         {"forward_bias": 0, "lateral_bias": 1, "yaw_bias": 2}
     )
+    over: ClassVar[Entries] = NOTHING
     gps: ClassVar[Gps | None] = Gps(0.4, 2.0)
     rate: float = 10.0
     forward_sigma: float = math.sqrt(1.8373)  # m/s², R_t of eq. 10
@@ -200,6 +205,7 @@ class IRobotCreate:
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
     faults: ClassVar[Entries] = WAY_AND_TURN
+    over: ClassVar[Entries] = NOTHING
     gps: ClassVar[Gps | None] = None
     rate: float = 100.0
     distance_density: float = 0.02  # m per √s
@@ -225,6 +231,7 @@ class RangingMower:
 
     readings: ClassVar[tuple[DocumentReading, ...]] = ()
     faults: ClassVar[Entries] = WAY_AND_TURN
+    over: ClassVar[Entries] = MappingProxyType({"gyro_bias": 2})
     gps: ClassVar[Gps | None] = None
     rate: float = 10.0
     distance_density: float = 0.05  # m per √s

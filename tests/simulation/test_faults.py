@@ -147,7 +147,9 @@ FAULTS = [
     ("pylon", "forward_bias", 0, "bias"), ("pylon", "lateral_bias", 1, "bias"), ("pylon",
     "yaw_bias", 2, "bias"),
     ("landmarks", "distance_scale", 0, "scale"), ("landmarks", "turn_scale", 1, "scale"),
+    ("landmarks", "gyro_bias", 1, "bias"),
     ("ranges", "distance_scale", 0, "scale"), ("ranges", "turn_scale", 1, "scale"),
+    ("ranges", "gyro_bias", 1, "rate"),
 ]  # fmt: skip
 
 
@@ -174,6 +176,8 @@ def test_a_fault_of_the_robot_is_in_its_input_alone(name, fault, entry, kind):
         e = other.given.u - one.given.u
         if kind == "bias":
             assert e[entry] == pytest.approx(0.25)
+        elif kind == "rate":  # of a turn, which adds up over the time of the input
+            assert e[entry] == pytest.approx(0.25 * one.given.u[2])
         # there the truth is disturbed, and the driver steers back
         elif name != "gnss" and name != "mower":
             assert e[entry] == pytest.approx(0.5 * ideal[entry], rel=1e-9, abs=1e-12)

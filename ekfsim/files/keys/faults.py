@@ -213,7 +213,8 @@ class FaultKeys(PartKeys):
     gyro_bias: Degrees = Field(
         0.0,
         alias="gyroBias",
-        description="Degrees per second added to what the gyro measures: mower.",
+        description="Degrees per second added to the turn rate that is measured: mower, "
+        "landmarks, ranges.",
         examples=[0.05],
     )
     distance_scale: Scale = Field(

@@ -51,7 +51,7 @@ def of_robots(name: str, what: str, is_angle: bool = False) -> str:
 
 def robot_fields(system: str) -> list[str]:
     """The names of what a file may tell of the robot of a system, in their order."""
-    return fields_of(type(SYSTEMS[system].robot))
+    return [*fields_of(type(SYSTEMS[system].robot)), "estimate"]
 
 
 def not_carried(system: str) -> tuple[str, ...]:
@@ -75,6 +75,92 @@ ODOMETRY = {  # what may tell the turn of each robot
     for system, told in SYSTEMS.items()
     if "odometry" in robot_fields(system)
 }
+
+
+class ScaleErrorKeys(PartKeys):
+    """A factor of what is measured, which the filter finds: its error is 0 where it is right."""
+
+    sigma: Spread = Field(description="Standard deviation at the start, as a share of it.")
+    drift: Spread = Field(
+        0.0, description="How it wanders: by so much per √s. 0: not at all.", examples=[0.001]
+    )
+
+
+class TurnErrorKeys(PartKeys):
+    """What is added to a turn rate, or to the yaw, which the filter finds."""
+
+    angles: ClassVar[frozenset[str]] = frozenset({"sigma", "drift"})
+
+    sigma: Turn = Field(
+        description="Standard deviation at the start, degrees per second; of the yaw degrees."
+    )
+    drift: Turn = Field(
+        0.0, description="How it wanders: by so much per √s. 0: not at all.", examples=[0.001]
+    )
+
+
+class AccelerationErrorKeys(PartKeys):
+    """What is added to an acceleration, which the filter finds."""
+
+    sigma: Spread = Field(description="Standard deviation at the start, m/s².")
+    drift: Spread = Field(
+        0.0, description="How it wanders: by so much per √s. 0: not at all.", examples=[0.001]
+    )
+
+
+class EstimateKeys(PartKeys):
+    """What the robot measures wrongly all the while, and its filter finds out: each makes the state
+    one entry longer. Of a scale it is the error: 0.02 where 2 % too much is measured.
+    """
+
+    gyro_bias: TurnErrorKeys | None = Field(
+        None,
+        alias="gyroBias",
+        description="Added to the turn rate: mower, landmarks, ranges.",
+        examples=[{"sigma": 0.5}],
+    )
+    wheel_scale: ScaleErrorKeys | None = Field(
+        None,
+        alias="wheelScale",
+        description="Of all of the way or speed: mower, pioneer, gnss, landmarks, ranges.",
+        examples=[{"sigma": 0.05}],
+    )
+    left_scale: ScaleErrorKeys | None = Field(
+        None,
+        alias="leftScale",
+        description="Of the left wheel: mower, pioneer, gnss.",
+        examples=[{"sigma": 0.05}],
+    )
+    right_scale: ScaleErrorKeys | None = Field(
+        None,
+        alias="rightScale",
+        description="Of the right wheel: mower, pioneer, gnss.",
+        examples=[{"sigma": 0.05}],
+    )
+    turn_scale: ScaleErrorKeys | None = Field(
+        None,
+        alias="turnScale",
+        description="Of the turn or turn rate: landmarks, ranges.",
+        examples=[{"sigma": 0.05}],
+    )
+    forward_bias: AccelerationErrorKeys | None = Field(
+        None,
+        alias="forwardBias",
+        description="Added to the forward acceleration: pylon.",
+        examples=[{"sigma": 0.1}],
+    )
+    lateral_bias: AccelerationErrorKeys | None = Field(
+        None,
+        alias="lateralBias",
+        description="Added to the sideward acceleration: pylon.",
+        examples=[{"sigma": 0.1}],
+    )
+    yaw_bias: TurnErrorKeys | None = Field(
+        None,
+        alias="yawBias",
+        description="Added to the yaw: pylon.",
+        examples=[{"sigma": 2}],
+    )
 
 
 class ToldRobotKeys(PartKeys):
@@ -199,6 +285,13 @@ class ToldRobotKeys(PartKeys):
         None,
         alias="headingDensity",
         description=of_robots("heading_density", "Noise of the heading, degrees per √s.", True),
+    )
+
+    estimate: EstimateKeys | None = Field(
+        None,
+        description="What the filter is to find out of the robot beside its pose. It is the "
+        "filter's alone: in the truth it changes nothing.",
+        examples=[{"gyroBias": {"sigma": 0.5}}],
     )
 
 

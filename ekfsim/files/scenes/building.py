@@ -88,13 +88,27 @@ def robot_of(keys: WorldKeys) -> Robot | None:
 def told_robot_of(keys: WorldKeys, belief: BeliefKeys) -> Robot | None:
     """The robot as the filter is told, None where that is as it is."""
     robot = robot_of(keys)
-    return None if robot is None or belief.robot is None else changed(robot, belief.robot)
+    if robot is None:
+        return None
+    told = robot if belief.robot is None else changed(robot, belief.robot)
+    estimates = {
+        name: one
+        for robot_keys in (keys.robot, belief.robot)
+        if robot_keys is not None and robot_keys.estimate is not None
+        for name, one in robot_keys.estimate.given().items()
+    }
+    if estimates:
+        from ekfsim.systems.estimating import Estimate, Estimating
+
+        return Estimating(told, tuple((name, Estimate(**one)) for name, one in estimates.items()))
+    return None if belief.robot is None else told
 
 
 def changed(part: P, keys: PartKeys) -> P:
     """The same robot or instrument with other numbers."""
     anew: Callable[..., P] = replace
     given = keys.given()
+    given.pop("estimate", None)  # what the filter finds out is no number of the robot
     if "mount" in given:
         assert isinstance(part, Carried)
         given["mount"] = part.mount._replace(**given["mount"])

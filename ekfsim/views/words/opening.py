@@ -12,6 +12,8 @@ from ekfsim.filters.tuning import reads
 from ekfsim.models.sensors.mounted import Mount
 from ekfsim.provenance import told_in_a_line
 from ekfsim.scene import Scene
+from ekfsim.systems.estimating import STATES, Estimating
+from ekfsim.systems.robot import Robot
 from ekfsim.views.words.numbers import number, pose
 from ekfsim.world import Noise
 
@@ -66,7 +68,9 @@ def _numbers(scene: Scene) -> Iterator[str]:
         yield from _both("The noise ratios", world.noise, world.told.noise, simulated)
     else:
         yield "The numbers of robot and sensors are in m, s, rad and V"
-        yield from _both(f"The robot ({world.system})", world.robot, world.told_robot, simulated)
+        told_robot, found = told_apart(world.told_robot)
+        yield from _both(f"The robot ({world.system})", world.robot, told_robot, simulated)
+        yield from found
         for true, told in zip(world.instruments, world.told_instruments, strict=True):
             yield from _both(f"Sensor {true.called}", true, told, simulated)
     if simulated:
@@ -77,6 +81,14 @@ def _numbers(scene: Scene) -> Iterator[str]:
                 f"{pose(world.start_sigma.tolist())}"
             )
         yield f"The robot starts at (x, y, th) = {pose(world.start.tolist())}{about}"
+
+
+def told_apart(robot: Robot | None) -> tuple[Robot | None, list[str]]:
+    """The robot's own numbers, and what the filter is to find out beside its pose."""
+    if not isinstance(robot, Estimating):
+        return robot, []
+    found = ", ".join(f"{STATES[name]} ({_listed(one._asdict())})" for name, one in robot.estimates)
+    return robot.robot, [f"The filter is to find as well: {found}"]
 
 
 def _both(what: str, true: Any, told: Any, known: bool) -> Iterator[str]:

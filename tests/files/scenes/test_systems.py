@@ -264,12 +264,20 @@ def test_the_schema_says_which_keys_go_together():
     )
     assert pylon["then"]["properties"] == {
         "noise": False,
-        "robot": {"propertyNames": {"enum": ["rate", "forwardSigma", "lateralSigma", "yawSigma"]}},
+        "robot": {
+            "propertyNames": {
+                "enum": ["rate", "forwardSigma", "lateralSigma", "yawSigma", "estimate"]
+            }
+        },
         "faults": {"propertyNames": {"enum": ["forwardBias", "lateralBias", "yawBias", "sensors"]}},
         "belief": {
             "properties": {
                 "noise": False,
-                "robot": {"propertyNames": {"enum": ["forwardSigma", "lateralSigma", "yawSigma"]}},
+                "robot": {
+                    "propertyNames": {
+                        "enum": ["forwardSigma", "lateralSigma", "yawSigma", "estimate"]
+                    }
+                },
             }
         },
         "sensors": {"items": {"properties": {"ultrasonic": False, "infrared": False}}},
@@ -353,7 +361,8 @@ ROOMS = {
         MOWER + "robot: {halfTrack: 0.2, wdth: 3}\n",
         [
             "5:20: robot.halfTrack: the robot of the system 'mower' has no key 'halfTrack'; it "
-            "has: rate, width, wheelSigma, positionSigma, headingSigma, gyroSigma, odometry",
+            "has: rate, width, wheelSigma, positionSigma, headingSigma, gyroSigma, odometry, "
+            "estimate",
             "5:25: robot: unknown key 'wdth'; did you mean 'width'?",
         ],
     ),
@@ -380,10 +389,10 @@ ROOMS = {
             "5:18: belief.robot: unknown key 'rate'; known keys here: width, wheelSigma, "
             "positionSigma, headingSigma, gyroSigma, wheelRatio, wheelFloor, odometry, skid, "
             "skidSigma, halfTrack, speedDensity, turnDensity, forwardSigma, lateralSigma, "
-            "yawSigma, distanceDensity, headingDensity",
+            "yawSigma, distanceDensity, headingDensity, estimate",
             "5:38: belief.robot.halfTrack: the robot of the system 'mower' has no key "
             "'halfTrack'; it has: width, wheelSigma, positionSigma, headingSigma, gyroSigma, "
-            "odometry",
+            "odometry, estimate",
             "5:51: belief.robot.odometry: the robot of the system 'mower' has no odometry "
             "'arctan'; write gyro or midpoint",
             "5:73: belief.robot.headingSigma: -1 is negative; write a number of 0 or more",

@@ -14,6 +14,7 @@ from ekfsim.files.keys.fields import aliases, keys_of_kind
 from ekfsim.files.keys.sensors import SensorKeys
 from ekfsim.files.keys.system import (
     ODOMETRY,
+    EstimateKeys,
     RobotKeys,
     ToldRobotKeys,
     not_carried,
@@ -24,6 +25,7 @@ from ekfsim.files.scenes.checking.checks import Sound, check_items
 from ekfsim.files.yaml.marked import Path
 from ekfsim.files.yaml.telling import nearest, one_of, quoted
 from ekfsim.systems import SYSTEMS
+from ekfsim.systems.estimating import estimable
 from ekfsim.systems.instrument import Instrument
 from ekfsim.systems.instruments import (
     Bearings,
@@ -76,6 +78,13 @@ def check_robot(file: Sound, system: str, path: Path) -> Iterator[Mistake]:
         if key in names.values() and key not in known:
             wrong = f"the robot of the system '{system}' has no key '{key}'"
             yield file.mistake((*path, key), wrong, f"it has: {', '.join(known)}")
+    told, may = file.root.at((*path, "estimate")), estimable(SYSTEMS[system].robot)
+    errors = {key: name for name, key in aliases(EstimateKeys).items()}
+    for key in told.keys if told else ():
+        if key in errors and errors[key] not in may:
+            wrong = f"the robot of the system '{system}' has no such error"
+            right = f"it may have: {', '.join(aliases(EstimateKeys)[name] for name in may)}"
+            yield file.mistake((*path, "estimate", key), wrong, right)
     odometry = file.value(*path, "odometry")
     if odometry is not None and "odometry" in known and odometry not in ODOMETRY[system]:
         wrong = f"the robot of the system '{system}' has no odometry '{odometry}'"
