@@ -40,7 +40,6 @@ def chords(poses):
 
 MOTIONS = {
     "v,omega": lambda d, T: [d / 0.25, T / 0.25],
-    "left,right": lambda d, T: [(d - 0.27 * T) / 0.25, (d + 0.27 * T) / 0.25],
     "distance,turn": lambda d, T: [d, T],
 }
 
@@ -56,8 +55,6 @@ def motion_of(columns, poses):
 @pytest.mark.parametrize("system", ["landmarks", "ranges"])
 def test_whatever_tells_a_motion_it_moves_any_robot_alike(columns, system, tmp_path):
     """A circle by the closed form, told in each way, comes out as the circle."""
-    if columns == "left,right":
-        pytest.skip("the width of these robots is not known")
     poses = arc()
     truth = table("t,x,y,theta", poses.tolist())
     files = {"motion.csv": motion_of(columns, poses), "readings.csv": perfect(poses)}

@@ -61,7 +61,7 @@ def inputs_of(held: Held, robot: Robot, motion: Motion, width: float | None) -> 
         wrong = f"this world's robot cannot be told {','.join(COLUMNS[form])}"
         wanted = DRIVEN if form == "inertial" else INERTIAL
         raise UsageError(f"{wrong}; it takes {wanted}, or name a world of another system")
-    if form == "wheels" and first == OWN[form]:
+    if form == "wheels" and first == OWN[form] and width in (None, _between_wheels(robot)):
         if (u := _of_wheels(held, motion)) is not None:
             return u
     elif first == OWN.get(form):

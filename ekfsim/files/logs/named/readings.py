@@ -1,7 +1,8 @@
 """What was measured, a row a reading → readings of the world's sensors."""
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +14,10 @@ from ekfsim.files.logs.ordering import in_order, tell_gaps
 from ekfsim.files.logs.table import Rows, is_number
 from ekfsim.files.logs.timeline import Sample
 from ekfsim.geometry import Array, Booleans
+from ekfsim.models.protocols import Sensor
+from ekfsim.models.sensors.infrared import InfraredBeam
+from ekfsim.models.sensors.mounted import Mounted
+from ekfsim.models.sensors.ultrasonic import UltrasonicBeam
 from ekfsim.records import Reading
 from ekfsim.systems.document import DocumentReading
 from ekfsim.systems.instrument import Instrument, Landmark, Target
@@ -43,6 +48,14 @@ class Fitting:
     def is_beam(self) -> bool:
         """Whether it looks for the first wall: no echo is then a reading, too."""
         return self.only is None and all(one.place is None for one in self.targets.values())
+
+    def beam(self, bearing: float) -> Target | None:
+        """A beam in this direction; None where it is none. bearing : rad from straight ahead"""
+        if math.isnan(bearing):
+            return None
+        some = next(iter(self.targets.values()))
+        name = f"{self.instrument.called} at {math.degrees(bearing):.6g}°"
+        return some._replace(name=name, sensor=turned_to(some.sensor, bearing))
 
     def z(self, numbers: Array) -> Array:
         """A reading as the filter is given it: a radio's range without its scale and bias."""
@@ -89,6 +102,14 @@ def samples_of(
     return samples
 
 
+def turned_to(sensor: Sensor, bearing: float) -> Sensor:
+    """A beam that points in another direction, wherever it is mounted. bearing : rad"""
+    if isinstance(sensor, Mounted):
+        return replace(sensor, sensor=turned_to(sensor.sensor, bearing))
+    assert isinstance(sensor, UltrasonicBeam | InfraredBeam)
+    return replace(sensor, bearing=bearing)
+
+
 def _fit(table: Table, keys: ReadingsKeys, fittings: Sequence[Fitting]) -> list[Fitting]:
     """The instruments whose columns a table has. Raises InputError where there is none."""
     known = [one for one in fittings if keys.sensor is None or keys.sensor in one.names]
@@ -109,7 +130,8 @@ def _of_one(
     warnings = asked.warnings
     ranges = frozenset(one.columns) & {"range"} if not one.is_beam else frozenset[str]()
     sigmas = columns_of_sigmas(table, one.columns)
-    names = ["t", *one.columns, *sigmas]
+    by_bearing = one.is_beam and table.has("bearing") and not table.has("target")
+    names = ["t", *one.columns, *(["bearing"] if by_bearing else []), *sigmas]
     rows = table.rows(names, asked, motion, frozenset(names[1:]), ranges)
     rows = in_order(_of_sensor(table, one, rows), warnings)
     values = rows.values[:, 1 : 1 + len(one.columns)]
@@ -118,7 +140,11 @@ def _of_one(
         rows, values = rows[~unread], values[~unread]
     rows, values = _fresh(rows, values, keys.held, one, warnings)
     tell_gaps(rows, warnings)
-    targets, unknown = _targets(table, one, rows), list[int]()
+    if by_bearing:
+        targets = [one.beam(bearing) for bearing in rows.values[:, 1 + len(one.columns)].tolist()]
+    else:
+        targets = _targets(table, one, rows)
+    unknown = list[int]()
     σ = sigmas_of(one.columns, sigmas, rows, warnings)
     samples = list[Sample]()
     for row, (t, target) in enumerate(zip(rows.t.tolist(), targets, strict=True)):

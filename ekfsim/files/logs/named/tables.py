@@ -44,6 +44,7 @@ ANGLES = {
 }
 LARGEST = {"t": 1e12, "x": 1e8, "y": 1e8}  # beyond which a number cannot be meant
 SQUARED = "variance"  # how the names of columns begin whose unit is a square
+NOTHING = ("", "inf", "+inf", "-inf")  # is no number, and no mistake where a field may be empty
 MANY = 8  # kinds of rows that are listed
 
 
@@ -168,6 +169,23 @@ class Table:
             for line in rows.lines.tolist()
         ]
 
+    def all_words(self, name: str) -> list[str]:
+        """What stands in a column of words, in every line."""
+        place = self.places[self.known_as(name) or ""]
+        rows = (text.split(self.separator) for text in self.lines.texts)
+        return [row[place].strip() for row in rows if place < len(row)]
+
+    def holds(self, columns: Iterable[str], name: str, word: str) -> bool:
+        """Whether anything stands in all of some columns, in a line with this word in another."""
+        places = [self.places[self.known_as(column) or ""] for column in columns]
+        words = self.all_words(name)
+        rows = (text.split(self.separator) for text in self.lines.texts)
+        return any(
+            word == own and all(row[place].strip() not in ("", "nan") for place in places)
+            for own, row in zip(words, rows, strict=False)
+            if len(row) == self.width
+        )
+
     def lacks(self, what: str, right: str = "") -> InputError:
         """The mistake that a column is not there."""
         found = f"found {', '.join(map(quoted, self.places))}"
@@ -198,7 +216,7 @@ class Table:
         return UNITS[unit] if isinstance(unit, str) else unit
 
     def _filled(self, places: list[int]) -> Lines:
-        """The lines with nan where nothing stands in a column that may be empty."""
+        """The lines with nan where nothing stands that could be read, or inf: no echo."""
         mark = self.separator
         if not places or mark is None:
             return self.lines
@@ -206,7 +224,7 @@ class Table:
         for text in self.lines.texts:
             fields = text.split(mark)
             for place in places:
-                if place < len(fields) and not fields[place].strip():
+                if place < len(fields) and fields[place].strip().lower() in NOTHING:
                     fields[place] = "nan"
             texts.append(mark.join(fields))
         return replace(self.lines, texts=texts)
@@ -242,6 +260,7 @@ def opened(source: Source, wanted: str) -> Table:
     body = lines
     if head == fields:
         body = replace(lines[1:], ended=lines.ended or len(lines) == 1)
+    body = _ended(body, separator, len(fields))
     at = Place(lines.file, lines.numbers[0], 1)
     columns, shared = source.columns(), source.shared()
     if head is None and not columns and not shared:
@@ -259,6 +278,19 @@ def opened(source: Source, wanted: str) -> Table:
     places = {**places, **there, **{name: places[name] for name in columns}}
     units = {**units, **_stated(places, head or []), **source.units()}
     return Table(body, separator, len(fields), places, units, frozenset(there))
+
+
+def _ended(lines: Lines, separator: str | None, width: int) -> Lines:
+    """The lines with nan for a last field that is empty, and is no separator that ends the line."""
+    if separator is None:
+        return lines
+
+    def ended(text: str) -> str:
+        bare = text.rstrip()
+        is_empty = bare.endswith(separator) and bare.count(separator) == width - 1
+        return f"{bare}nan" if is_empty else text
+
+    return replace(lines, texts=[ended(text) for text in lines.texts])
 
 
 def _stated(places: Mapping[str, int], head: list[str]) -> dict[str, str | float]:
