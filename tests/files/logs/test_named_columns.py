@@ -115,7 +115,9 @@ def test_rows_of_several_sensors_stand_in_one_table(tmp_path):
         f"1.5,gnss,,,,{sixth[1]!r},{sixth[2]!r},0,0\n"
     )
     rows = np.column_stack([poses[:, 0], np.vstack([0 * poses[:1, :2], chords(poses)])])
-    laid(tmp_path, table("t,distance,turn", rows.tolist()), readings, marks)
+    truth = table("t,x,y,theta", poses.tolist())
+    motion = table("t,distance,turn", rows.tolist())
+    laid(tmp_path, motion, readings, marks, **{"truth.csv": truth})
     place = HEAD.format("ranges") + "sensors: [rangeBearing: {}, gnss: {sigma: 0.7}]\n"
     scene = scene_of(tmp_path, place, RECORDING)
     lamp, fix, unknown = readings_of(scene)
