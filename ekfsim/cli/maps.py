@@ -80,10 +80,10 @@ def world(
 ) -> None:  # fmt: skip
     """Make a world file of a plan that another program wrote, and draw both over each other.
 
-    FROM is a ROS map (its map.yaml, whose picture is read with it), a world of ir-sim, GeoJSON or
-    WKT. Walls of pixels become straight within the tolerance; of a drawing, polygons become
-    obstacles, lines walls, and points with an id landmarks. All that was assumed and left out is
-    told, and stands in the head of the world file.
+    FROM is a ROS map (its map.yaml, whose picture is read with it), a world of ir-sim, GeoJSON,
+    WKT, DXF or SVG. Walls of pixels become straight within the tolerance; of a drawing, polygons
+    become obstacles, lines walls, and points with an id landmarks. All that was assumed and left
+    out is told, and stands in the head of the world file.
     """
     from ekfsim.files.maps.making import make
     from ekfsim.files.maps.plan import Asked

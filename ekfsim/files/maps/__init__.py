@@ -3,9 +3,7 @@
 plan.py      what every reader makes of a plan, and what it is asked
 reading.py   which plan a file holds, and its reader
 formats/     the readers, a file for each kind of plan
-drawing.py   what a reader of drawings finds, shape after shape
-units.py     what one of a drawing's coordinates is
-earth.py     longitude and latitude as metres
+drawn/       what is drawn in lines, outlines and circles
 json_text.py JSON, and places in it
 standing.py  where a robot can start among its walls
 holes.py     outlines with holes → outlines without

@@ -38,6 +38,9 @@ def make(path: Path, shown: str, asked: Asked, name: str | None) -> Made:
     plan, what = read_plan(path, shown, asked)
     plan = plan if name is None else replace(plan, name=name)
     told = [f"{shown}: {line}" for line in plan.told]
+    shapes = plan.outlines, plan.lines, plan.circles, plan.landmarks
+    if plan.boundary is None and not any(shapes):
+        raise UsageError(*told, f"{shown}: it holds nothing that a world can hold")
     start = asked.start or plan.start
     if start is None:
         if (chosen := roomiest(plan)) is None:

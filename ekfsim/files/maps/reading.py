@@ -39,6 +39,8 @@ FORMATS = (
     Format("a ROS map", "ekfsim.files.maps.signs:is_ros_map", "ekfsim.files.maps.formats.ros:read"),
     Format("an ir-sim world", f"{SIGNS}:is_irsim", "ekfsim.files.maps.formats.irsim:read"),
     Format("GeoJSON", f"{SIGNS}:is_geojson", "ekfsim.files.maps.formats.geojson:read"),
+    Format("DXF", f"{SIGNS}:is_dxf", "ekfsim.files.maps.formats.dxf:read"),
+    Format("SVG", f"{SIGNS}:is_svg", "ekfsim.files.maps.formats.svg:read"),
     Format("WKT", f"{SIGNS}:is_wkt", "ekfsim.files.maps.formats.wkt:read"),
 )
 TREES = (".yaml", ".yml")

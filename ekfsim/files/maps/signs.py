@@ -47,3 +47,15 @@ def is_wkt(head: "Head") -> bool:
     """A text that begins with the name of a geometry."""
     named = head.path.suffix.lower() == ".wkt"
     return named or (head.root is None and WKT.match(head.raw[:4096]) is not None)
+
+
+def is_dxf(head: "Head") -> bool:
+    """A file whose name says so."""
+    return head.path.suffix.lower() == ".dxf"
+
+
+def is_svg(head: "Head") -> bool:
+    """A file whose name or whose first lines say so."""
+    if head.path.suffix.lower() == ".svg":
+        return True
+    return head.root is None and head.raw.lstrip()[:1] == b"<" and b"<svg" in head.raw[:4096]

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from ekfsim.errors import InputError, Mistake
-from ekfsim.files.maps.drawing import Drawing
+from ekfsim.files.maps.drawn.drawing import Drawing
+from ekfsim.files.maps.drawn.units import places
 from ekfsim.files.maps.json_text import place_of
 from ekfsim.files.maps.plan import Asked, Plan
 from ekfsim.files.maps.reading import Head
-from ekfsim.files.maps.units import places
 from ekfsim.files.yaml.marked import Path as Route
 from ekfsim.files.yaml.marked import field_of
 from ekfsim.geometry import Array

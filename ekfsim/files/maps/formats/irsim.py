@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ekfsim.errors import InputError, Mistake, Place
-from ekfsim.files.maps.drawing import Drawing
+from ekfsim.files.maps.drawn.drawing import Drawing
 from ekfsim.files.maps.pixels.cells import Reading
 from ekfsim.files.maps.plan import Asked, Plan, Start
 from ekfsim.files.maps.reading import Head

@@ -8,10 +8,10 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from ekfsim.errors import InputError, Mistake, Place, UsageError
-from ekfsim.files.maps.drawing import Drawing
+from ekfsim.files.maps.drawn.drawing import Drawing
+from ekfsim.files.maps.drawn.units import TINY, places
 from ekfsim.files.maps.plan import Asked, Plan, Units
 from ekfsim.files.maps.reading import Head
-from ekfsim.files.maps.units import TINY, places
 from ekfsim.files.source import mistake
 from ekfsim.geometry import Array
 from ekfsim.printable import quoted

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ekfsim.errors import UsageError
-from ekfsim.files.maps.earth import FAR, to_metres
+from ekfsim.files.maps.drawn.earth import FAR, to_metres
 from ekfsim.files.maps.plan import METRES, Units
 from ekfsim.geometry import Array
 
