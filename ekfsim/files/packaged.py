@@ -115,6 +115,12 @@ def world_of(path: Path) -> Path:
     return world_beside(path, named)
 
 
+def is_packaged(path: str | Path) -> bool:
+    """Whether a file is one of those that come along."""
+    here = Path(os.path.realpath(path)).parent
+    return any(here == folder(kind).resolve() for kind in ("worlds", "commands"))
+
+
 def source_name(path: str | Path) -> str:
     """How outputs name a file, in a line:
     a packaged one alike on every machine, any other as it was given.

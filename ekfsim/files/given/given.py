@@ -8,7 +8,7 @@ from typing import Self
 
 from ekfsim.errors import Mistake
 from ekfsim.files.given.tree import tree_of
-from ekfsim.files.packaged import source_name
+from ekfsim.files.packaged import is_packaged, source_name
 from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.source import as_written, readable
 from ekfsim.files.yaml.marked import Node
@@ -73,3 +73,9 @@ def called(world: World) -> str:
     """How outputs name a world that was handed over: by its file, else by its own name."""
     given = world.given
     return source_name(given.shown if isinstance(given, Given) and given.is_file else world.name)
+
+
+def is_own(world: World) -> bool:
+    """Whether somebody wrote it, and it does not come along with the program."""
+    given = world.given
+    return not (isinstance(given, Given) and given.is_file and is_packaged(given.shown))

@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ekfsim.errors import UsageError
+from ekfsim.files.given.given import is_own
 from ekfsim.files.logs.recorded import Recorded
-from ekfsim.files.logs.start.belief import assumed, at_fix, at_truth
+from ekfsim.files.logs.start.belief import assumed, at_fix, at_truth, bears_out
 from ekfsim.files.logs.start.course import is_fix
 from ekfsim.files.logs.start.instant import first_known, refuse_apart, span, tell_unknown
 from ekfsim.files.logs.truth import Truth
@@ -39,6 +40,11 @@ class Motions:
             return Control(self.motion, self.u[k])
         share = (end - begin) / (self.end[k] - self.begin[k])
         return Control(self.motion, np.where(self.amounts, self.u[k] * share, self.u[k]))
+
+    def until(self, t: float) -> list[Control]:
+        """What is held up to an instant."""
+        begin, end = self.begin.tolist(), self.end.tolist()
+        return [self.part(k, begin[k], min(end[k], t)) for k in range(len(end)) if begin[k] < t]
 
     def since(self, t: float) -> "Motions":
         """What is left of them from an instant on."""
@@ -83,29 +89,48 @@ class Timeline:
             if not all(world.told.start_said):
                 known = first_known(truth, start, ends, self.name, warnings)
                 truth, start = (None, start) if known is None else (truth, known)
-        samples, fix = self.samples, None
-        if truth is None and not all(world.told.start_said[:2]):
-            samples, fix = self._first_fix()
-            start = start if fix is None else fix.t
-        motions = self.motions.since(start)
         if truth is not None:
             tell_unknown(truth, start, ends, self.name, warnings)
+        elif (begun := self._at_fix(world, reading, warnings)) is not None:
+            return Recorded(begun, self.landmarks, warnings)
+        entries = self._entries(self.samples, start, truth, warnings)
+        pose = entries[0].truth
+        first = (
+            assumed(world, reading, self.name, warnings)
+            if pose is None
+            else at_truth(world, reading, pose)
+        )
+        return Recorded(Log(entries, first, pose is not None), self.landmarks, warnings)
+
+    def _at_fix(self, world: World, reading: DocumentReading, warnings: list[str]) -> Log | None:
+        """The log from its first fix on; None where there is none, where somebody told the start,
+        or where the fixes bear out the start of a world of one's own.
+        """
+        samples, fix = self._first_fix()
+        if fix is None or all(world.told.start_said[:2]):
+            return None
+        found = list[str]()
+        entries = self._entries(samples, fix.t, None, found)
+        first = at_fix(world, reading, fix.reading, entries, self.name, found)
+        if is_own(world) and bears_out(world, reading, first, self.motions.until(fix.t)):
+            return None
+        warnings += found
+        return Log(entries, first, start_known=False)
+
+    def _entries(
+        self, samples: Sequence[Sample], start: float, truth: Truth | None, warnings: list[str]
+    ) -> tuple[Entry, ...]:
+        """What happened from an instant on."""
+        motions = self.motions.since(start)
         happened = [
             (start, None, True),
             *_merged(motions, self._within(samples, start, motions, warnings), self.between),
         ]
         truths = _truths(truth, np.array([t for t, _, _ in happened]))
-        entries = tuple(
+        return tuple(
             Entry(index, given, truth, t=t, judged=judged)
             for index, ((t, given, judged), truth) in enumerate(zip(happened, truths, strict=True))
         )
-        if (pose := truths[0]) is not None:
-            first = at_truth(world, reading, pose)
-        elif fix is not None:
-            first = at_fix(world, reading, fix.reading, entries, self.name, warnings)
-        else:
-            first = assumed(world, reading, self.name, warnings)
-        return Recorded(Log(entries, first, pose is not None), self.landmarks, warnings)
 
     def _first_fix(self) -> tuple[Sequence[Sample], Sample | None]:
         """The readings but for the first that tells the position, and that one, where there is one

@@ -10,6 +10,8 @@ from log_worlds import lay, read, shared, steps_of, table, world
 from ekfsim.files.keys.recording import RecordingKeys
 from ekfsim.files.logs import read_log, write_log
 from ekfsim.files.logs.start.course import ALL_ROUND, APART, FILTERS, course_of
+from ekfsim.files.packaged import resolve
+from ekfsim.files.scenes.load import read_scene
 from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Gaussian, posed
 from ekfsim.geometry.angles import wrap
@@ -156,6 +158,30 @@ def test_the_first_fix_is_the_start_and_not_read_again(tmp_path):
     assert told.endswith(
         "; say otherwise with --set start.x=… (y, theta) and --set belief.sigma.x=… (y, theta)"
     )
+
+
+@pytest.mark.parametrize(
+    ("start", "begins"),
+    [
+        ("{x: 7, y: 3, theta: 0}", (0.0, [7, 3, 0])),  # where the fixes come from
+        ("{x: 0, y: 3, theta: 0}", (0.5, [7.5, 3, 0])),
+        ("{x: 7, y: 3, theta: 170}", (0.5, [7.5, 3, 0])),
+    ],
+)
+def test_the_start_of_a_world_of_one_s_own_counts_if_the_fixes_bear_it_out(tmp_path, start, begins):
+    place = tmp_path / "place.yaml"
+    place.write_text(f"name: place\nsystem: gnss\nstart: {start}\n")
+    wheels = [[k / 10, 1.0, 1.0] for k in range(51)]
+    fixes = [[0.5 * k, 7.0 + k / 2, 3.0] for k in range(1, 10)]
+    folder = lay(tmp_path / "log", **{"wheelspeeds.csv": table("t,vl,vr", wheels),
+                                      "gnss.csv": table("t,x,y", fixes)})  # fmt: skip
+    found = read_scene(resolve("gnss_log", "commands"), place, folder)
+    ours, (t, pose) = found.get(), begins
+    assert ours.log.entries[0].t == t
+    mean = ours.world.layout.pose(ours.log.first.mean)
+    np.testing.assert_allclose(mean, pose, atol=0.2 if t == 0.5 else 0)
+    told = " ".join(found.warnings)
+    assert (f"not at the start of {place}, which the fixes do not bear out" in told) == (t == 0.5)
 
 
 def test_an_antenna_ahead_of_the_robot_is_not_where_the_robot_is(tmp_path):

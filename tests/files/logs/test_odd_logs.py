@@ -51,7 +51,7 @@ def given(found, kind):
 
 
 def where_it_begins(found):
-    return [told for told in found.warnings if told.startswith("log: starts at ")]
+    return [told for told in found.warnings if told.startswith("log: no truth tells where")]
 
 
 LOG = Path("log")

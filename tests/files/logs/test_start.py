@@ -191,6 +191,16 @@ def test_a_log_begins_where_its_truth_is_first_known(tmp_path, format):
         np.testing.assert_allclose(mean, [judged[0], 0, 0], atol=1e-9)
 
 
+def test_gaps_within_the_truth_are_told(tmp_path):
+    truth = poses("mrclam", straight((0, 1), (2.5, 3), (4.5, 5)))
+    ours, warnings = scene("mrclam", lay(tmp_path / "log", **MRCLAM, **truth))
+    told = "the truth is unknown over 2 gaps, 3 s in all: no errors are counted there"
+    assert f"{tmp_path}/log: {told}" in warnings
+    known = [e.t for e in ours.log.entries if e.truth is not None]
+    assert not [t for t in known if 1 < t < 2.5 or 3 < t < 4.5]
+    assert {1.0, 2.5, 3.0, 4.5} <= set(known)
+
+
 def test_a_start_that_is_told_is_the_log_s_own(tmp_path):
     folder = lay(tmp_path / "log", **MRCLAM, **poses("mrclam", straight((2, 5))))
     ours, warnings = scene("mrclam", folder, "start.x=1", "start.y=0", "start.theta=45")

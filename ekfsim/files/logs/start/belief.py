@@ -7,10 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ekfsim.files.given.given import called, is_own
 from ekfsim.files.logs.start import words
 from ekfsim.files.logs.start.course import ALL_ROUND, APART, UNSURE, course_of
 from ekfsim.filters.belief import Gaussian
+from ekfsim.filters.ekf import EKF
 from ekfsim.geometry import Array
+from ekfsim.geometry.angles import wrap
 from ekfsim.records import Control, Entry, Reading
 from ekfsim.systems.document import DocumentReading
 from ekfsim.world import World
@@ -18,6 +21,8 @@ from ekfsim.world import World
 ANY = math.pi / math.sqrt(3)  # rad, the standard deviation of a heading of which nothing is known
 # as unsure as this times a course that was found is a filter that is to read the same fixes again
 WIDER = 1.5
+# standard deviations by which x, y, θ of a start may differ from what is found; θ is told wider
+POSSIBLE = np.array([3.0, 3.0, 3.0 / WIDER])
 
 
 def at_truth(world: World, reading: DocumentReading, pose: Array) -> Gaussian:
@@ -60,8 +65,26 @@ def at_fix(
     first = _around(world, reading, fix, np.array(heading), sigma)
     at = entries[0].t
     assert at is not None
+    if is_own(world) and not any(world.told.start_said):
+        told += f", not at the start of {called(world)}, which the fixes do not bear out"
     warnings.append(f"{name}: {words.at_fix(world, first, at, told)}{words.otherwise(world)}")
     return first
+
+
+def bears_out(
+    world: World, reading: DocumentReading, first: Gaussian, before: Sequence[Control]
+) -> bool:
+    """Whether a belief that was found at a fix leaves the world's own start possible, after the
+    motion inputs before that fix.
+    """
+    layout, ekf = world.layout, EKF(headings=world.layout.headings)
+    own = Gaussian(layout.state(world.told.start), world.first_covariance(reading))
+    for given in before:
+        own, _ = ekf.predict(own, given.motion, given.u)
+    off = layout.pose(first.mean) - layout.pose(own.mean)
+    off[2] = wrap(off[2])
+    P = layout.pose_covariance(own.covariance) + layout.pose_covariance(first.covariance)
+    return bool(np.all(np.abs(off) <= POSSIBLE * np.sqrt(np.diag(P))))
 
 
 def _tells_heading(entries: Sequence[Entry], world: World) -> bool:

@@ -41,6 +41,11 @@ def tell_unknown(truth: Truth, start: float, ends: Array, name: str, warnings: l
     if (before := float(truth.t[0]) - start) > 0:
         told = f"the truth begins {before:.3g} s after the motion: errors are counted from then on"
         warnings.append(f"{name}: {told}")
+    gaps = np.diff(truth.t)[(truth.t[1:] > start) & (truth.t[:-1] < ends[-1])]
+    if len(gaps := gaps[gaps > truth.longest]):
+        which = "a gap" if len(gaps) == 1 else f"{len(gaps)} gaps"
+        told = f"the truth is unknown over {which}, {gaps.sum():.3g} s in all"
+        warnings.append(f"{name}: {told}: no errors are counted there")
     if (after := float(ends[-1] - truth.t[-1])) > truth.longest:
         told = f"the truth ends {after:.3g} s before the motion: errors are counted until then"
         warnings.append(f"{name}: {told}")
