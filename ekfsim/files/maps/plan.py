@@ -76,3 +76,4 @@ class Plan:
     start: Start | None = None  # where the plan itself says it
     told: tuple[str, ...] = field(default=())
     scan: Scan | None = None
+    indoors: Array | None = None  # (n, 2) m, where a robot is to be put where no boundary tells

@@ -19,8 +19,8 @@ def roomiest(plan: Plan) -> tuple[Start, float] | None:
         *(shapely.LineString(one.points).buffer(HAIR) for one in plan.lines),
         *(shapely.Point(one.x, one.y).buffer(one.radius) for one in plan.circles),
     ]
-    if plan.boundary is not None:
-        room = shapely.Polygon(plan.boundary)
+    if (around := plan.boundary if plan.indoors is None else plan.indoors) is not None:
+        room = shapely.Polygon(around)
     else:
         room = shapely.box(*shapely.union_all(taken).bounds) if taken else shapely.box(0, 0, 2, 2)
     free = room.difference(shapely.union_all(list(map(shapely.make_valid, taken))))
@@ -30,5 +30,6 @@ def roomiest(plan: Plan) -> tuple[Start, float] | None:
         shapely.MultiPolygon([part for part in shapely.get_parts(free) if part.area > 0]),
         tolerance=0.01 * math.sqrt(free.area),
     )
-    x, y = np.round(shapely.get_coordinates(radius)[0], 2).tolist()
+    digits = 1 - math.floor(math.log10(max(radius.length, 1e-9)))  # two of how much room there is
+    x, y = np.round(shapely.get_coordinates(radius)[0], digits).tolist()
     return (x, y, 0.0), float(free.boundary.distance(shapely.Point(x, y)))

@@ -37,20 +37,25 @@ def plan_of(
     lying = _Lying(resolution, origin)
     tolerance = CELLS if asked.tolerance is None else asked.tolerance / resolution
     if asked.unknown == "free":
+        seen = _room(without_corners(free), lying, asked, [], shown)
+        indoors = max(outlines(seen), key=_area)
         room, stepped = None, outlines(~without_corners(~occupied))
     else:
         free = without_corners(free | _slits(occupied, free, tolerance, told))
         room, *holes = sorted(
             outlines(_room(free, lying, asked, told, shown)), key=_area, reverse=True
         )
-        stepped = [hole[::-1] for hole in holes]
-    large = [ring for ring in stepped if np.ptp(ring, axis=0).max() > tolerance]
+        indoors, stepped = None, [hole[::-1] for hole in holes]
+    large = [ring for ring in stepped if np.ptp(ring, axis=0).max() >= tolerance]
     rings = large if room is None else [room, *large]
     straight = straightened(rings, tolerance)
     told += _straightened(rings, straight, len(stepped) - len(large), tolerance, resolution)
     boundary = None if room is None else lying.placed(straight.pop(0))
     things = _things(large, straight, lying)
-    return Plan(name, boundary, things, told=tuple(told), scan=lying.scan(grey))
+    return Plan(
+        name, boundary, things, told=tuple(told), scan=lying.scan(grey),
+        indoors=None if indoors is None else lying.placed(corners(indoors)),
+    )  # fmt: skip
 
 
 class _Lying:
@@ -156,7 +161,7 @@ def _straightened(
     ]
     if specks:
         things = "thing was" if specks == 1 else "things were"
-        lines.append(f"{specks} {things} left out, no larger than that")
+        lines.append(f"{specks} {things} left out, smaller than that")
     return lines
 
 
