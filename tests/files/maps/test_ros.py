@@ -161,3 +161,26 @@ def test_a_picture_that_cannot_be_read_is_told(tmp_path, raw, told):
     with pytest.raises(UsageError) as refused:
         make(text(tmp_path), "map.yaml", Asked(), None)
     assert str(refused.value) == f"{tmp_path / 'map.pgm'}: {told}"
+
+
+def test_where_unknown_is_free_the_robot_starts_in_the_room_that_was_seen(tmp_path):
+    """Most room is in the unknown beside it."""
+    pixels = np.full((60, 100), 205)
+    pixels[10:30, 10:40] = room(20, 30)
+    path = write(tmp_path, pixels)
+    made = make(path, str(path), Asked(unknown="free"), None)
+    assert shapely.box(0.55, 1.55, 1.95, 2.45).contains(shapely.Point(made.start[:2]))
+
+
+def test_a_map_as_small_as_a_toy_has_a_start_in_it(tmp_path):
+    path = write(tmp_path, room(20, 30), resolution=0.0001)
+    made = make(path, str(path), Asked(), None)
+    assert shapely.Polygon(made.plan.boundary).contains(shapely.Point(made.start[:2]))
+
+
+def test_every_map_of_random_cells_is_a_world(tmp_path):
+    """Whatever is drawn: outlines are simple, and stay within the tolerance."""
+    rng = np.random.default_rng(3)
+    for size, share, unknown in ((12, 0.2, "wall"), (25, 0.35, "wall"), (25, 0.3, "free")):
+        pixels = rng.choice([0, 205, 254], (size, size), p=[share / 2, share / 2, 1 - share])
+        make(write(tmp_path, pixels), "map.yaml", Asked(unknown=unknown), None)
