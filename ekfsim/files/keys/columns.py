@@ -30,6 +30,8 @@ COLUMNS = {  # what each column holds, and in which unit where nobody says anoth
     "azimuth": "rad",
     "elevation": "rad",
     "ahead": "how far ahead a lidar sees something, m",
+    "offset_east": "of a pylon, how far it stands to the east of the robot, m",
+    "offset_north": "and how far to the north, m",
     "intensity": "of an infrared pair, V",
     "sigma": "standard deviation of this reading, in its own unit; wins over the sensor's",
     "sigma_x": "of x alone, m",

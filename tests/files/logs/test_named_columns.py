@@ -10,6 +10,7 @@ from test_named_logs import CORNERS, arc, chords, perfect, scene_of
 
 from ekfsim.errors import UsageError
 from ekfsim.files.scenes.load import load_scene, read_scene
+from ekfsim.files.scenes.settings import setting
 from ekfsim.localization import play
 from ekfsim.records import Control, Reading
 
@@ -183,3 +184,26 @@ def test_columns_of_other_formats_are_their_own(tmp_path):
     (mistake,) = read_scene(tmp_path / "c.yaml").mistakes
     assert mistake.wrong == "a 'gnss' log has columns and files of its own"
     assert mistake.right == "delete it, or write format: log"
+
+
+def test_motions_and_readings_may_share_the_rows_of_one_file(tmp_path):
+    """A row may tell a motion, a reading, or both."""
+    text = "t,v,omega,x,y\n0,1,0,,\n0.5,1,0,2.5,1\n0.75,,,2.75,1\n1,1,0,3,1\n"
+    lay(tmp_path, **{"all.csv": text, "w.yaml": HEAD.format("ranges") + "sensors: [gnss: {}]\n"})
+    (tmp_path / "c.yaml").write_text("world: w.yaml\nrecording: {format: log, path: all.csv}\n")
+    found = read_scene(tmp_path / "c.yaml", settings=[setting("start.theta=0")])
+    steps = list(play(found.get()))
+    assert any("no motion stands in this row: left out" in told for told in found.warnings)
+    assert [step.entry.t for step in steps if step.correction] == [0.75, 1.0]
+    assert max(step.correction.nis for step in steps if step.correction) < 1e-3
+
+
+def test_a_pylon_s_offset_is_read_as_it_is_used(tmp_path):
+    motion = "t,ax,ay,yaw\n0.1,0,0,0\n0.2,0,0,0\n"
+    laid(tmp_path, motion, "t,target,offset_east,offset_north\n0.2,7,3,-6\n", "id,x,y\n7,5,-5\n")
+    place = HEAD.format("pylon") + "sensors: [pylon: {}]\n"
+    scene = scene_of(tmp_path, place, RECORDING)
+    (seen,) = readings_of(scene)
+    assert seen.z.tolist() == [3, -6]
+    (step,) = [step for step in play(scene) if step.correction]
+    assert np.abs(step.correction.innovation).max() < 1e-12

@@ -6,8 +6,12 @@ from ekfsim.files.logs.tables.declared import Column, Format, Table
 
 LOG = Format(
     "log",
-    "Files of any make whose columns have names; `columns:` and `units:` of the recording say what "
-    "stands where in files of other make.",
+    "Tables of any make whose columns have names, in a folder or in one file. A unit may stand in "
+    "a name: `t_ms`, `bearing [deg]`. Files of other make are told of in the recording: "
+    "`columns: {t: time_ns, x: 3}` (a name of theirs, or a number from 1), `units: {t: ns}`, for "
+    "all tables or for one of `motion:`, `readings:`, `landmarks:`, `truth:`, each with its "
+    "`file:`, and `rows:` with the word that begins its rows where one file holds several kinds. A "
+    "`world.yaml` in the folder is the world where none is named; else one is made of the columns.",
     (
         Table(
             "what the robot did",
@@ -17,9 +21,14 @@ LOG = Format(
                 Column("v", "m/s", "speed ahead, held until the next row"),
                 Column("omega", "rad/s", "turn rate, counter-clockwise, held until the next row"),
             ),
-            told="In place of `v,omega`: `left,right` (ways of the wheels in m since the row "
-            "before, or their speeds in m/s), `distance,turn` (m and rad since the row before), "
-            "`x,y,theta` (the odometry's pose), or `ax,ay,yaw` (m/s², m/s², rad).",
+            told="In place of `v,omega`: `left,right` (speeds of the wheels in m/s since the row "
+            "before, or, where the unit is m as in `left [m]` or `motion: {wheels: ways}` says so, "
+            "their ways; with `omega` where a gyro tells the turn), `distance,turn` (m and rad "
+            "since the row before), `x,y,theta` (the odometry's pose in any frame: what lies "
+            "between two rows was driven), or `ax,ay,yaw` (m/s², m/s², rad; system pylon). Any of "
+            "the first four drives the robot of any other system. Where ways of the first row are "
+            "0 it is the start, else they began a usual step before. `holds: next` or `before` "
+            "says over which time speeds hold, `width` how far apart the wheels are.",
             example="""\
 t,v,omega
 0.0,0.5,0.0
@@ -38,8 +47,15 @@ t,v,omega
                 Column("range", "m", "how far it is"),
                 Column("bearing", "rad", "from straight ahead, to the left positive"),
             ),
-            told="The columns are those of the world's sensors: `range`, `bearing` or both, `x,y` "
-            "of a fix, which needs no target, … Several files are several sensors.",
+            told="The columns are what the world's sensors read: `range`, `bearing` or both "
+            "(rangeBearing, range, bearing), `x,y` of a fix (gnss), `yaw` (compass, gyro), "
+            "`azimuth,elevation` (markers), `right,ahead` (lidar), `range` and `target` or "
+            "`bearing` of a beam among walls (ultrasonic; empty or `inf` is no echo). Rows of "
+            "several sensors may share a table: a column `sensor` names each by its name or kind, "
+            "and fields of others stay empty. `sigma`, `sigma_x`, `sigma_range` … or `variance`, "
+            "`variance_x` … tell how sure a reading is and win over the sensor's own; 0 is "
+            "unknown. A fix that is held until the next is taken once. A landmark goes by its id "
+            "or its name. What a sensor's `mount` and `delay` are, the world says.",
             example="""\
 t,target,range,bearing
 0.05,1,2.91,0.335
@@ -54,7 +70,8 @@ t,target,range,bearing
             LANDMARKS,
             (Column("id", "", "its number"), X, Y),
             needed=False,
-            told="Where they are absent, those of the world count.",
+            told="Where they are absent, those of the world count. An id may be a name; rows may "
+            "repeat.",
             example="""\
 id,x,y
 1,3.0,1.0
@@ -67,7 +84,8 @@ id,x,y
         GROUNDTRUTH.but(
             files=TRUTH,
             columns=(TIME, X, Y, HEADING.but(name="theta", also=())),
-            told="Or a TUM file: t x y z qx qy qz qw without names.",
+            told="Or a TUM file: t x y z qx qy qz qw without names. Without `theta` the heading is "
+            "the course, and told.",
             example=GROUNDTRUTH.example.replace("heading", "theta"),
         ),
     ),

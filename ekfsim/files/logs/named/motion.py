@@ -1,5 +1,7 @@
 """What the robot did, by the columns that tell it → inputs of the world's motion model."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ekfsim.files.keys.columns import MotionKeys
@@ -29,7 +31,22 @@ def rows_of(table: Table, asked: Asked) -> Rows:
     form = form_of(table)
     _tell_others(table, form, asked.warnings)
     gyro = ("omega",) if form == "wheels" and table.has("omega") else ()
-    return some(table.rows(("t", *COLUMNS[form], *gyro), asked), "what the robot did")
+    names = (*COLUMNS[form], *gyro)
+    rows = table.rows(("t", *names), asked, maybe=frozenset(names))
+    return some(_with_motion(rows, asked.warnings), "what the robot did")
+
+
+def _with_motion(rows: Rows, warnings: list[str]) -> Rows:
+    """The rows without those in which no motion, or not all of it, stands."""
+    empty = np.isnan(rows.values[:, 1:])
+    parts = np.flatnonzero(np.any(empty, axis=1))
+    if not len(parts):
+        return rows
+    row, more = int(parts[0]), f", and so in {len(parts) - 1} more rows" if len(parts) > 1 else ""
+    whole = bool(np.all(empty[parts]))
+    what = "no motion stands" if whole else "not all of the motion stands"
+    warnings.append(f"{rows.at(row)}: {what} in this row{more}: left out")
+    return replace(rows[~np.any(empty, axis=1)], left_out=rows.left_out + len(parts))
 
 
 def motions_of(

@@ -25,6 +25,7 @@ from ekfsim.systems.instruments import Ranges
 from ekfsim.world import World
 
 WANTED = "t,target,range,bearing or t,x,y"
+CALLED = {"east": "offset_east", "north": "offset_north"}  # a fix to the east is another thing
 # of the rows, from which on those that repeat the one above hold it: a sensor with noise seldom
 # says the same twice
 HELD = 0.3
@@ -77,7 +78,8 @@ def fittings_of(
         targets = list(instrument.targets(around))
         if not targets:
             continue
-        columns = tuple(one.name for one in targets[0].sensor.outputs)
+        outputs = (one.name for one in targets[0].sensor.outputs)
+        columns = tuple(CALLED.get(name, name) for name in outputs)
         placed = targets[0].place is not None
         numbers = [mark.id for mark in landmarks] if placed else list(range(len(targets)))
         named = {str(number): target for number, target in zip(numbers, targets, strict=True)}
