@@ -17,6 +17,7 @@ import numpy as np
 from ekfsim.commands import Sense, Untold
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.keys.fields import FAR, FARTHEST
+from ekfsim.files.keys.recording import AngleUnit
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.degrees import radians
 from ekfsim.files.logs.folder import find, find_any, folder_of
@@ -94,11 +95,12 @@ def read_classroom(asked: Asked) -> Recorded:
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    path, world, reading, _, warnings = asked
+    path, world, reading, recording, warnings = asked
+    unit = recording.angle_unit or "degrees"
     folder = folder_of(path, HOLDS)
-    rows = _entries(find(folder, "what was measured", ENTRIES))
+    rows = _entries(find(folder, "what was measured", ENTRIES), unit)
     file = find_any(folder, "the true poses", TRUTH)
-    truth = {} if file is None else _truth(file, {0, *(row.index for row in rows)})
+    truth = {} if file is None else _truth(file, {0, *(row.index for row in rows)}, unit)
     noise = world.told.noise
     motion = MoveTurn(noise.odometry_distance, noise.odometry_angle)
     entries = [Entry(0, None, truth.get(0))]
@@ -126,12 +128,12 @@ class _Row:
         return self.numbers[column]
 
 
-def _entries(file: Path) -> list[_Row]:
+def _entries(file: Path, unit: AngleUnit) -> list[_Row]:
     """The moves and beams. Raises InputError with all that is wrong in the file."""
     lines = lines_of(file)
     mistakes, rows, before = list[Mistake](), list[_Row](), 0
     for fields in _fields(lines, COLUMNS, mistakes):
-        row, wrong = _row(fields, before)
+        row, wrong = _row(fields, before, unit)
         mistakes += wrong
         if row is not None:
             before = row.index
@@ -141,12 +143,12 @@ def _entries(file: Path) -> list[_Row]:
     return rows
 
 
-def _truth(file: Path, known: set[int]) -> dict[int, Array]:
+def _truth(file: Path, known: set[int], unit: AngleUnit) -> dict[int, Array]:
     """The true poses by their index : (3,) each. Raises InputError with what is wrong."""
     lines = lines_of(file)
     mistakes, poses = list[Mistake](), dict[int, Array]()
     for fields in _fields(lines, TRUTH_COLUMNS, mistakes):
-        numbers, wrong = _numbers(fields, TRUTH_COLUMNS[1:])
+        numbers, wrong = _numbers(fields, TRUTH_COLUMNS[1:], unit)
         index = _index(fields)
         if index is not None and index in poses:
             wrong.append(fields["index"].mistake("index", "stands twice", "delete one row"))
@@ -198,7 +200,9 @@ def _fields(
         yield found
 
 
-def _row(fields: dict[str, _Field], before: int) -> tuple[_Row | None, list[Mistake]]:
+def _row(
+    fields: dict[str, _Field], before: int, unit: AngleUnit
+) -> tuple[_Row | None, list[Mistake]]:
     """A row of the entries, or what is wrong with it. before : the index of the row above"""
     kind, index = fields["kind"].text.lower(), _index(fields)
     mistakes = []
@@ -215,7 +219,7 @@ def _row(fields: dict[str, _Field], before: int) -> tuple[_Row | None, list[Mist
             if fields[column].text:
                 right = f"leave the field empty: a {kind} has none"
                 mistakes.append(fields[column].mistake(column, f"stands in a {kind}", right))
-    numbers, wrong = _numbers(fields, OF_KIND[kind])
+    numbers, wrong = _numbers(fields, OF_KIND[kind], unit)
     mistakes += wrong
     if numbers.get(MAY_BE_EMPTY, 0.0) < 0:
         right = "a range is 0 or more; an empty field is no echo"
@@ -229,7 +233,7 @@ def _index(fields: dict[str, _Field]) -> int | None:
 
 
 def _numbers(
-    fields: dict[str, _Field], columns: tuple[str, ...]
+    fields: dict[str, _Field], columns: tuple[str, ...], unit: AngleUnit
 ) -> tuple[dict[str, float], list[Mistake]]:
     """Numbers in m and rad, nan for an empty field that may be; and the mistakes in them."""
     numbers, mistakes = dict[str, float](), list[Mistake]()
@@ -246,6 +250,6 @@ def _numbers(
             right = f"write one within ±{LARGEST.get(column, FAR):.0e}"
             mistakes.append(field.mistake(column, "cannot be meant", right))
         else:
-            angle = column in ("angle", "bearing", "theta")
+            angle = unit == "degrees" and column in ("angle", "bearing", "theta")
             numbers[column] = radians(field.text) if angle else float(field.text)
     return numbers, mistakes

@@ -33,7 +33,9 @@ ODOMETRY = Table(
     (
         TIME,
         Column("distance", "m", "way since the row before, backwards negative"),
-        Column("dheading", "rad", "turn since the row before, counter-clockwise", most=math.pi),
+        Column(
+            "dheading", "rad", "turn since the row before, counter-clockwise", most=10, per_row=True
+        ),
     ),
     example="""\
 t,distance,dheading

@@ -24,6 +24,7 @@ class Column:
     positive: bool = False  # a range: where nothing answers, many sensors say 0 or −1
     largest: float = 1e6  # beyond which a number cannot be meant
     most: float = float("inf")  # rad or rad/s; where many lie beyond, they are degrees
+    per_row: bool = False  # a turn since the row before: judged by the time between them
 
     def but(self, **changes: object) -> "Column":
         """The same column with other particulars."""

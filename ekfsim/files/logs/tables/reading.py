@@ -8,10 +8,16 @@ import numpy as np
 
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.table import Rows, sane, values_of, whole
-from ekfsim.files.logs.tables.angles import ANGLES, DEGREE, are_degrees
+from ekfsim.files.logs.tables.angles import ANGLES, DEGREE, are_degrees, are_degrees_of_course
 from ekfsim.files.logs.tables.declared import Column, Table
 from ekfsim.files.logs.tables.layout import Layout, layout_of
-from ekfsim.files.logs.tables.stamps import SPOKEN, seconds_of, unit_beside, unit_of_motion
+from ekfsim.files.logs.tables.stamps import (
+    SPOKEN,
+    seconds_of,
+    unit_beside,
+    unit_of_motion,
+    usual_step,
+)
 from ekfsim.files.logs.text import lines_of
 from ekfsim.geometry import Array
 
@@ -67,9 +73,11 @@ def in_units(
         if column.unit == "s":
             values[:, n] = _seconds(layout, n, values[:, n], asked, motion)
         elif column.unit in ANGLES:
-            values[:, n] *= _angle(layout, column, values[:, n], asked)
+            step = usual_step(values[:, 0]) if columns[0].unit == "s" else 0.0
+            values[:, n] *= _angle(layout, column, values[:, n], asked, step)
         elif column.unit == "m":
             values[:, n] *= LENGTHS.get(layout.units.get(column.name, "m"), 1.0)
+    _turn_headings(layout, columns, values, asked)
     rows = Rows(layout.lines.file, np.array(layout.lines.numbers, np.int64), values)
     return Read(sane(rows, layout.wanted, asked.warnings), layout)
 
@@ -93,16 +101,34 @@ def _seconds(layout: Layout, n: int, t: Array, asked: Asked, motion: Rows | None
     return seconds_of([text.split(separator)[place] for text in layout.lines.texts], str(told))
 
 
-def _angle(layout: Layout, column: Column, values: Array, asked: Asked) -> float:
-    """What a column's angles are multiplied with to be radians (a yaw in degrees stays so)."""
-    own = column.unit
+def _angle(layout: Layout, column: Column, values: Array, asked: Asked, step: float) -> float:
+    """What a column's angles are multiplied with to be radians (a yaw in degrees stays so).
+    step : s between two rows, by which turns since the row before are judged
+    """
     unit = asked.recording.angle_unit or layout.units.get(column.name)
-    if unit is None and are_degrees(values, column):
-        told = f"{column.name} is taken as degrees: as radians it would be beyond a turn"
-        cure = "say otherwise with --set recording.angleUnit=radians"
-        asked.warnings.append(f"{layout.lines.file}: {told}; {cure}")
+    judged = values / step if column.per_row and step else values
+    if unit is None and are_degrees(judged, column):
+        _tell_degrees(layout, column, asked, "more than can be meant")
         unit = "degrees"
-    factor = 1.0 if unit is None else DEGREE if unit.startswith("degrees") else 1.0
-    if unit is None:
-        return 1.0
-    return factor / ANGLES[own] if own.startswith("degrees") else factor
+    return 1.0 if unit is None else ANGLES[unit] / ANGLES[column.unit]
+
+
+def _turn_headings(layout: Layout, columns: Sequence[Column], values: Array, asked: Asked) -> None:
+    """Make headings radians that lead along the way of their poses as degrees alone."""
+    places = {column.name: n for n, column in enumerate(columns)}
+    if asked.recording.angle_unit is not None or not {"x", "y"} <= places.keys():
+        return
+    x, y = values[:, places["x"]], values[:, places["y"]]
+    for column in columns:
+        n = places[column.name]
+        if column.unit != "rad" or column.name in layout.units:
+            continue
+        if are_degrees_of_course(x, y, values[:, n]):
+            _tell_degrees(layout, column, asked, "not along the way of the poses")
+            values[:, n] *= DEGREE
+
+
+def _tell_degrees(layout: Layout, column: Column, asked: Asked, why: str) -> None:
+    told = f"{column.name} is taken as degrees: as radians it would be {why}"
+    cure = "say otherwise with --set recording.angleUnit=radians"
+    asked.warnings.append(f"{layout.lines.file}: {told}; {cure}")
