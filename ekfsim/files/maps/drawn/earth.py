@@ -15,13 +15,19 @@ def to_metres(degrees: Array) -> tuple[Array, tuple[float, float]]:
 
     degrees : (n, 2) longitude and latitude (WGS 84). Raises UsageError where pymap3d is missing.
     """
+    low, high = degrees.min(axis=0), degrees.max(axis=0)
+    lon, lat = ((low + high) / 2).tolist()
+    return on_plane(degrees, (lon, lat)), (lon, lat)
+
+
+def on_plane(degrees: Array, origin: tuple[float, float]) -> Array:
+    """The same about a place of one's own : (n, 2) m. origin : its longitude and latitude"""
     try:
         geodetic2enu = found("pymap3d:geodetic2enu")
     except ImportError:
         raise UsageError(
             "longitude and latitude need the package 'pymap3d': pip install 'ekfsim[maps]'"
         ) from None
-    low, high = degrees.min(axis=0), degrees.max(axis=0)
-    lon, lat = ((low + high) / 2).tolist()
+    lon, lat = origin
     x, y, _ = geodetic2enu(degrees[:, 1], degrees[:, 0], 0.0, lat, lon, 0.0)
-    return np.column_stack([x, y]), (lon, lat)
+    return np.column_stack([x, y])

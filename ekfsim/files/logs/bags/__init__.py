@@ -1,0 +1,11 @@
+"""Bags of ROS 1 and 2, and MCAP: their topics as the tables of a log.
+
+bag.py        a bag → a recorded log
+opening.py    a path → a reader of the package rosbags
+topics.py     which topic tells what
+messages.py   when a message was stamped; a heading from a quaternion
+tables.py     messages → tables with named columns
+fixes.py      satellite fixes, on a plane that touches the earth
+scans.py      laser scans, thinned to the beams that the world names
+marks.py      poses of landmarks that a camera sees
+"""
