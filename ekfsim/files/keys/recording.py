@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field
 
 from ekfsim.files.keys.fields import Late, Name, Strict, SystemName
+from ekfsim.files.keys.topics import OriginKeys, TopicsKeys
 
 if TYPE_CHECKING:
     from ekfsim.files.keys.columns import (
@@ -28,8 +29,12 @@ AngleUnit = Literal["radians", "degrees"]
 Targets = Literal["barcodes", "subjects"]
 TurnTruth = Literal["auto", "never", "always"]
 SameTime = Literal["share", "add", "first", "last"]
-LogFormat = Literal["pylon", "gnss", "mower", "mrclam", "ranges", "pioneer", "classroom", "log"]
-ANY: LogFormat = "log"  # of any robot that is driven
+LogFormat = Literal[
+    "pylon", "gnss", "mower", "mrclam", "ranges", "pioneer", "classroom", "log", "bag"
+]
+ANY: LogFormat = "log"
+BAG: LogFormat = "bag"
+OF_ANY_ROBOT = (ANY, BAG)  # that is driven
 SYSTEM_OF: dict[str, SystemName] = {  # the system that each other format of a log records
     "pylon": "pylon",
     "gnss": "gnss",
@@ -41,12 +46,15 @@ SYSTEM_OF: dict[str, SystemName] = {  # the system that each other format of a l
 }
 WITH_LANDMARKS = ("mower", "mrclam", "ranges", ANY)  # formats that tell what stands where
 
-OF_ANY = ("columns", "units", "motion", "readings", "landmarks", "truth")  # keys of that log alone
+OWN_KEYS = {  # of one kind of log alone
+    ANY: ("columns", "units", "motion", "readings", "landmarks", "truth"),
+    BAG: ("topics", "origin"),
+}
 
 
 def misfit(format: LogFormat, system: str) -> str | None:
     """The system of the world that a log of this format belongs to; None where it fits."""
-    if format == ANY:
+    if format in OF_ANY_ROBOT:
         return None if system != "classroom" else "landmarks"
     return None if SYSTEM_OF[format] == system else SYSTEM_OF[format]
 
@@ -140,4 +148,16 @@ class RecordingKeys(Strict):
         description="log: where the robot truly was, in truth.csv or truth.tum where nothing is "
         "said.",
         examples=[{"file": "mocap.csv"}],
+    )
+    topics: TopicsKeys | None = Field(
+        None,
+        title="topics of a bag",
+        description="bag: which topic tells what. Where absent, the only one of its type.",
+        examples=[{"motion": "/odom", "fix": "/gps/fix"}],
+    )
+    origin: OriginKeys | None = Field(
+        None,
+        title="a place on the earth",
+        description="bag: where (0, 0) of its fixes is on the earth; the first fix where absent.",
+        examples=[{"latitude": 48.137, "longitude": 11.575}],
     )

@@ -12,8 +12,8 @@ class TopicsKeys(Strict):
 
     motion: Name | None = Field(
         None,
-        description="What the robot did: nav_msgs/Odometry, by its poses, or by its speeds where all "
-        "poses are 0; or geometry_msgs/TwistStamped.",
+        description="What the robot did: nav_msgs/Odometry, by its poses, or by its speeds where "
+        "all poses are 0; or geometry_msgs/TwistStamped.",
         examples=["/odom"],
     )
     fix: Name | None = Field(

@@ -4,8 +4,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.recording import SYSTEM_OF, RecordingKeys, misfit
+from ekfsim.files.keys.recording import BAG, SYSTEM_OF, RecordingKeys, misfit
 from ekfsim.files.logs.asked import Asked
+from ekfsim.files.logs.bags.bag import read_bag
 from ekfsim.files.logs.folder import refuse_foreign
 from ekfsim.files.logs.formats.classroom import CLASSROOM, read_classroom
 from ekfsim.files.logs.formats.gnss import GNSS, read_gnss
@@ -35,6 +36,7 @@ FORMATS: dict[str, Reader] = {
     "pioneer": read_pioneer,
     "classroom": read_classroom,
     "log": read_named,
+    "bag": read_bag,
 }
 # what the files of each hold, for readers, refusals, `ekfsim schema recording` and the docs
 DECLARED: dict[str, Format] = {
@@ -59,6 +61,7 @@ def read_log(
     if (system := misfit(format, world.system)) is not None:
         wrong = f"a log of the format {format} belongs to a world with system: {system}"
         raise UsageError(f"{path}: {wrong}; {world.name!r} has system: {world.system}")
-    refuse_foreign(path)
+    if format != BAG:
+        refuse_foreign(path)
     found = [] if warnings is None else warnings
     return FORMATS[format](Asked(path, world, reading, recording, found))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ekfsim.errors import InputError, UsageError
 from ekfsim.files.given.given import Given
-from ekfsim.files.keys.recording import ANY, LogFormat, RecordingKeys
+from ekfsim.files.keys.recording import ANY, BAG, OF_ANY_ROBOT, LogFormat, RecordingKeys
 from ekfsim.files.packaged import source_name
 from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.scenes.one_file import File, Loaded
@@ -82,15 +82,20 @@ def world_of_log(
     neither, or no log is named.
     """
     format, named = sound.value("recording", "format"), sound.value("recording", "path")
-    if format == ANY and log is None and named is None:
-        from ekfsim.files.logs.named.made_world import any_world
+    if format in OF_ANY_ROBOT and log is None and named is None:
+        from ekfsim.files.logs.bags import made_world as of_bags
+        from ekfsim.files.logs.named import made_world as of_logs
 
-        return any_world()
-    if format not in (CLASSROOM, ANY) or (log is None and named is None):
+        return of_bags.any_world() if format == BAG else of_logs.any_world()
+    if format not in (CLASSROOM, *OF_ANY_ROBOT) or (log is None and named is None):
         return None
     place = Path(os.path.normpath(log if log is not None else path.parent / named))
     if format == CLASSROOM:
         return brought(place)
+    if format == BAG:
+        from ekfsim.files.logs.bags.made_world import world_of_bag
+
+        return world_of_bag(place, recording or RecordingKeys(format=BAG), warnings)
     from ekfsim.files.logs.named.made_world import world_brought
 
     return world_brought(place, recording or RecordingKeys(format=ANY), warnings)

@@ -20,7 +20,7 @@ from ekfsim.files.keys import system as system_file
 from ekfsim.files.keys import world as world_file
 from ekfsim.files.keys.faults import FaultySensorsKeys
 from ekfsim.files.keys.fields import SystemName, aliases, whole
-from ekfsim.files.keys.recording import SYSTEM_OF, LogFormat
+from ekfsim.files.keys.recording import OF_ANY_ROBOT, SYSTEM_OF, LogFormat
 from ekfsim.files.keys.sensors import SENSORS, SensorKeys
 from ekfsim.files.keys.system import RobotKeys, fields_of, robot_fields
 from ekfsim.files.keys.told import ToldSensorsKeys
@@ -159,7 +159,7 @@ def test_every_key_has_its_part_and_every_part_its_key():
         *(name for way in DRIVES.values() for name in fields_of(way)),
     }
     assert set(get_args(drive_file.PathKeys.model_fields["path"].annotation)) == set(DRIVES)
-    assert set(get_args(LogFormat)) == {*SYSTEM_OF, "log"}
+    assert set(get_args(LogFormat)) == {*SYSTEM_OF, *OF_ANY_ROBOT}
     assert options.READINGS == READINGS
 
 
@@ -597,7 +597,8 @@ SCENES = {
             "2:21: recording.format: 'mowr' is not known here; did you mean 'mower'?",
             "2:33: recording.path: 5 is a number where text belongs; write it in quotes: '5'",
             "2:36: recording: unknown key 'file'; known keys here: format, path, robot, timeUnit, "
-            "angleUnit, targets, turnTruth, sameTime, columns, units, motion, readings, landmarks, truth",
+            "angleUnit, targets, turnTruth, sameTime, columns, units, motion, readings, landmarks, "
+            "truth, topics, origin",
         ],
     ),
     "no format": (

@@ -154,7 +154,7 @@ def test_a_template_loads_with_each_way_to_drive(tmp_path):
     text = template("commands")
     before = text[: text.index("\ncommands:")]
     ways = re.findall(r"^#   ((?:drive|recording): .*)\n", text, re.MULTILINE)
-    assert len(ways) == 7
+    assert len(ways) == 8
     for way in ways:
         world = next((name for name in ("pylon", "classroom") if name in way), "mower")
         scene = written(

@@ -8,4 +8,5 @@ tables.py     messages → tables with named columns
 fixes.py      satellite fixes, on a plane that touches the earth
 scans.py      laser scans, thinned to the beams that the world names
 marks.py      poses of landmarks that a camera sees
+made_world.py a world for a bag, where none is named
 """

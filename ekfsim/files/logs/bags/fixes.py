@@ -18,7 +18,9 @@ UNKNOWN = 0  # position_covariance_type
 class Fixes:
     """The fixes that can be used, and what is to be told of them."""
 
-    rows: list[tuple[int, float, float, str, str]]  # ns, x, y in m, σ of x and of y, "" where unknown
+    rows: list[
+        tuple[int, float, float, str, str]
+    ]  # ns, x, y in m, σ of x and of y, "" where unknown
     told: list[str]
 
 
@@ -51,14 +53,14 @@ def fixes_of(messages: Sequence[tuple[int, Any]], origin: OriginKeys | None) -> 
     where = "the first fix" if origin is None else "recording.origin"
     told.append(
         f"x is m east and y m to true north (no grid's north) of {where}, latitude {lat:.9g}°, "
-        f"longitude {lon:.9g}°; say otherwise with recording: {{origin: {{latitude: …, longitude: …}}}}"
+        f"longitude {lon:.9g}°; say otherwise with recording: {{origin: {{latitude: …, "
+        "longitude: …}}"
     )
     sigmas = [_sigmas(fix) for _, fix in kept]
     if unknown := sum(each == ("", "") for each in sigmas):
         told.append(f"{unknown} of {len(kept)} tell no covariance: the sensor's own sigma counts")
     rows = [
-        (t, x, y, *each)
-        for (t, _), (x, y), each in zip(kept, xy.tolist(), sigmas, strict=True)
+        (t, x, y, *each) for (t, _), (x, y), each in zip(kept, xy.tolist(), sigmas, strict=True)
     ]
     return Fixes(rows, told)
 

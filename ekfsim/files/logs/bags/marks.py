@@ -17,8 +17,8 @@ def marks_of(message: Any) -> Iterator[tuple[str, float, float]]:
     held = next((getattr(message, name) for name in LISTS if hasattr(message, name)), [message])
     for mark in held:
         pose = getattr(mark, "pose", None)
-        while hasattr(pose, "pose"):  # of one with a header, of one with a covariance
-            pose = pose.pose
+        while (inner := getattr(pose, "pose", None)) is not None:  # with a header, a covariance
+            pose = inner
         place = getattr(pose, "position", None)
         if place is None or not math.isfinite(place.x + place.y + place.z):
             continue

@@ -21,7 +21,10 @@ def opened(path: Path) -> Iterator[Any]:
     Raises UsageError where there is no bag, where it is broken, or where rosbags is missing.
     """
     try:
-        reader, broken = found("rosbags.highlevel:AnyReader"), found("rosbags.highlevel:AnyReaderError")
+        reader, broken = (
+            found("rosbags.highlevel:AnyReader"),
+            found("rosbags.highlevel:AnyReaderError"),
+        )
         stores, typestore = found("rosbags.typesys:Stores"), found("rosbags.typesys:get_typestore")
     except ImportError:
         raise UsageError(f"{path}: {MISSING}") from None
@@ -31,14 +34,14 @@ def opened(path: Path) -> Iterator[Any]:
             yield opened
     except broken as error:
         why = " ".join(str(error).split()) or type(error).__name__
-        raise UsageError(f"{path}: rosbags cannot read it: {why}; name {HOLDS}") from None
+        raise UsageError(f"{bag}: rosbags cannot read it: {why}; name {HOLDS}") from None
 
 
 def _bag(path: Path) -> Path:
     """The bag that is meant: the path itself, or the one file in a folder without a description."""
     with read_from(path):
         if not exists(path):
-            raise UsageError(f"{path}: no such bag; name {HOLDS}")
+            raise UsageError(f"{path}: no such file or folder; name {HOLDS}")
         if not is_folder(path) or exists(path / "metadata.yaml"):
             return path
         inside = sorted(file for file in path.iterdir() if file.suffix in KINDS)

@@ -4,8 +4,6 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from ekfsim.geometry.angles import wrap
-
 
 def beams_of(scan: Any, bearings: Sequence[float]) -> list[tuple[int, float]]:
     """What a scan tells of each of some bearings (rad): the number of the bearing and the range in
@@ -19,9 +17,11 @@ def beams_of(scan: Any, bearings: Sequence[float]) -> list[tuple[int, float]]:
     told = []
     for number, bearing in enumerate(bearings):
         # the beam nearest to the bearing, going the way round that the scanner goes
-        steps = float(wrap(bearing - first)) / step if step else 0.0
+        steps = math.remainder(bearing - first, 2 * math.pi) / step if step else 0.0
         index = round(steps if steps > -0.5 else steps + 2 * math.pi / abs(step))
-        if not 0 <= index < count or abs(wrap(first + index * step - bearing)) > abs(step) * 0.51:
+        if not 0 <= index < count or abs(
+            math.remainder(first + index * step - bearing, 2 * math.pi)
+        ) > 0.51 * abs(step):
             continue
         r = float(scan.ranges[index])
         if math.isnan(r) or r < scan.range_min:

@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from ekfsim.errors import UsageError
 from ekfsim.files.keys.columns import MotionKeys, ReadingsKeys, TableKeys
@@ -20,12 +20,37 @@ LANDMARKS = ("landmarks*.csv",)
 TRUTH = ("truth*.csv", "truth*.tum")
 
 
+class Sources(Protocol):
+    """Where a log's tables are, in files or elsewhere."""
+
+    @property
+    def no_truth(self) -> str:
+        """Why there is no truth, where there is none."""
+
+    def motion(self) -> tuple[Source, MotionKeys]:
+        """What the robot did."""
+
+    def readings(self) -> list[tuple[Source, ReadingsKeys]]:
+        """What the sensors told."""
+
+    def landmarks(self) -> Source | None:
+        """What stands where, None where the log does not tell."""
+
+    def truth(self) -> Source | None:
+        """The true poses, None where the log has none."""
+
+
 class Files(NamedTuple):
     """Where a log's tables are, and what is said of each."""
 
     folder: Path
     alone: Path | None  # the file that is the whole log
     recording: RecordingKeys
+
+    @property
+    def no_truth(self) -> str:
+        """Which files are not there."""
+        return "no truth.csv and no truth.tum in it"
 
     def motion(self) -> tuple[Source, MotionKeys]:
         """What the robot did. Raises UsageError where no file holds it, or several may."""

@@ -2,7 +2,7 @@
 
 from ekfsim.errors import UsageError
 from ekfsim.files.logs.asked import Asked
-from ekfsim.files.logs.named.files import files_of
+from ekfsim.files.logs.named.files import Sources, files_of
 from ekfsim.files.logs.named.inputs import WANTED as MOTION
 from ekfsim.files.logs.named.motion import motions_of, rows_of
 from ekfsim.files.logs.named.places import landmarks_in, truth_in
@@ -14,13 +14,21 @@ from ekfsim.files.logs.timeline import Timeline
 
 
 def read_named(asked: Asked) -> Recorded:
+    """The log in a folder or a file.
+
+    Raises UsageError where a file is missing, InputError with what is wrong in one.
+    """
+    return read_tables(asked, files_of(asked.path, asked.recording))
+
+
+def read_tables(asked: Asked, files: Sources) -> Recorded:
     """What the robot did, what its sensors told, what stands where, and where the robot truly was.
     Errors are counted at the rows of the motion.
 
     Raises UsageError where a file is missing, InputError with what is wrong in one.
     """
-    path, world, reading, recording, warnings = asked
-    files, tables = files_of(path, recording), list[Table]()
+    path, world, reading, _, warnings = asked
+    tables = list[Table]()
     source, of_motion = files.motion()
     motion = opened(source, MOTION)
     rows = rows_of(motion, asked)

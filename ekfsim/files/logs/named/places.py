@@ -8,7 +8,7 @@ import numpy as np
 
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.logs.asked import Asked
-from ekfsim.files.logs.named.files import Files
+from ekfsim.files.logs.named.files import Sources
 from ekfsim.files.logs.named.tables import Source, Table, opened
 from ekfsim.files.logs.table import Rows, Wanted, bare_table, is_number
 from ekfsim.files.logs.truth import Truth, truth_of
@@ -23,7 +23,7 @@ Ids = Mapping[str, int]  # of landmarks that go by names
 
 
 def landmarks_in(
-    files: Files, tables: list[Table], asked: Asked
+    files: Sources, tables: list[Table], asked: Asked
 ) -> tuple[tuple[Landmark, ...] | None, Ids]:
     """What stands where, None where the log does not tell, and the numbers of those with names.
     `tables` gets what was opened. Raises InputError with what is wrong.
@@ -66,15 +66,15 @@ def _is_whole(word: str) -> bool:
     return is_number(word) and float(word).is_integer() and 0 <= float(word) < 2**31
 
 
-def truth_in(files: Files, tables: list[Table], asked: Asked, motion: Rows) -> Truth | None:
+def truth_in(files: Sources, tables: list[Table], asked: Asked, motion: Rows) -> Truth | None:
     """The true poses, None where the log has none. Raises InputError with what is wrong in them."""
     source = files.truth()
     if source is None:
-        told = "no truth.csv and no truth.tum in it: the truth is unknown, and so are the errors"
-        asked.warnings.append(f"{files.alone or files.folder}: {told}")
+        told = "the truth is unknown, and so are the errors"
+        asked.warnings.append(f"{asked.path}: {files.no_truth}: {told}")
         return None
     rows = _poses(source, tables, asked, motion)
-    if files.recording.turn_truth == "always":
+    if asked.recording.turn_truth == "always":
         rows = replace(rows, values=rows.values + np.array([0, 0, 0, math.pi]))
     return truth_of(rows, asked.warnings)
 

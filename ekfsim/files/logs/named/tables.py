@@ -54,6 +54,7 @@ class Source(NamedTuple):
     path: Path
     keys: TableKeys
     recording: RecordingKeys
+    lines: Lines | None = None  # of one that stands in no file of its own
 
     def columns(self) -> dict[str, str | int]:
         """Where it says that this table's columns stand."""
@@ -247,7 +248,7 @@ def opened(source: Source, wanted: str) -> Table:
 
     Raises UsageError where there is no such file, InputError where it lacks a column that is told.
     """
-    lines = lines_of(source.path)
+    lines = source.lines or lines_of(source.path)
     lines = replace(lines, texts=[unquoted(text) for text in lines.texts])
     if source.keys.rows is not None:
         lines = _of_kind(lines, source.keys.rows)

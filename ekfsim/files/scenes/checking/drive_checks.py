@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from ekfsim.errors import Mistake
 from ekfsim.files.keys.commands import WAYS, CommandsKeys
 from ekfsim.files.keys.fields import aliases
-from ekfsim.files.keys.recording import ANY, OF_ANY, misfit
+from ekfsim.files.keys.recording import OWN_KEYS, misfit
 from ekfsim.files.scenes.building import drive_of
 from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.yaml.telling import meant
@@ -90,11 +90,13 @@ def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake
             f"system '{system}'"
         )
         yield file.mistake(("recording", "format"), wrong, f"name a world of the system '{wanted}'")
-    if keys.recording is not None and keys.recording.format != ANY:
-        for key in OF_ANY:
-            if file.root.at(("recording", key)) is not None:
-                wrong = f"a '{keys.recording.format}' log has columns and files of its own"
-                yield file.mistake(("recording", key), wrong, "delete it, or write format: log")
+    if keys.recording is not None:
+        for format, own in OWN_KEYS.items():
+            for key in own if keys.recording.format != format else ():
+                if file.root.at(("recording", key)) is not None:
+                    wrong = f"a '{keys.recording.format}' log has columns and files of its own"
+                    right = f"delete it, or write format: {format}"
+                    yield file.mistake(("recording", key), wrong, right)
     if keys.recording is not None and keys.filter == "kf-nominal":
         yield file.mistake(
             ("filter",), "a recording does not tell the way that was planned", "write kf or ekf"
