@@ -163,7 +163,7 @@ def test_what_is_no_bag(tmp_path):
     (tmp_path / "a.bag").write_bytes(b"#ROSBAG V2.0\nno more")
     for place, words in (
         ("a.bag", "rosbags cannot read it"),
-        ("b.bag", "no such bag"),
+        ("b.bag", "no such file"),
         ("", "a.bag"),
     ):
         with pytest.raises(UsageError, match=words):

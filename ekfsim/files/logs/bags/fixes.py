@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ekfsim.files.keys.topics import OriginKeys
-from ekfsim.files.maps.earth import on_plane
+from ekfsim.files.maps.drawn.earth import on_plane
 
 NO_FIX = -1  # status.status
 UNKNOWN = 0  # position_covariance_type
