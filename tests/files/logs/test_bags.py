@@ -24,6 +24,7 @@ WORLD = {
     "system": "ranges",
     "start": {"x": 0, "y": 0, "theta": 30},
     "sensors": [{"gnss": {}}],
+    "belief": {"start": {"x": 0, "y": 0, "theta": 30}},
 }
 
 
@@ -90,7 +91,7 @@ def test_speeds_count_where_no_pose_is_told(tmp_path):
     rows = [("/odom", BEGIN + k, make.odometry(BEGIN + k, v=0.5, ω=0.1)) for k in range(4)]
     path = written("mcap", tmp_path / "b", [*rows, *drive("mcap")[-3:]])
     moved = sum(u[:2] for _, u in given(scene(path).log) if len(u) == 3)
-    np.testing.assert_allclose(moved, [1.25, 0.25], atol=1e-6)  # from the first fix on
+    np.testing.assert_allclose(moved, [1.5, 0.3], atol=1e-6)
 
 
 def test_fixes_that_are_none_are_left_out_and_told():
