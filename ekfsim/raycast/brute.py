@@ -34,10 +34,12 @@ def try_all(segments: Array, x: Array, y: Array, dx: Array, dy: Array) -> tuple[
 
 
 def try_all_round(
-    circles: Array, x: Array, y: Array, dx: Array, dy: Array
+    size: float, circles: Array, x: Array, y: Array, dx: Array, dy: Array
 ) -> tuple[Array, Integers]:
-    """The same of round walls. circles : (C, 3) m, centre and radius of each"""
-    span = extent(circles) + np.abs(x) + np.abs(y)
+    """The same of round walls. circles : (C, 3) m, centre and radius of each; size : m, the largest
+    coordinate of any circle of the map
+    """
+    span = size + np.abs(x) + np.abs(y)
     beams = (each[..., None] for each in (x, y, dx, dy, REACH * span))
     with np.errstate(invalid="ignore"):
         r = meet_round(circles, *beams)  # (…, C)

@@ -1,7 +1,7 @@
-"""Round walls beside the straight ones: few, and so every beam tries every one of them."""
+"""Round walls beside the straight ones."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -18,14 +18,25 @@ class RoundWalls:
     first: int  # the index of the first of them as a wall: they follow all straight ones
 
     def before(
-        self, straight: tuple[Array, Integers], x: Array, y: Array, dx: Array, dy: Array
+        self,
+        straight: tuple[Array, Integers],
+        x: Array,
+        y: Array,
+        dx: Array,
+        dy: Array,
+        some: Integers | None = None,
     ) -> tuple[Array, Integers]:
         """Ranges and walls that beams meet first, of these walls and of the straight ones, which
         are found already : (…) both
+
+        some : the circles that are tried, in their order, where others are known not to be met
         """
-        found = in_portions(try_all_round, self.circles, x, y, dx, dy)
+        circles = self.circles if some is None else self.circles[some]
+        r, circle = in_portions(partial(try_all_round, self.extent), circles, x, y, dx, dy)
+        if some is not None:
+            circle = np.append(some, -1)[circle]  # no circle, −1, takes the last
         tie = TIE * (self.extent + np.abs(x) + np.abs(y))
-        return nearer(straight, found, self.first, tie)
+        return nearer(straight, (r, circle), self.first, tie)
 
     @cached_property
     def extent(self) -> float:

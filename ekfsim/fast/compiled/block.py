@@ -24,6 +24,7 @@ from ekfsim.geometry.ellipse import cone_factor, radius_factor
 from ekfsim.models.sensors.laser import ALONG
 from ekfsim.raycast.ground import CLEARANCE
 from ekfsim.raycast.rules import REACH, TIE
+from ekfsim.raycast.searches.round_before import round_before
 from ekfsim.raycast.walls import Hit, Walls
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import Draws, true_start
@@ -190,5 +191,5 @@ def cast(walls: Walls, place: Array, bearing: float) -> tuple[Array, Integers, A
             hit = walls.cast(place[:2, some].T, place[2, some] + bearing)
             ranges[some], wall[some] = hit.range, hit.wall
     if walls.round is not None:
-        ranges, wall = walls.round.before((ranges, wall), place[0], place[1], way[0], way[1])
+        ranges, wall = round_before(walls.round, (ranges, wall), np.vstack([place[:2], way]))
     return ranges, wall, way

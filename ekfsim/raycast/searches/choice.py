@@ -10,6 +10,7 @@ from ekfsim.raycast.brute import brute_force
 from ekfsim.raycast.searches.few_walls import few_walls
 from ekfsim.raycast.searches.many_beams import many_beams
 from ekfsim.raycast.searches.nearby_beams import nearby_beams
+from ekfsim.raycast.searches.round_before import round_before
 from ekfsim.raycast.searches.scan import scan
 from ekfsim.raycast.searches.single_beam import first, follow
 from ekfsim.raycast.walls import Hit, Walls
@@ -66,7 +67,7 @@ def in_blocks(search: Search, walls: Walls, x: Array, y: Array, heading: Array) 
                 again = start + doubtful
                 ranges[again], met[again] = _surely(walls, beams[:, doubtful])
         if walls.round:
-            ranges[part], met[part] = walls.round.before((ranges[part], met[part]), *beams)
+            ranges[part], met[part] = round_before(walls.round, (ranges[part], met[part]), beams)
     return Hit(ranges.reshape(shape), met.reshape(shape))
 
 

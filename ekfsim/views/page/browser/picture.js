@@ -307,7 +307,7 @@ class Picture {
     }
     for (const { name, at } of lesson.world.names) {
       const [a, b] = this.pixel(at);
-      write([a + 6, b - 5], name, { class: "tick" });
+      write([a, b - 5], name, { class: "name" });
     }
     this.words.appendChild(element("rect", { class: "frame", ...this.box }));
   }
