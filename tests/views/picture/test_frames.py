@@ -25,8 +25,9 @@ from ekfsim.views.picture.look import Look, Paper
 from ekfsim.views.picture.panels import close_width
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.beams.beam import beam
-from ekfsim.world import Map
+from ekfsim.world import Map, RoundObstacle, WallLine
 
+HOOK = np.array([[7.0, 4], [7, 6], [9, 6]])
 SIGMA = (0.3, 0.1, 0.2)
 
 
@@ -159,10 +160,8 @@ def test_what_is_special_of_a_beam_is_said():
                 assert bool(re.match("from .* it would meet .*, not ", ray.doubt)) == ray.ambiguous
             for axes in (picture.main, picture.close):
                 walls = axes.beam.walls.get_segments()
-                assert len(walls) == (0 if ray is None else len(ray.walls))
-                assert np.array_equal(
-                    np.reshape(walls, (-1, 2, 2)), np.empty((0, 2, 2)) if ray is None else ray.walls
-                )
+                pairs = zip(walls, () if ray is None else ray.walls, strict=True)
+                assert all(np.array_equal(drawn, wall) for drawn, wall in pairs)
     assert said == WORDS
 
 
@@ -215,6 +214,23 @@ def test_the_legend_names_what_is_drawn():
     assert not {"filter's map", "beam, as measured", "obstacle"} & set(
         words(shown(scene(Move(1.0, 0.0)))[0].legend)
     )
+
+
+def test_circles_are_drawn_round_and_free_walls_as_lines_with_their_names():
+    run = scene(obstacles=(DESK, RoundObstacle("pillar", np.array([7.0, 2.0]), 0.5)))
+    lines = (WallLine("wall 1", HOOK), WallLine("screen", HOOK + np.array([-5, 1])))
+    floor = replace(run.world.map, lines=lines)
+    missing = Map(ROOM, floor.obstacles[:1], lines[1:])
+    picture, _ = shown(told(replace(run, world=replace(run.world, map=floor)), map=missing))
+    world = picture.main.world
+    desk, pillar = (path.vertices for path in world.obstacles.get_paths())
+    assert len(desk) < 10
+    np.testing.assert_allclose(np.hypot(*(pillar - (7, 2)).T), 0.5, rtol=1e-12)
+    drawn = [np.asarray(line) for line in world.lines.get_segments()]
+    assert all(np.array_equal(one, line.points) for one, line in zip(drawn, lines, strict=True))
+    assert len(world.told.get_segments()) == 3  # room, desk and screen, which stays open
+    np.testing.assert_array_equal(world.told.get_segments()[-1], lines[1].points)
+    assert {name.text for name in picture.names.shown} == {"desk", "pillar", "screen"}
 
 
 def test_the_filters_map_is_drawn_where_it_differs():
