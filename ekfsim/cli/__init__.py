@@ -22,6 +22,7 @@ MODULES = {
     "comparing": ("diff",),
     "students": ("mutants", "worksheet"),
     "grading": ("grade", "autograder"),
+    "tuning": ("tune",),
 }
 PLACES = {
     name.removesuffix("_packaged"): f"ekfsim.cli.{module}:{name}"

@@ -58,7 +58,8 @@ def sheet(width: float, height: float, title: str, told: str) -> Figure:
 
 def save(figure: Figure, path: Path, told: str) -> None:
     """Write a picture as PNG, with the same in its notes."""
-    figure.savefig(path, dpi=DPI, metadata={"Software": f"ekfsim {VERSION}", "Description": told})
+    notes = {"Software": f"ekfsim {VERSION}", "Description": told}
+    figure.savefig(path, dpi=DPI, format="png", metadata=notes)
 
 
 def panel(axes: Axes, title: str) -> None:

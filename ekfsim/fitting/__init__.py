@@ -1,0 +1,8 @@
+"""The noises that suit a log: fitted to one half of it, and tried on the other.
+
+noises.py      which numbers there are to be fitted, and a scene that is told others
+likelihood.py  how likely the innovations of a log are under what the filter is told
+estimate.py    the most likely numbers, with their intervals
+trial.py       a log halved: fitted, and held against the half that was held back
+written.py     a world and a commands file with the numbers, to be played at once
+"""

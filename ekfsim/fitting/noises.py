@@ -1,0 +1,156 @@
+"""The numbers by which a filter is told of noise: ratios, standard deviations, densities."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+from ekfsim.files.keys.fields import PartKeys, aliases, keys_of_kind
+from ekfsim.models.motions.move_turn import MoveTurn
+from ekfsim.models.protocols import Motion, Sensor
+from ekfsim.models.sensors.laser import Laser
+from ekfsim.records import Control, Entry, Log, Reading
+from ekfsim.scene import Scene
+from ekfsim.world import World
+
+WORDS = ("sigma", "density", "ratio", "floor")  # by which a number of noise is known
+OF_CLASSROOM = {
+    "odometry_distance": "odometryDstSigmaRatio",
+    "odometry_angle": "odometryAngSigmaRatio",
+    "range": "rangeSigmaRatio",
+}
+WHEELS_AT_REST = "floor"
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseNumber:
+    """One of them, by its key in a world file, told to the filter alone."""
+
+    key: str  # "robot.turnDensity", "sensors.gnss.sigma", "noise.rangeSigmaRatio"
+    name: str  # of the field, as the program has it
+    part: str  # "noise", "robot", or what the sensor is called
+    value: float  # as the filter is told: m, rad
+    is_angle: bool  # degrees in a file
+
+    @property
+    def route(self) -> tuple[str, ...]:
+        """Where a world file tells it to the filter alone."""
+        return ("belief", *self.key.split("."))
+
+    def in_file(self, value: float) -> float:
+        """A value of it as a file has it."""
+        return math.degrees(value) if self.is_angle else value
+
+
+def noises_of(scene: Scene) -> tuple[NoiseNumber, ...]:
+    """All that the filter of a scene is told of noise, of what occurs in its log."""
+    return tuple(_noises(scene.world, sensors_in(scene)))
+
+
+def sensors_in(scene: Scene) -> set[str]:
+    """The names of what was read."""
+    entries = () if scene.log is None else scene.log.entries
+    return {entry.given.name for entry in entries if isinstance(entry.given, Reading)}
+
+
+def _noises(world: World, read: set[str]) -> Iterator[NoiseNumber]:
+    robot = world.told_robot
+    if robot is None:
+        for name, alias in OF_CLASSROOM.items():
+            value = getattr(world.told.noise, name)
+            yield NoiseNumber(f"noise.{alias}", name, "noise", value, False)
+        return
+    from ekfsim.files.keys.system import ToldRobotKeys
+    from ekfsim.files.keys.told import ToldSensorsKeys
+
+    yield from _of_part(robot, ToldRobotKeys, "robot", "robot")
+    names = {id(one): set[str]() for one in world.told_instruments}
+    for instrument, target in world.targets("corrected"):
+        names[id(instrument)].add(target.name)
+    for instrument in world.told_instruments:
+        if names[id(instrument)] & read:
+            keys = keys_of_kind(ToldSensorsKeys, instrument.name)
+            called = instrument.called
+            yield from _of_part(instrument, keys, f"sensors.{called}", called)
+
+
+def _of_part(part: Any, keys: type[PartKeys], start: str, called: str) -> Iterator[NoiseNumber]:
+    alias = aliases(keys)
+    for one in fields(part):
+        if one.name in alias and any(word in one.name for word in WORDS):
+            value = getattr(part, one.name)
+            key = f"{start}.{alias[one.name]}"
+            yield NoiseNumber(key, one.name, called, float(value), one.name in keys.angles)
+
+
+def told(world: World, numbers: Sequence[NoiseNumber], values: Sequence[float]) -> World:
+    """The same world, its filter told other numbers."""
+    mine: dict[str, dict[str, Any]] = {}
+    for number, value in zip(numbers, values, strict=True):
+        mine.setdefault(number.part, {})[number.name] = value
+    believed = world.told
+    if noise := mine.pop("noise", None):
+        believed = replace(believed, noise=replace(believed.noise, **noise))
+    if robot := mine.pop("robot", None):
+        anew: Any = world.told_robot
+        believed = replace(believed, robot=replace(anew, **robot))
+    if mine:
+        parts: list[Any] = [
+            replace(one, **mine[one.called])  # type: ignore[type-var]  # all are dataclasses
+            if one.called in mine
+            else one
+            for one in world.told_instruments
+        ]
+        believed = replace(believed, instruments=tuple(parts))
+    return replace(world, told=believed)
+
+
+@dataclass(frozen=True)
+class Retold:
+    """A scene of a log whose filter is told one set of numbers after another."""
+
+    scene: Scene
+    numbers: tuple[NoiseNumber, ...]
+
+    def with_(self, values: Sequence[float], until: int | None = None) -> Scene:
+        """The scene under these values; of its log the first `until` entries, without a truth."""
+        log = self.scene.log
+        assert log is not None
+        world = told(self.scene.world, self.numbers, values)
+        before, after = _parts(self.scene.world, self.scene), _parts(world, self.scene)
+        entries = tuple(
+            Entry(entry.index, _anew(entry.given, world, before, after), t=entry.t)
+            if until is not None
+            else replace(entry, given=_anew(entry.given, world, before, after))
+            for entry in log.entries[:until]
+        )
+        return replace(self.scene, world=world, log=Log(entries, log.first))
+
+
+Parts = tuple[Motion | None, dict[str, Sensor]]
+
+
+def _parts(world: World, scene: Scene) -> Parts:
+    """The motion model and the sensors by their names, as a world's filter is told; none of the
+    classroom, which has one for each bearing.
+    """
+    if world.told_robot is None:
+        noise = world.told.noise
+        return MoveTurn(noise.odometry_distance, noise.odometry_angle), {}
+    sensors = {target.name: target.sensor for _, target in world.targets(scene.reading)}
+    return world.believed_robot.motion(scene.reading), sensors
+
+
+def _anew(
+    given: Control | Reading | None, world: World, before: Parts, after: Parts
+) -> Control | Reading | None:
+    """What the filter is given, with the model of other numbers where its own is the scene's."""
+    match given:
+        case Control(motion, u):
+            same = type(motion) is type(before[0]) and after[0] is not None
+            return Control(after[0], u) if same and after[0] is not None else given
+        case Reading(Laser(walls, bearing, _), z, name):
+            return Reading(Laser(walls, bearing, world.told.noise.range), z, name)
+        case Reading(sensor, z, name) if type(sensor) is type(before[1].get(name)):
+            return Reading(after[1][name], z, name)
+    return given

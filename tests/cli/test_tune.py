@@ -1,0 +1,147 @@
+"""`ekfsim tune`: what it finds, what it writes, and that this can be run at once."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from program import ekfsim
+from scipy.stats import norm
+
+from ekfsim import load_scene
+from ekfsim.fitting.estimate import fit
+from ekfsim.fitting.likelihood import Likelihood, truncation
+from ekfsim.fitting.noises import Retold, noises_of
+from ekfsim.fitting.trial import recorded, tried
+from ekfsim.localization import play
+
+KEYS = [f"noise.{name}SigmaRatio" for name in ("odometryDst", "odometryAng", "range")]
+
+
+def laps(seed=0, times=1):
+    scene = load_scene("diverge-00-control")
+    return replace(scene, commands=scene.commands * times, seed=seed)
+
+
+def doubled(scene):
+    """The same log, its filter told twice the noise there is; and what there is."""
+    scene = recorded(scene)
+    truth = noises_of(scene)
+    return Retold(scene, truth).with_([2 * one.value for one in truth]), truth
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def test_the_likelihood_is_that_of_the_normal_distribution():
+    """Of ranges, one number each: the product of their densities, by scipy."""
+    scene = recorded(laps())
+    density = 0.0
+    for step in play(scene):
+        if (c := step.correction) is not None:
+            density -= norm.logpdf(float(c.innovation[0]), scale=np.sqrt(float(c.S[0, 0])))
+    n = sum(step.correction is not None for step in play(scene))
+    constant = n * np.log(2 * np.pi) / 2
+    assert Likelihood().of(scene) + constant == pytest.approx(density)
+
+
+def test_it_finds_the_ratios_of_a_simulated_log_within_its_intervals():
+    off, truth = doubled(laps(times=3))
+    found = fit(Retold(off, noises_of(off)), len(off.log.entries), None)
+    assert [one.number.key for one in found.found] == KEYS
+    for one, right in zip(found.found, truth, strict=True):
+        assert one.low <= right.value <= one.high
+        assert one.low < one.value < one.high < 3 * right.value
+
+
+def test_a_gate_does_not_fool_it():
+    """A filter that is told far too little noise refuses nearly all, and still finds it."""
+    scene = recorded(laps(3))
+    truth = noises_of(scene)
+    off = Retold(scene, truth).with_([one.value / 4 for one in truth])
+    refused = sum(bool(s.correction.refused) for s in play(replace(off, gate=0.99)) if s.correction)
+    assert refused > 10
+    found = fit(Retold(off, noises_of(off)), len(off.log.entries), 0.99)
+    for one, right in zip(found.found, truth, strict=True):
+        assert one.low / 1.3 <= right.value <= 1.3 * one.high
+    assert len(found.left_out) < 10
+
+
+def test_what_a_gate_leaves_has_a_smaller_variance():
+    w = np.random.default_rng(1).normal(size=(200_000, 2))
+    nis = (w * w).sum(axis=1)
+    kept = nis[nis < np.quantile(nis, 0.9)]
+    assert truncation(0.9, 2) == pytest.approx(kept.mean() / 2, rel=0.01)
+
+
+def test_a_half_that_was_held_back_says_how_it_does():
+    off, _ = doubled(laps(1))
+    trial = tried(off)
+    assert trial.before.mean < 0.5
+    assert trial.after.mean == pytest.approx(1.0, abs=0.45)
+    assert trial.after.cost < trial.before.cost
+    assert not trial.is_worse
+    assert trial.after.evidence.nis_readings == 32
+    assert tried(off, KEYS[2:]).fit == tried(off, KEYS[2:]).fit
+
+
+@pytest.fixture
+def log():
+    Path("mine.yaml").write_text(
+        "world: room\ncommands:\n  - repeat:\n      times: 30\n      commands:\n"
+        "        - move: {distance: 0.5, angle: 0}\n        - sense: {angle: 0}\n"
+        "        - sense: {angle: 90}\n        - move: {distance: -0.5, angle: 37}\n"
+        "        - sense: {angle: 180}\n        - sense: {angle: -90}\n"
+    )
+    assert ekfsim("record", "mine.yaml", "--world", "room", "-o", "log", "--truth").status == 0
+    return "log"
+
+
+def test_what_is_written_can_be_run(log):
+    told = ekfsim("tune", "mine.yaml", "--log", log, "-o", "out/tuned.yaml")
+    assert (told.status, told.err) == (0, "")
+    assert sorted(path.name for path in Path("out").iterdir()) == [
+        "tuned-world.yaml", "tuned.png", "tuned.yaml",
+    ]  # fmt: skip
+    assert "On the second half, which was held back:" in told.out
+    for key in KEYS:
+        assert key in told.out
+    assert ekfsim("check", "out/tuned.yaml", "out/tuned-world.yaml").status == 0
+    scene, before = load_scene("out/tuned.yaml"), load_scene("mine.yaml", log=log)
+    assert scene.world.told.noise.range != before.world.told.noise.range
+    assert scene.world.noise == before.world.noise
+    assert len(scene.log.entries) == len(before.log.entries)
+    assert ekfsim("run", "out/tuned.yaml", "-q").status == 0
+
+
+def test_one_number_alone(log):
+    options = "tune", "mine.yaml", "--log", log, "-o", "tuned.yaml"
+    told = ekfsim(*options, "--fit", "noise.rangeSigmaRatio")
+    assert told.status == 0
+    assert "odometry" not in told.out
+    assert ekfsim(*options).status == 2  # they exist
+    assert ekfsim(*options, "--force").status == 0
+
+
+@pytest.mark.parametrize(("options", "line"), [
+    (["--fit", "noise.rangeSigmaratio"],
+     "--fit noise.rangeSigmaratio: no noise that this filter is told of; known: "),
+    (["--filter", "pf"], "pf: its own draws make every trial another; tune ekf or ukf"),
+    (["--filter", "ekf,ukf"], "--filter: numbers are fitted for one filter; name one"),
+])  # fmt: skip
+def test_what_cannot_be_is_refused(options, line):
+    refused = ekfsim("tune", "tour", "-o", "tuned.yaml", *options)
+    assert refused.status == 2
+    assert refused.err.startswith(f"ekfsim: {line}") or "15 readings" in refused.err
+
+
+def test_too_few_readings_and_no_name_for_a_file():
+    refused = ekfsim("tune", "square", "-o", "tuned.yaml")
+    assert refused.status == 2
+    assert refused.err == (
+        "ekfsim: commands/square.yaml: 4 readings tell no noise; at least 40 are wanted\n"
+    )
+    assert ekfsim("tune", "tour", "-o", "tuned.txt").status == 2
+    assert not list(Path().iterdir())
