@@ -86,8 +86,8 @@ class RecordingKeys(Strict):
     angle_unit: AngleUnit | None = Field(
         None,
         alias="angleUnit",
-        description="What bearings and headings are in: radians or degrees. Where absent, as the "
-        "format has them.",
+        description="What bearings, headings and turn rates are in: radians or degrees. Where "
+        "absent, as the format has them, or found where the numbers can be nothing else.",
         examples=["degrees"],
     )
     targets: Targets | None = Field(

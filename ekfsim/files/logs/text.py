@@ -21,6 +21,8 @@ class Lines:
     numbers: list[int]  # of each line, from 1
     texts: list[str]
     ended: bool  # whether the last line has its line break
+    # the comment before the first of them, which may name the columns, as numpy and rostopic write
+    remark: str = ""
 
     def __len__(self) -> int:
         return len(self.texts)
@@ -83,4 +85,9 @@ def _numbered(shown: str, text: str) -> Lines:
         if line.strip() and line.lstrip()[0] not in COMMENTS
     ]
     ended = ended or not kept or kept[-1][0] != len(texts)
-    return Lines(shown, [n for n, _ in kept], [line for _, line in kept], ended)
+    before = texts[: kept[0][0] - 1] if kept else []
+    remark = next((line for line in reversed(before) if line.strip()), "").strip()
+    return Lines(
+        shown, [n for n, _ in kept], [line for _, line in kept], ended,
+        remark.lstrip("#% \t") if remark[:1] in COMMENTS else "",
+    )  # fmt: skip

@@ -129,6 +129,17 @@ def test_without_a_first_line_the_columns_go_by_their_places(tmp_path):
     )
 
 
+@pytest.mark.parametrize("comment", ["# node, x, y", "%node,x,y", "# by hand\n# id,y,x"])
+def test_a_comment_that_names_all_columns_is_their_first_line(tmp_path, comment):
+    sound = ranges(tmp_path / "sound")
+    rows = ["1,2.5,0.5", "2,3.5,0.5", "3,0,0", "4,1,1"]
+    if comment.endswith("id,y,x"):
+        rows = ["1,0.5,2.5", "2,0.5,3.5", "3,0,0", "4,1,1"]
+    found = ranges(tmp_path / "log", **{"nodes.csv": "\n".join([comment, *rows, ""])})
+    same(found, sound)
+    assert not any("no first line" in told for told in found.warnings)
+
+
 @pytest.mark.parametrize(
     ("nodes", "wrong"),
     [

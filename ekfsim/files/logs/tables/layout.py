@@ -39,6 +39,8 @@ def layout_of(lines: Lines, table: Table, warnings: list[str]) -> Layout:
     lines = replace(lines, texts=[unquoted(text) for text in lines.texts])
     first = _names_in(lines.texts[0]) if len(lines) else []
     body = replace(lines[1:], ended=lines.ended or len(lines) == 1) if first else lines
+    if not first and table.named and _names_all(remarked := _names_in(lines.remark), table):
+        first = remarked
     if first:
         found = _by_names(lines, first, table, warnings)
         places, widths, units = found if found else (table.places, table.widths, {})
@@ -74,6 +76,8 @@ def unquoted(text: str) -> str:
 
 def _names_in(line: str) -> list[Named]:
     """The names in a first line; none where it is a row of numbers."""
+    if not line:
+        return []
     mark = separator_of(line) or ("\t" if "\t" in line.strip() else None)
     fields = [field.strip() for field in line.strip().split(mark)]
     while fields and not fields[-1]:
@@ -81,6 +85,14 @@ def _names_in(line: str) -> list[Named]:
     numbers = [is_number(field) for field in fields]
     are_names = not any(numbers) and any(field[:1].isalpha() for field in fields)
     return [named(field) for field in fields] if are_names else []
+
+
+def _names_all(names: list[Named], table: Table) -> bool:
+    """Whether a comment above the rows names all columns that are wanted."""
+    return bool(names) and all(
+        len(_exactly(column, names) or _nearly(column, names, table)) == 1
+        for column in table.columns
+    )
 
 
 def _by_names(
