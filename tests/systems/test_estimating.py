@@ -3,18 +3,22 @@
 import math
 from collections import deque
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.stats
 
-from ekfsim.files.scenes.load import load_scene
+from ekfsim.files.packaged import resolve
+from ekfsim.files.scenes.load import load_scene, read_scene
+from ekfsim.files.scenes.settings import setting
 from ekfsim.filters import FILTERS
 from ekfsim.localization import play
 from ekfsim.records import Control
 from ekfsim.systems.faults import DriveFaults
 from ekfsim.twins import taking
 
+PLAZA = Path(__file__).parents[3] / "shared/data/plaza2_mower_ranges"
 HEAD = """
 name: room
 start: {x: 0, y: 0, theta: 20}
@@ -153,3 +157,17 @@ def test_belief_adds_to_and_overrules_what_the_robot_says(tmp_path):
         ("wheel_scale", 0.2, 0.01),
         ("turn_scale", 0.1, 0.0),
     ]
+
+
+@pytest.mark.skipif(not PLAZA.is_dir(), reason="the recorded logs are not here")
+def test_it_finds_the_drift_of_a_recorded_gyro():
+    """Plaza 2: by the truth its gyro loses 2.2 rad in 410 s (../shared/data/README.md)."""
+    settings = [setting("robot.estimate.gyroBias.sigma=1")]
+    log, told = str(PLAZA), resolve("ranges_log", "commands")
+    (plain,), (found,) = (
+        deque(play(read_scene(told, None, log, settings=some).get()), maxlen=1)
+        for some in ((), settings)
+    )
+    assert plain.layout.names == ("x", "y", "theta")
+    assert found.posterior.mean[3] * 410 == pytest.approx(-2.2, abs=0.2)
+    assert math.sqrt(found.posterior.covariance[3, 3]) < math.radians(0.1)

@@ -151,7 +151,7 @@ def numbers_of(model: Any) -> dict[str, Any]:
         if isinstance(value, Walls):
             found["circles"] = value.circles
             value = value.segments
-        if isinstance(value, tuple):
+        if isinstance(value, tuple) and not any(map(dataclasses.is_dataclass, value)):
             value = np.array(value, float)
         if isinstance(value, bool | int | float | np.ndarray):
             found[one.name] = value

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ekfsim.models.sensors.mounted import Mount
 from ekfsim.records import Control, Reading
 
 MODELS = "ekfsim.models."
@@ -60,8 +61,10 @@ class Teller:
 
     def _value(self, value: Any) -> Any:
         match value:
-            case bool() | int() | float() | str():
+            case bool() | int() | float() | str() | None:
                 return value
+            case Mount():
+                return ["model", type(value).__module__, "Mount", [*value]]
             case np.ndarray():
                 return ["array", value.dtype.str, value.shape, value.ravel().tolist()]
             case tuple():
@@ -96,7 +99,7 @@ class Listener:
                 return self._models[slot]
             case ["model", str(module), str(name), values] if _ours(module):
                 return getattr(import_module(module), name)(*map(self._made, values))
-            case bool() | int() | float() | str():
+            case bool() | int() | float() | str() | None:
                 return told
         raise TypeError(f"{told!r} is no part of a model")
 

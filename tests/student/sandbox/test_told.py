@@ -8,8 +8,11 @@ import pytest
 
 import ekfsim.models
 from ekfsim.models.layout import SPEED_POSE, Layout
-from ekfsim.models.protocols import Sensor
+from ekfsim.models.motions.biased import Misread
+from ekfsim.models.motions.unicycle import Unicycle
+from ekfsim.models.protocols import Motion, Sensor
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.models.sensors.mounted import Mount
 from ekfsim.models.sensors.yaw import Yaw
 from ekfsim.raycast.walls import Walls
 from ekfsim.records import Control, Reading
@@ -21,6 +24,10 @@ PARTS = {
     bool: lambda number: False,
     Walls: lambda number: WALLS,
     Layout: lambda number: SPEED_POSE,
+    Mount: lambda number: Mount(0.1, 0.2, 0.3 + number),
+    tuple[Misread, ...]: lambda number: (Misread((0, 1), True), Misread((2,), False, 3, 0.5)),
+    int | None: lambda number: None,
+    Motion: lambda number: Unicycle(0.1, 0.2),
     Sensor: lambda number: Yaw(0.1, 0.2),
     tuple[tuple[float, float], ...]: lambda number: ((0.1, 0.2), (0.3, 0.4), (0.5, number)),
 }
