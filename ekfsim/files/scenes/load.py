@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from ekfsim.errors import LogRemark, Mistake, UsageError
+from ekfsim.errors import InputError, LogRemark, Mistake, UsageError
 from ekfsim.files.given.given import Given, called, given_in
 from ekfsim.files.keys.commands import (
     WAYS,
@@ -189,7 +189,12 @@ def scene_in(
     told, along = list[str](), None
     if world is None and sound.root.at(("world",)) is None:
         recording = keys.recording if isinstance(keys, CommandsKeys) else None
-        along = world_of_log(sound, recording, path, log, told)
+        try:
+            along = world_of_log(sound, recording, path, log, told)
+        except InputError as error:
+            return Loaded(None, [*file.mistakes, *error.mistakes], [*file.warnings, *told])
+        except UsageError as error:
+            return Loaded(None, file.mistakes, [*file.warnings, *told], error)
     logged = sound.value("recording", "format") in WITH_LANDMARKS
     missing, found = list[Mistake](), Loaded[World]()
     if isinstance(world, World):

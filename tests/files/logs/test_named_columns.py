@@ -9,6 +9,7 @@ from log_worlds import errors, lay, table
 from test_named_logs import CORNERS, arc, chords, perfect, scene_of
 
 from ekfsim.errors import UsageError
+from ekfsim.files.packaged import resolve
 from ekfsim.files.scenes.load import load_scene, read_scene
 from ekfsim.files.scenes.settings import setting
 from ekfsim.localization import play
@@ -191,10 +192,11 @@ def test_motions_and_readings_may_share_the_rows_of_one_file(tmp_path):
     text = "t,v,omega,x,y\n0,1,0,,\n0.5,1,0,2.5,1\n0.75,,,2.75,1\n1,1,0,3,1\n"
     lay(tmp_path, **{"all.csv": text, "w.yaml": HEAD.format("ranges") + "sensors: [gnss: {}]\n"})
     (tmp_path / "c.yaml").write_text("world: w.yaml\nrecording: {format: log, path: all.csv}\n")
-    found = read_scene(tmp_path / "c.yaml", settings=[setting("start.theta=0")])
+    start = [setting(f"start.{axis}") for axis in ("x=2", "y=1", "theta=0")]
+    found = read_scene(tmp_path / "c.yaml", settings=start)
     steps = list(play(found.get()))
     assert any("no motion stands in this row: left out" in told for told in found.warnings)
-    assert [step.entry.t for step in steps if step.correction] == [0.75, 1.0]
+    assert [step.entry.t for step in steps if step.correction] == [0.5, 0.75, 1.0]
     assert max(step.correction.nis for step in steps if step.correction) < 1e-3
 
 
@@ -207,3 +209,29 @@ def test_a_pylon_s_offset_is_read_as_it_is_used(tmp_path):
     assert seen.z.tolist() == [3, -6]
     (step,) = [step for step in play(scene) if step.correction]
     assert np.abs(step.correction.innovation).max() < 1e-12
+
+
+def told(folder, motion, readings, *settings):
+    """The mistakes of a log without a world, or what it is refused with."""
+    log = laid(folder, motion, readings, None)
+    found = read_scene(resolve("log", "commands"), None, log, settings=[*map(setting, settings)])
+    lines = [*map(str, found.mistakes), *([str(found.refusal)] if found.refusal else [])]
+    return [line.removeprefix(str(log)).lstrip("/: ") for line in lines]
+
+
+def test_what_is_wrong_with_a_log_without_a_world_is_told(tmp_path):
+    rows, fix = "t,v,omega\n0,1,0\n1,1,0\n", "t,x,y\n1,1,0\n"
+    assert told(tmp_path / "a", rows[:16], fix) == [
+        "the motion has one instant alone: there is no way to localize on; it needs two rows of "
+        "different times"
+    ]
+    assert told(tmp_path / "b", rows, "t,target,range\n1,7,3\n") == [
+        "readings.csv:1:1: the world has no sensor that could see anything, or nothing to be seen; "
+        "write landmarks.csv (id,x,y) in the log, or landmarks: and sensors: in the world"
+    ]
+    odd = rows.replace("omega", "rate")
+    (line,) = told(tmp_path / "c", odd, fix)
+    assert line.startswith("motion.csv:1:1: no column is named as a motion's are; write t,v,omega")
+    assert told(tmp_path / "d", odd, fix, "recording.columns.omega=rate") == []
+    (line,) = told(tmp_path / "e", rows, fix, "recording.motion.file=drive.csv")
+    assert line == "drive.csv: no such file"

@@ -42,7 +42,7 @@ def read_tables(asked: Asked, files: Sources) -> Recorded:
         tables.append(opened(source, READINGS))
         samples += samples_of(tables[-1], of_readings, fittings, asked, rows)
     _refuse_unknown(asked, [motion, *tables])
-    start = float(motions.begin[0])
+    start = float(motions.begin[0]) if len(motions.begin) else float(rows.t[0])
     timeline = Timeline(str(path), start, motions, samples, truth, landmarks, between=False)
     return timeline.recorded(world, reading, warnings)
 

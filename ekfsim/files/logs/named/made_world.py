@@ -104,7 +104,7 @@ def _world(
     sensors: Iterable[dict[str, object]] | None = None,
 ) -> dict[str, object]:
     start = {"x": 0.0, "y": 0.0, "theta": 0.0}
-    own: dict[str, object] = {"name": "made of the log's columns", "system": system, "start": start}
+    own: dict[str, object] = {"name": "a made world", "system": system, "start": start}
     if robot:
         own["robot"] = robot
     return own if sensors is None else {**own, "sensors": list(sensors)}

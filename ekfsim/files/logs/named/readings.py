@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.keys.columns import ReadingsKeys
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.named.sigmas import as_sure, columns_of_sigmas, sigmas_of
@@ -115,9 +116,14 @@ def turned_to(sensor: Sensor, bearing: float) -> Sensor:
 def _fit(table: Table, keys: ReadingsKeys, fittings: Sequence[Fitting]) -> list[Fitting]:
     """The instruments whose columns a table has. Raises InputError where there is none."""
     known = [one for one in fittings if keys.sensor is None or keys.sensor in one.names]
+    if not fittings:
+        right = "landmarks.csv (id,x,y) in the log, or landmarks: and sensors: in the world"
+        wrong = "the world has no sensor that could see anything, or nothing to be seen"
+        raise InputError([Mistake(Place(table.file, 1, 1), "", wrong, f"write {right}")])
     if not known:
-        there = ", ".join(one.instrument.called for one in fittings) or "none"
-        raise table.lacks(f"for the sensor {keys.sensor!r}", f"the world has: {there}")
+        there = ", ".join(one.instrument.called for one in fittings)
+        wrong = f"the world has no sensor {keys.sensor!r} that could see anything"
+        raise InputError([Mistake(Place(table.file, 1, 1), "", wrong, f"it has: {there}")])
     fit = [one for one in known if table.has(*one.columns)]
     if not fit:
         wanted = " or ".join(f"t,{','.join(one.columns)}" for one in known)
