@@ -20,6 +20,7 @@ WALL_COSTS = 1.5  # λ, in squares of the tolerance
 TRIES = 16  # before an outline keeps its steps
 NARROW = math.radians(12.0)  # lines that differ by less have no corner of their own
 BOX = 4  # corners of what is straight as it is
+TURNED = 0.25  # of the tolerance: how far a wall's ends are moved at most to lie along others
 SAME = 0.35  # of the tolerance: offsets of walls that differ by less are one line
 
 
@@ -219,13 +220,11 @@ def _shortest(moments: _Moments, first: int, last: int, cost: float) -> list[int
 
 
 def _snapped(wall: Wall, main: float, tolerance: float) -> Wall:
-    """The wall along a main direction, where that moves its ends by less than half the
-    tolerance.
-    """
+    """The wall along a main direction, where that does not move its ends far."""
     quarter = math.pi / 2
     quarters = round((wall.direction - main) / quarter)
     along = main + quarter * quarters
-    if abs(math.sin(wall.direction - along)) * wall.length / 2 > tolerance / 2:
+    if abs(math.sin(wall.direction - along)) * wall.length / 2 > TURNED * tolerance:
         return wall
     turned = replace(wall, direction=along)
     return replace(turned, facing=quarters % 4, line=turned.offset())
