@@ -8,4 +8,5 @@ terminal/   a run at the keyboard            worksheet/ the narrative with gaps
 page/       a run as one page for a browser  gallery/   all scenarios as a web site
 notebook/   what a notebook shows
 study/      what is told of many runs        student/   what is told of students' filters
+fitting/    what is told of noises that were fitted to a log
 """
