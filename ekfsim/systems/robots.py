@@ -140,6 +140,7 @@ class GnssMower:
     half_track: float = 0.27  # m, R of the document
     speed_density: float = 0.10  # m/s per √Hz
     turn_density: float = 0.30  # rad/s per √Hz: the wheels do not follow the true yaw rate well
+    start_speed_sigma: float = 1.0  # m/s, how little the first belief knows of the speed
     layout: Layout = field(default=SPEED_POSE, init=False)
 
     def motion(self, reading: DocumentReading) -> Motion:
@@ -150,7 +151,8 @@ class GnssMower:
 
     def first_covariance(self, reading: DocumentReading) -> Array:
         """V is not known, the pose to 5 cm and 0.05 rad; the recipe begins with the identity."""
-        return np.eye(4) if reading == "coded" else np.diag([1.0, 0.05, 0.05, 0.05]) ** 2
+        own = np.diag([self.start_speed_sigma, 0.05, 0.05, 0.05]) ** 2
+        return np.eye(4) if reading == "coded" else own
 
     def ideal(self, tick: Tick) -> Array:
         """v_L, v_R, dt"""

@@ -257,6 +257,13 @@ class ToldRobotKeys(PartKeys):
             "turn_density", "Noise of the turn rate, degrees per second per √Hz.", True
         ),
     )
+    start_speed_sigma: Spread | None = Field(
+        None,
+        alias="startSpeedSigma",
+        description=of_robots(
+            "start_speed_sigma", "Standard deviation of the speed in the first belief, m/s."
+        ),
+    )
     forward_sigma: Spread | None = Field(
         None,
         alias="forwardSigma",

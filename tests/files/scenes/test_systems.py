@@ -388,7 +388,7 @@ ROOMS = {
         [
             "5:18: belief.robot: unknown key 'rate'; known keys here: width, wheelSigma, "
             "positionSigma, headingSigma, gyroSigma, wheelRatio, wheelFloor, odometry, skid, "
-            "skidSigma, halfTrack, speedDensity, turnDensity, forwardSigma, lateralSigma, "
+            "skidSigma, halfTrack, speedDensity, turnDensity, startSpeedSigma, forwardSigma, lateralSigma, "
             "yawSigma, distanceDensity, headingDensity, estimate",
             "5:38: belief.robot.halfTrack: the robot of the system 'mower' has no key "
             "'halfTrack'; it has: width, wheelSigma, positionSigma, headingSigma, gyroSigma, "
