@@ -64,3 +64,13 @@ def test_a_picture_names_its_map(place):
         "ekfsim: map.pgm: a picture does not tell how large its pixels are; name the map.yaml of "
         "it, 'map.yaml'\n",
     )
+
+
+def test_commands_that_name_a_map_as_their_world_are_told_what_makes_one(place):
+    (place / "go.yaml").write_text("world: map.yaml\ncommands: [{sense: {angle: 0}}]\n")
+    told = ekfsim("run", "go.yaml")
+    assert (told.status, told.err) == (
+        2,
+        "map.yaml:1:1: this is a ROS map; `ekfsim world map.yaml -o world.yaml` makes a world of "
+        "it\n",
+    )

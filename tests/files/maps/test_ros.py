@@ -184,3 +184,12 @@ def test_every_map_of_random_cells_is_a_world(tmp_path):
     for size, share, unknown in ((12, 0.2, "wall"), (25, 0.35, "wall"), (25, 0.3, "free")):
         pixels = rng.choice([0, 205, 254], (size, size), p=[share / 2, share / 2, 1 - share])
         make(write(tmp_path, pixels), "map.yaml", Asked(unknown=unknown), None)
+
+
+def test_slits_that_nobody_has_seen_are_free_and_keys_that_are_not_read_are_told(tmp_path):
+    pixels = room(40, 60)
+    pixels[20:22, 10:50] = 205
+    plan = plan_of(write(tmp_path, pixels, colour="red"))
+    assert plan.outlines == ()
+    assert plan.told[0] == "the key 'colour' of the map is not read"
+    assert "1 slit of unknown cells among free ones, beside nothing occupied, is free" in plan.told
