@@ -159,7 +159,7 @@ def _of_one(
         if target is None:
             unknown.append(row)
             continue
-        sensor = as_sure(target.sensor, σ[row])
+        sensor = as_sure(target.sensor, σ[row]) if sigmas else target.sensor
         read = Reading(sensor, one.z(values[row]), target.name)
         samples.append(Sample(t, read, target.delay))
     if unknown:
