@@ -26,6 +26,8 @@ NOT_RUN = {  # these are understood, and no more
     "--show image": "asks for a terminal that draws pictures: tests/views/terminal/ plays one",
     "--watch": "asks for an editor: tests/views/terminal/test_watching.py saves files itself",
     "docker": "asks for a container",
+    "tune ": "asks for a log of a minute: tests/cli/test_tune.py has its own",
+    "run tuned.yaml": "asks for what that writes: tests/cli/test_tune.py runs it",
     "--cluster": "asks for a scheduler: tests/study/running/test_cluster.py has its own",
 }
 OPTIONS = {
@@ -111,6 +113,7 @@ def run(line: str) -> None:
                 run(READERS[name])
     command = " ".join(words)
     in_full = "--expect" in words or "--step" in words or command in QUOTED
+    in_full |= "_log" in command  # a recording has no runs
     quicker = [] if in_full else QUICKER.get(words[0], [])
     with pytest.MonkeyPatch.context() as patched:
         for name, value in environment.items():
