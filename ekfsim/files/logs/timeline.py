@@ -104,10 +104,11 @@ class Timeline:
 
     def _at_fix(self, world: World, reading: DocumentReading, warnings: list[str]) -> Log | None:
         """The log from its first fix on; None where there is none, where somebody told the start,
-        or where the fixes bear out the start of a world of one's own.
+        or where the fixes bear out the start of a world of one's own. The authors' own programs
+        (`coded`) take no fix for a start.
         """
         samples, fix = self._first_fix()
-        if fix is None or all(world.told.start_said[:2]):
+        if fix is None or reading == "coded" or all(world.told.start_said[:2]):
             return None
         found = list[str]()
         entries = self._entries(samples, fix.t, None, found)
