@@ -7,6 +7,7 @@ from ekfsim.errors import UsageError
 from ekfsim.files.keys.recording import BAG, SYSTEM_OF, RecordingKeys, misfit
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.bags.bag import read_bag
+from ekfsim.files.logs.bags.topics import BAGS
 from ekfsim.files.logs.folder import refuse_foreign
 from ekfsim.files.logs.formats.classroom import CLASSROOM, read_classroom
 from ekfsim.files.logs.formats.gnss import GNSS, read_gnss
@@ -40,7 +41,8 @@ FORMATS: dict[str, Reader] = {
 }
 # what the files of each hold, for readers, refusals, `ekfsim schema recording` and the docs
 DECLARED: dict[str, Format] = {
-    format.name: format for format in (LOG, PYLON, GNSS, MOWER, MRCLAM, PLAZA, PIONEER, CLASSROOM)
+    format.name: format
+    for format in (LOG, BAGS, PYLON, GNSS, MOWER, MRCLAM, PLAZA, PIONEER, CLASSROOM)
 }
 
 

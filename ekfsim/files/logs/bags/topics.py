@@ -6,6 +6,7 @@ from typing import Any
 
 from ekfsim.errors import UsageError
 from ekfsim.files.keys.topics import TopicsKeys
+from ekfsim.files.logs.tables.declared import Format
 from ekfsim.files.yaml.telling import nearest, quoted
 
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -22,6 +23,14 @@ TYPES = {  # of the messages that can tell it; of landmarks any with a list of p
     "scan": (SCAN,),
     "truth": POSES,
 }
+_READ = "; ".join(f"`{role}` from {', '.join(types)}" for role, types in TYPES.items())
+BAGS = Format(
+    "bag",
+    "A ROS 1 bag, a bag of ROS 2 or an MCAP file, read by the package rosbags (`pip install "
+    f"'ekfsim[bags]'`). `topics:` of the recording says which topic tells what: {_READ}.",
+    (),
+    alone=True,
+)
 FOUND = {"motion": ODOMETRY, "fix": FIX, "scan": SCAN}  # by their type, where no topic is named
 
 

@@ -50,7 +50,7 @@ def page(format: Format) -> str:
     where = "one CSV file, named itself or by its folder" if format.alone else "a folder of files"
     parts = [
         f"# Logs of the format `{format.name}`",
-        f"{format.told} The log is {where}:",
+        f"{format.told} The log is {where}:" if format.tables else format.told,
         f"```yaml\nrecording: {{format: {format.name}, path: ../logs/mine}}\n```",
         *(_section(table) for table in format.tables),
         READ_AS if any(table.columns[0].unit == "s" for table in format.tables) else AS_JSON,
