@@ -44,7 +44,10 @@ def make(path: Path, shown: str, asked: Asked, name: str | None) -> Made:
     start = asked.start or plan.start
     if start is None:
         if (chosen := roomiest(plan)) is None:
-            raise UsageError(f"{shown}: a robot can stand nowhere in this plan; see --start")
+            raise UsageError(
+                f"{shown}: a robot can stand nowhere in this plan; where its outlines are rooms, "
+                "say --outlines walls, else see --start"
+            )
         start, room = chosen
         x, y, _ = start
         told.append(
