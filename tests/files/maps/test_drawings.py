@@ -278,10 +278,10 @@ def test_all_that_is_no_geometry_is_told(made):
     with pytest.raises(InputError) as refused:
         made(
             "POLYGON ((0 0, 1 0, 1 1, 0 1))\nLINESTRING (0 0, 1 1)\nPOLYGON ((0 0, 1 x, 1 1))\n"
-            "LINE (",
+            "CIRCULARSTRING (0 0, 1 1, 2 0)\nLINE (",
             "wkt",
         )
-    assert [one.place.line for one in refused.value.mistakes] == [1, 3, 4]
+    assert [one.place.line for one in refused.value.mistakes] == [1, 3, 4, 5]
 
 
 # beams

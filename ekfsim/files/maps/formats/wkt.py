@@ -33,7 +33,7 @@ def read(head: Head, asked: Asked) -> Plan:
             text = text[marked.end() :]
         try:
             shapes.append(shapely.from_wkt(text))
-        except shapely.errors.GEOSException as error:
+        except (shapely.errors.GEOSException, NotImplementedError) as error:
             wrong = str(error).split("Exception: ")[-1].rstrip(". ")
             why = f"{quoted(text.strip()[:40])} is no geometry: {wrong}"
             mistakes.append(
