@@ -15,6 +15,7 @@ from ekfsim.records import Log, Reading
 from ekfsim.scene import Scene
 
 LEAST = 40  # readings of a log
+CLEARLY = 5.0  # of −ln p: what was told right may well do better than what is fitted, by less
 
 
 @dataclass(frozen=True)
@@ -46,8 +47,8 @@ class Trial:
 
     @property
     def is_worse(self) -> bool:
-        """Whether the second half is less likely under what was fitted to the first."""
-        return self.after.cost > self.before.cost
+        """Whether the second half is clearly less likely under what was fitted to the first."""
+        return self.after.cost > self.before.cost + CLEARLY
 
     @property
     def half(self) -> float:
