@@ -11,7 +11,7 @@ from ekfsim.files.given.given import is_own
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.start.belief import assumed, at_fix, at_truth, bears_out
 from ekfsim.files.logs.start.course import is_fix
-from ekfsim.files.logs.start.instant import first_known, refuse_apart, span, tell_unknown
+from ekfsim.files.logs.start.instant import first_known, of_the_motion, span, tell_unknown
 from ekfsim.files.logs.truth import Truth
 from ekfsim.geometry import Array, Booleans
 from ekfsim.models.protocols import Motion
@@ -85,10 +85,10 @@ class Timeline:
             wrong = "the motion has one instant alone: there is no way to localize on"
             raise UsageError(f"{self.name}: {wrong}; it needs two rows of different times")
         if truth is not None:
-            refuse_apart(truth, start, ends, self.name)
-            if not all(world.told.start_said):
-                known = first_known(truth, start, ends, self.name, warnings)
-                truth, start = (None, start) if known is None else (truth, known)
+            truth = of_the_motion(truth, start, ends, self.name, warnings)
+        if truth is not None and not all(world.told.start_said):
+            known = first_known(truth, start, ends, self.name, warnings)
+            truth, start = (None, start) if known is None else (truth, known)
         if truth is not None:
             tell_unknown(truth, start, ends, self.name, warnings)
         elif (begun := self._at_fix(world, reading, warnings)) is not None:

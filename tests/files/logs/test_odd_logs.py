@@ -445,7 +445,17 @@ def test_a_log_starts_where_its_truth_does(log):
     with pytest.raises(UsageError) as refused:
         read("gnss", LOG)
     spans = "the truth is of 100 to 101 s, the motion of 0 to 1 s"
-    assert str(refused.value) == f"log: the truth and the motion have no instant in common: {spans}"
+    told = f"log: the truth and the motion have no instant in common: {spans}"
+    assert str(refused.value) == f"{told}; put them on one clock, or take the truth away"
+
+
+@pytest.mark.parametrize("late", [1.5, -1.5])
+def test_a_truth_cut_out_of_another_part_of_a_log_is_unknown(log, late):
+    log(truth=table("t,x,y,phi", [[t + late, *pose] for t, *pose in TRUTH]))
+    found = read("gnss", LOG)
+    assert all(entry.truth is None for entry in found.log.entries)
+    assert "no instant in common" in found.warnings[0]
+    assert "the truth is unknown" in found.warnings[0]
 
 
 def test_a_truth_that_ends_long_before_the_log_is_told(log):

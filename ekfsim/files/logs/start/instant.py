@@ -9,11 +9,25 @@ from ekfsim.files.logs.truth import Truth
 from ekfsim.geometry import Array
 
 
-def refuse_apart(truth: Truth, start: float, ends: Array, name: str) -> None:
-    """Raise UsageError where the truth is of another time than the motions. ends : (n,) s"""
-    if truth.t[-1] < start or truth.t[0] >= ends[-1]:
-        told = f"the truth is of {span(truth.t)}, the motion of {span([start, ends[-1]])}"
-        raise UsageError(f"{name}: the truth and the motion have no instant in common: {told}")
+def of_the_motion(
+    truth: Truth, start: float, ends: Array, name: str, warnings: list[str]
+) -> Truth | None:
+    """The truth; None where it ends before the motion begins, or begins after its end, as where
+    somebody cut both out of a longer log: it is unknown then, and that is told. ends : (n,) s
+
+    Raises UsageError where they are so far apart that their clocks must differ.
+    """
+    apart = max(start - truth.t[-1], truth.t[0] - ends[-1])
+    if apart <= 0 and truth.t[0] < ends[-1]:
+        return truth
+    told = (
+        f"the truth and the motion have no instant in common: the truth is of {span(truth.t)}, "
+        f"the motion of {span([start, ends[-1]])}"
+    )
+    if apart > max(float(ends[-1]) - start, float(np.ptp(truth.t))):
+        raise UsageError(f"{name}: {told}; put them on one clock, or take the truth away")
+    warnings.append(f"{name}: {told}: the truth is unknown, and so are the errors")
+    return None
 
 
 def first_known(
