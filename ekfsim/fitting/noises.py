@@ -9,6 +9,7 @@ from ekfsim.files.keys.fields import PartKeys, aliases, keys_of_kind
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.protocols import Motion, Sensor
 from ekfsim.models.sensors.laser import Laser
+from ekfsim.models.sensors.mounted import Mounted
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.scene import Scene
 from ekfsim.world import World
@@ -51,6 +52,25 @@ def sensors_in(scene: Scene) -> set[str]:
     """The names of what was read."""
     entries = () if scene.log is None else scene.log.entries
     return {entry.given.name for entry in entries if isinstance(entry.given, Reading)}
+
+
+def told_by_readings(scene: Scene) -> set[str]:
+    """The sensors each of whose readings tells by itself how sure it is, so that no number of the
+    sensor's own says anything.
+    """
+    world, log = scene.world, scene.log
+    if world.told_robot is None or log is None:
+        return set()
+    targets = world.targets(scene.reading)
+    own = {target.name: (part.called, target.sensor) for part, target in targets}
+    read, as_sure = set[str](), set[str]()
+    for entry in log.entries:
+        if isinstance(given := entry.given, Reading) and given.name in own:
+            called, sensor = own[given.name]
+            read.add(called)
+            if _as_sure(given.sensor, sensor):
+                as_sure.add(called)
+    return read - as_sure
 
 
 def _noises(world: World, read: set[str]) -> Iterator[NoiseNumber]:
@@ -151,6 +171,22 @@ def _anew(
             return Control(after[0], u) if same and after[0] is not None else given
         case Reading(Laser(walls, bearing, _), z, name):
             return Reading(Laser(walls, bearing, world.told.noise.range), z, name)
-        case Reading(sensor, z, name) if type(sensor) is type(before[1].get(name)):
+        case Reading(sensor, z, name) if name in before[1] and _as_sure(sensor, before[1][name]):
             return Reading(after[1][name], z, name)
     return given
+
+
+def _as_sure(sensor: Sensor, own: Sensor) -> bool:
+    """Whether a reading is as sure as the world's sensor says: a log may tell it of each reading,
+    and that wins over all that could be fitted.
+    """
+    if isinstance(sensor, Mounted) and isinstance(own, Mounted):
+        return _as_sure(sensor.sensor, own.sensor)
+    if type(sensor) is not type(own):
+        return False
+    parts: Any = sensor
+    return all(
+        getattr(sensor, one.name) == getattr(own, one.name)
+        for one in fields(parts)
+        if "sigma" in one.name
+    )

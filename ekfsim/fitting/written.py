@@ -7,6 +7,7 @@ from typing import Any
 
 import yaml
 
+from ekfsim.files.given.given import Given
 from ekfsim.files.keys.recording import RecordingKeys
 from ekfsim.files.scenes.overruling import of_log, overruled
 from ekfsim.files.scenes.settings import Setting
@@ -20,10 +21,10 @@ DIGITS = 4  # of a number: its interval is wider by far
 
 def world_text(trial: Trial, settings: Sequence[Setting]) -> str:
     """The scene's world with the numbers under `belief`, all else as it was."""
-    path = trial.scene.world_file
-    assert path is not None
+    given = trial.scene.world.given
+    assert isinstance(given, Given)
     on_log = of_log(settings) if is_recorded(trial) else settings
-    root, _ = parse(as_written(path, str(path)), str(path))
+    root, _ = given.tree()
     plain: Any = overruled(root, "world", on_log).plain()
     for one in trial.fit.found:
         place = plain

@@ -1,5 +1,6 @@
 """`ekfsim tune`: what it finds, what it writes, and that this can be run at once."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -85,6 +86,38 @@ def test_a_half_that_was_held_back_says_how_it_does():
     assert not trial.is_worse
     assert trial.after.evidence.nis_readings == 32
     assert tried(off, KEYS[2:]).fit == tried(off, KEYS[2:]).fit
+
+
+def of_columns(sigma=""):
+    """A log of speeds and fixes that brings no world; the fixes tell their σ where one is named."""
+    Path("named").mkdir()
+    Path("named/motion.csv").write_text("t,v,omega\n" + "".join(f"{k},1,0\n" for k in range(61)))
+    scatter = np.random.default_rng(3).normal(0, 0.5, (60, 2)).round(3)
+    rows = [f"{k},{k + x},{y}{sigma}\n" for k, (x, y) in enumerate(scatter.tolist())]
+    Path("named/readings.csv").write_text("t,x,y" + ",sigma" * bool(sigma) + "\n" + "".join(rows))
+
+
+def test_a_log_without_a_world_is_fitted_and_what_is_written_plays_it():
+    of_columns()
+    told = ekfsim("tune", "log", "--log", "named", "-o", "t.yaml", "--fit", "sensors.gnss.sigma")
+    assert told.status == 0, told.err
+    fitted = float(told.out.split("sensors.gnss.sigma")[1].split()[1])
+    assert fitted == pytest.approx(0.5, rel=0.4)
+    ran = ekfsim("run", "t.yaml", "-q", "--summary", "s.json")
+    assert ran.status == 0
+    mean = json.loads(Path("s.json").read_text())["nis"]["mean"]
+    assert mean == pytest.approx(1.0, abs=0.4)
+
+
+def test_a_sensor_whose_readings_tell_their_own_sigma_is_not_fitted():
+    """The numbers that are written would say nothing to the run that reads the log again."""
+    of_columns(sigma=",0.5")
+    told = ekfsim("tune", "log", "--log", "named", "-o", "t.yaml", "--fit", "sensors.gnss.sigma")
+    assert told.status == 0, told.err
+    why = "each reading tells by itself how sure it is, which wins"
+    assert f"sensors.gnss.sigma is left at 0.15: {why}" in told.out
+    swept = ekfsim("study", "log", "--log", "named", "--sweep", "sensors.gnss.sigma=0.1,9")
+    assert f"sensors.gnss.sigma changes nothing: {why}" in swept.out
 
 
 @pytest.fixture

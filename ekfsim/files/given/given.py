@@ -28,6 +28,7 @@ class Given:
     mistakes: tuple[Mistake, ...] = ()  # in the values
     is_file: bool = False
     settings: tuple[Setting, ...] = ()  # what overrules it
+    made: bool = False  # by the program, of what a log holds
 
     @classmethod
     def file(cls, path: Path, shown: str) -> Self:
@@ -40,6 +41,11 @@ class Given:
     def text(cls, text: str) -> Self:
         """A text that was handed over. Raises InputError where no file may hold it."""
         return cls(TEXT, readable(text, TEXT))
+
+    @classmethod
+    def made_for(cls, values: object, log: str) -> Self:
+        """A world that the program makes, where nobody names one."""
+        return replace(cls.values(values, log), made=True)
 
     @classmethod
     def values(cls, values: object, shown: str = VALUES) -> Self:
@@ -76,6 +82,8 @@ def called(world: World) -> str:
 
 
 def is_own(world: World) -> bool:
-    """Whether somebody wrote it, and it does not come along with the program."""
+    """Whether somebody wrote it: it neither comes along with the program nor is made by it."""
     given = world.given
-    return not (isinstance(given, Given) and given.is_file and is_packaged(given.shown))
+    if not isinstance(given, Given):
+        return True
+    return not (given.made or (given.is_file and is_packaged(given.shown)))

@@ -5,11 +5,13 @@ fitted.
 from ekfsim.diagnostics.verdict import BAND
 from ekfsim.filters.arithmetic.chi_square import band
 from ekfsim.fitting.estimate import Estimate
+from ekfsim.fitting.noises import told_by_readings
 from ekfsim.fitting.trial import Judged, Trial
 from ekfsim.printable import in_a_line
 from ekfsim.views.words.text_table import aligned, folded
 from ekfsim.views.words.whiteness import sentence
 
+OWN = "each reading tells by itself how sure it is, which wins"
 HEAD = ("number", "was told", "fitted", "95 % interval", "")
 
 
@@ -21,9 +23,10 @@ def conclude(trial: Trial, width: int | None = None) -> str:
                 "(m, degrees):", width),
         *aligned([HEAD, *map(_row, fitted.found)], 1, width),
     ]  # fmt: skip
+    theirs = told_by_readings(trial.scene)
     for one in fitted.idle:
-        lines += folded(f"{one.key} is left at {one.in_file(one.value):.4g}: "
-                        "this log hardly depends on it", width)  # fmt: skip
+        why = OWN if one.part in theirs else "this log hardly depends on it"
+        lines += folded(f"{one.key} is left at {one.in_file(one.value):.4g}: {why}", width)
     for one in fitted.zero:
         lines += folded(f"{one.key} is left at 0: tell a first guess by --set to have it fitted",
                         width)  # fmt: skip

@@ -5,9 +5,11 @@ import math
 from collections.abc import Sequence
 from typing import TextIO
 
+from ekfsim.fitting.noises import noises_of, told_by_readings
 from ekfsim.printable import cell, in_a_line
 from ekfsim.study.recorded import Played, Recorded
 from ekfsim.version import VERSION
+from ekfsim.views.fitting.words import OWN
 from ekfsim.views.study.words import MOST_TOLD
 from ekfsim.views.words.text_table import aligned, folded
 from ekfsim.views.words.whiteness import sentence
@@ -30,10 +32,20 @@ def conclude(plan: Recorded, found: Sequence[Played], width: int | None = None) 
         *folded("(NIS per number read and its band; RMSE in m and degrees)", width),
         *aligned([[*plan.keys, *HEAD, "verdict"], *map(_row, found)], len(plan.keys) + 1, width),
     ]
+    for key in _idle(plan):
+        lines += ["", *folded(f"{key} changes nothing: {OWN}", width)]
     for one in found if len(found) <= MOST_TOLD else ():
         told = sentence(one.summary.innovations.found())
         lines += ["", *folded(f"{title(one)}: innovations are {told}", width)]
     return "\n".join(lines) + "\n"
+
+
+def _idle(plan: Recorded) -> list[str]:
+    """The swept numbers of sensors whose readings tell by themselves how sure they are."""
+    scene = plan.cases[0].scene
+    theirs = told_by_readings(scene)
+    keys = {one.key for one in noises_of(scene) if one.part in theirs} if theirs else set()
+    return [key for key in plan.keys if key.removeprefix("belief.") in keys]
 
 
 def title(one: Played) -> str:

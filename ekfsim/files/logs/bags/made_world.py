@@ -25,14 +25,14 @@ def world_of_bag(path: Path, recording: RecordingKeys, warnings: list[str]) -> G
         f"{'gnss' if sensors else 'none'}, with the noise that is usual there; say otherwise with "
         "--world, or with --set sensors.… and robot.…"
     )
-    return Given.values(_world(sensors), f"{path} (its topics)")
+    return Given.made_for(_world(sensors), f"{path} (its topics)")
 
 
 def any_world() -> Given:
     """A world for a bag that is not named yet."""
-    return Given.values(_world(RECEIVER), "a bag's topics")
+    return Given.made_for(_world(RECEIVER), "a bag's topics")
 
 
 def _world(sensors: list[dict[str, object]]) -> dict[str, object]:
     start = {"x": 0.0, "y": 0.0, "theta": 0.0}
-    return {"name": "made for the bag", "system": SYSTEM, "start": start, "sensors": sensors}
+    return {"name": "a made world", "system": SYSTEM, "start": start, "sensors": sensors}

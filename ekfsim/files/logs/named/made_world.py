@@ -59,7 +59,7 @@ def world_brought(log: Path, recording: RecordingKeys, warnings: list[str]) -> P
         f"{system},{width} sensors: {', '.join(sensors) or 'none'}, with the noise that is usual "
         "there; say otherwise with --world, or with --set sensors.… and robot.…"
     )
-    return Given.values(_world(system, robot, sensors.values()), f"{log} (its columns)")
+    return Given.made_for(_world(system, robot, sensors.values()), f"{log} (its columns)")
 
 
 def _sensors(table: Table, keys: ReadingsKeys) -> dict[str, dict[str, object]]:
@@ -95,7 +95,7 @@ def _kinds(table: Table, sensor: str = "") -> list[str]:
 
 def any_world() -> Given:
     """A world for a log that is not named yet."""
-    return Given.values(_world(SYSTEM_FOR["speeds"]), "a log's columns")
+    return Given.made_for(_world(SYSTEM_FOR["speeds"]), "a log's columns")
 
 
 def _world(
