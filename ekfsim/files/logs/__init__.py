@@ -7,7 +7,7 @@ from ekfsim.errors import UsageError
 from ekfsim.files.keys.recording import BAG, SYSTEM_OF, RecordingKeys, misfit
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.bags.bag import read_bag
-from ekfsim.files.logs.bags.topics import BAGS
+from ekfsim.files.logs.bags.declared import BAGS
 from ekfsim.files.logs.folder import refuse_foreign
 from ekfsim.files.logs.formats.classroom import CLASSROOM, read_classroom
 from ekfsim.files.logs.formats.gnss import GNSS, read_gnss

@@ -9,7 +9,7 @@ from bags import KINDS, LAT, LON, Messages, namespace, written
 from ekfsim.errors import UsageError
 from ekfsim.files.keys.topics import TopicsKeys
 from ekfsim.files.logs.bags.fixes import fixes_of
-from ekfsim.files.logs.bags.marks import marks_of
+from ekfsim.files.logs.bags.marks import marks_in
 from ekfsim.files.logs.bags.scans import beams_of
 from ekfsim.files.logs.bags.topics import topics_of
 from ekfsim.files.scenes.load import load_scene
@@ -124,40 +124,54 @@ def test_beams_of_a_scan():
     scan = make.scan(0, ranges, first=-math.pi, step=step)
     assert scan.angle_max == pytest.approx(math.pi)  # which no beam has
     bearings = [-math.pi + n * step for n in range(8)]
-    assert beams_of(scan, bearings) == [(0, 1.0), (1, math.inf), (5, math.inf), (6, 7.0), (7, 8.0)]
-    assert beams_of(scan, [math.pi, math.pi / 2 + 0.1 * step]) == [(0, 1.0), (1, 7.0)]
+    echoes = [(0, 1.0), (1, math.inf), (5, math.inf), (6, 7.0), (7, 8.0)]
+    assert beams_of(scan, bearings) == [(n, n, r) for n, r in echoes]
+    assert beams_of(scan, [math.pi, math.pi / 2 + 0.1 * step]) == [(0, 0, 1.0), (1, 6, 7.0)]
     back = make.scan(0, ranges, first=math.pi, step=-step)
-    assert beams_of(back, [math.pi - 6 * step]) == [(0, 7.0)]
+    assert beams_of(back, [math.pi - 6 * step]) == [(0, 6, 7.0)]
     front = make.scan(0, [1.0, 2.0, 3.0], first=-0.1, step=0.1)
-    assert beams_of(front, [0.0, 0.3, -0.2]) == [(0, 2.0)]
+    assert beams_of(front, [0.0, 0.3, -0.2]) == [(0, 1, 2.0)]
 
 
 def test_landmarks_that_a_camera_sees():
     def mark(id, x, y, z, frame):
         pose = namespace(position=namespace(x=x, y=y, z=z))
-        return namespace(id=id, header=namespace(frame_id=frame), pose=namespace(pose=pose))
+        return namespace(
+            id=id,
+            header=namespace(frame_id=frame, stamp=namespace(sec=0, nanosec=0)),
+            pose=namespace(pose=pose),
+        )
 
     ahead = namespace(
         markers=[mark(7, 3.0, 4.0, 9.0, "base"), mark(8, -1.0, 9.0, 1.0, "eye_optical")]
     )
-    assert list(marks_of(ahead)) == [
-        ("7", 5.0, pytest.approx(math.atan2(4, 3))),
-        ("8", pytest.approx(math.sqrt(2)), pytest.approx(math.pi / 4)),
+    found = marks_in([(5, ahead)])
+    assert found.rows == [
+        (5, "7", 5.0, pytest.approx(math.atan2(4, 3))),
+        (5, "8", pytest.approx(math.sqrt(2)), pytest.approx(math.pi / 4)),
     ]
+    assert "'eye_optical' is taken as z ahead, x to the right" in found.told[1]
+    on_the_map = namespace(markers=[mark(9, 1.0, 2.0, 0.0, "/map")])
+    assert marks_in([(5, on_the_map)]).rows == []
 
 
-def test_topics_that_are_not_there_or_tell_something_else(tmp_path):
+def test_topics_that_are_not_there_or_tell_something_else():
+    odometry, fix = "nav_msgs/msg/Odometry", "sensor_msgs/msg/NavSatFix"
+
     def told(topics, **asked):
-        connections = [namespace(topic=topic, msgtype=type) for topic, type in topics.items()]
+        connections = [namespace(topic=a, msgtype=b, msgcount=1) for a, b in topics.items()]
+        connections.append(namespace(topic="/silent", msgtype=fix, msgcount=0))
         with pytest.raises(UsageError) as error:
             topics_of(connections, TopicsKeys(**asked), "b.bag", [])
         return str(error.value)
 
-    odometry, fix = "nav_msgs/msg/Odometry", "sensor_msgs/msg/NavSatFix"
     assert "topics: {motion: /a}" in told({"/a": odometry, "/b": odometry})
     assert "did you mean '/odom'?" in told({"/odom": odometry}, motion="/odmo")
     assert f"'/f' is of the type {fix}" in told({"/f": fix}, motion="/f")
     assert "tells the motion" in told({"/f": fix})
+    assert "'/silent' holds no message" in told({"/a": odometry}, fix="/silent")
+    pose = {"/p": "geometry_msgs/msg/PoseStamped", "/tf": "tf2_msgs/msg/TFMessage"}
+    assert "name one that does: topics: {motion: /p}" in told(pose)
 
 
 def test_what_is_no_bag(tmp_path):

@@ -9,14 +9,14 @@ from ekfsim.files.keys.columns import MotionKeys, ReadingsKeys, TableKeys
 from ekfsim.files.keys.recording import RecordingKeys
 from ekfsim.files.keys.topics import TopicsKeys
 from ekfsim.files.logs.asked import Asked
+from ekfsim.files.logs.bags.fixes import first_place
 from ekfsim.files.logs.bags.opening import opened
-from ekfsim.files.logs.bags.tables import tables_of, topics_read
-from ekfsim.files.logs.bags.topics import topics_of
+from ekfsim.files.logs.bags.tables import Topic, read_into, table_of
+from ekfsim.files.logs.bags.topics import Chosen, topics_of
 from ekfsim.files.logs.named.log import read_tables
 from ekfsim.files.logs.named.tables import Source
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.text import Lines
-from ekfsim.systems.instrument import Instrument
 from ekfsim.world import World
 
 SENSORS = {  # by the kinds that can read what a topic tells
@@ -32,8 +32,7 @@ class Bag:
 
     path: Path
     recording: RecordingKeys
-    tables: dict[str, Lines]  # by what they tell
-    sensors: dict[str, str]  # which sensor each reading is of
+    tables: list[tuple[Topic, Lines]]
 
     @property
     def no_truth(self) -> str:
@@ -42,13 +41,15 @@ class Bag:
 
     def motion(self) -> tuple[Source, MotionKeys]:
         """What the robot did; speeds are told at the beginning of the time that they hold for."""
-        return self._source("motion"), MotionKeys()
+        (source,) = self._of("motion")
+        return source, MotionKeys()
 
     def readings(self) -> list[tuple[Source, ReadingsKeys]]:
         """What the sensors told."""
         return [
-            (self._source(role), ReadingsKeys(sensor=sensor))
-            for role, sensor in self.sensors.items()
+            (self._source(lines), ReadingsKeys(sensor=topic.instrument.called))
+            for topic, lines in self.tables
+            if topic.instrument is not None
         ]
 
     def landmarks(self) -> None:
@@ -56,10 +57,13 @@ class Bag:
 
     def truth(self) -> Source | None:
         """The true poses, None where no topic is named for them."""
-        return self._source("truth") if "truth" in self.tables else None
+        return next(iter(self._of("truth")), None)
 
-    def _source(self, role: str) -> Source:
-        return Source(self.path, TableKeys(), self.recording, self.tables[role])
+    def _of(self, role: str) -> list[Source]:
+        return [self._source(lines) for topic, lines in self.tables if topic.chosen.role == role]
+
+    def _source(self, lines: Lines) -> Source:
+        return Source(self.path, TableKeys(), self.recording, lines)
 
 
 def read_bag(asked: Asked) -> Recorded:
@@ -69,46 +73,49 @@ def read_bag(asked: Asked) -> Recorded:
     wrong in the numbers.
     """
     path, world, _, recording, warnings = asked
-    with opened(path) as reader:
-        topics = recording.topics or TopicsKeys()
-        chosen = topics_of(reader.connections, topics, path, warnings)
-        instruments = _instruments(chosen, topics, world, path, warnings)
-        chosen = {
-            role: topic
-            for role, topic in chosen.items()
-            if role not in SENSORS or role in instruments
-        }
-        read = topics_read(reader, chosen)
-    tables = tables_of(read, _bearings(instruments), recording.origin, path, warnings)
-    sensors = {role: instrument.called for role, instrument in instruments.items()}
-    return read_tables(asked, Bag(path, recording, tables, sensors))
+    with opened(path) as bag:
+        keys = recording.topics or TopicsKeys()
+        chosen = topics_of(bag.connections, keys, path, warnings)
+        topics = _with_sensors(chosen, world, path, warnings)
+        read_into(topics, bag)
+    fixes = (first_place(one.messages) for one in topics if one.chosen.role == "fix")
+    origin = next((place for place in fixes if place is not None), None)
+    if recording.origin is not None:
+        origin = recording.origin.latitude, recording.origin.longitude
+    tables = [(topic, table_of(topic, origin, path, warnings)) for topic in topics]
+    return read_tables(asked, Bag(path, recording, tables))
 
 
-def _instruments(
-    chosen: dict[str, str], asked: TopicsKeys, world: World, path: Path, warnings: list[str]
-) -> dict[str, Instrument]:
-    """The sensor of the world that each topic is of. Raises UsageError where a topic was named, and
-    the world has no sensor for it; of another a warning tells.
+def _with_sensors(
+    chosen: Sequence[Chosen], world: World, path: Path, warnings: list[str]
+) -> list[Topic]:
+    """The topics with the sensors of the world that they are of, without those that no sensor of it
+    could be, which is told. Raises UsageError where such a one was named, and where several sensors
+    could be it.
     """
-    found = dict[str, Instrument]()
-    for role, kinds in SENSORS.items():
-        if role not in chosen:
+    topics = list[Topic]()
+    for one in chosen:
+        if one.role not in SENSORS:
+            topics.append(Topic(one, None))
             continue
-        fit = [one for one in world.told_instruments if one.name in kinds]
-        if fit:
-            found[role] = fit[0]
-            continue
-        wrong = (
-            f"{path}: topics.{role}: the world {world.name!r} has no sensor {' or '.join(kinds)}"
-        )
-        right = f"write sensors: [{{{kinds[0]}: {{}}}}] in it"
-        if getattr(asked, role) is not None:
-            raise UsageError(f"{wrong}; {right}")
-        warnings.append(f"{wrong}: {chosen[role]} is not read; {right}")
-    return found
-
-
-def _bearings(instruments: dict[str, Instrument]) -> Sequence[float]:
-    """Where the beams point that scans are thinned to, in rad."""
-    bearings: Sequence[float] = getattr(instruments.get("scan"), "bearings", ())
-    return bearings
+        kinds = SENSORS[one.role]
+        fit = [own for own in world.told_instruments if own.name in kinds]
+        names = [own.called for own in fit]
+        if one.sensor is not None:
+            fit = [own for own in fit if one.sensor in (own.called, own.name)]
+        where = f"{path}: topics.{one.role}: the world {world.name!r}"
+        if len(fit) == 1:
+            topics.append(Topic(one, fit[0]))
+        elif fit:
+            right = f"{{topic: {one.topic}, sensor: {names[0]}}}"
+            several = f"has several sensors for {one.topic}: {', '.join(names)}"
+            raise UsageError(f"{where} {several}; say which: topics: {{{one.role}: {right}}}")
+        else:
+            wrong = f"{where} has no sensor {one.sensor or ' or '.join(kinds)}"
+            right = f"write sensors: [{{{kinds[0]}: {{}}}}] in it"
+            if names:
+                right = f"it has {', '.join(names)}"
+            if one.said:
+                raise UsageError(f"{wrong}; {right}")
+            warnings.append(f"{wrong}: {one.topic} is not read; {right}")
+    return topics

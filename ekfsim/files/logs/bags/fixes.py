@@ -1,14 +1,16 @@
 """Satellite fixes, on a plane that touches the earth."""
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ekfsim.files.keys.topics import OriginKeys
 from ekfsim.files.maps.drawn.earth import on_plane
+
+Place = tuple[float, float]  # latitude and longitude in degrees
 
 NO_FIX = -1  # status.status
 UNKNOWN = 0  # position_covariance_type
@@ -24,33 +26,46 @@ class Fixes:
     told: list[str]
 
 
-def fixes_of(messages: Sequence[tuple[int, Any]], origin: OriginKeys | None) -> Fixes:
+def lacking(fix: Any) -> str:
+    """What a fix lacks that is none, as in "it …"; empty for one that counts."""
+    if fix.status.status <= NO_FIX:
+        return "has no fix"
+    if not math.isfinite(fix.latitude + fix.longitude):
+        return "has no number"
+    if abs(fix.latitude) > 90 or abs(fix.longitude) > 360:
+        return "is nowhere on the earth"
+    return "is at 0°, 0°" if fix.latitude == fix.longitude == 0 else ""
+
+
+def first_place(messages: Sequence[tuple[int, Any]]) -> Place | None:
+    """Where the first fix is that counts, by its stamp; None where none does."""
+    kept = [one for one in messages if not lacking(one[1])]
+    if not kept:
+        return None
+    _, fix = min(kept, key=lambda one: one[0])
+    return fix.latitude, fix.longitude
+
+
+def fixes_of(messages: Sequence[tuple[int, Any]], origin: Place | None) -> Fixes:
     """East and true north in m of the origin, or of the first fix. Left out: no fix, no number, and
     0° 0°, which is what programs write that know nothing.
 
     messages : (ns, NavSatFix)
+    origin : latitude and longitude in degrees
     """
-    told, kept = list[str](), list[tuple[int, Any]]()
-    left_out = {"has no fix": 0, "has no number": 0, "is at 0°, 0°": 0}
-    for t, fix in messages:
-        if fix.status.status <= NO_FIX:
-            left_out["has no fix"] += 1
-        elif not math.isfinite(fix.latitude + fix.longitude):
-            left_out["has no number"] += 1
-        elif fix.latitude == fix.longitude == 0:
-            left_out["is at 0°, 0°"] += 1
-        else:
-            kept.append((t, fix))
-    told += [f"{n} of {len(messages)}: each {why}: left out" for why, n in left_out.items() if n]
+    lacks = [lacking(fix) for _, fix in messages]
+    kept = [one for one, lack in zip(messages, lacks, strict=True) if not lack]
+    told = [
+        f"{n} of {len(messages)}: each {why}: left out" for why, n in Counter(lacks).items() if why
+    ]
     if not kept:
         return Fixes([], told)
-    first = kept[0][1]
-    lat, lon = (
-        (first.latitude, first.longitude) if origin is None else (origin.latitude, origin.longitude)
-    )
+    first = first_place(messages)
+    assert first is not None
+    lat, lon = origin or first
     degrees = np.array([(fix.longitude, fix.latitude) for _, fix in kept])
     xy = on_plane(degrees, (lon, lat))
-    where = "the first fix" if origin is None else "recording.origin"
+    where = "the first fix" if origin in (None, first) else "the origin"
     told.append(
         f"x is m east and y m to true north (no grid's north) of {where}, latitude {lat:.9g}°, "
         f"longitude {lon:.9g}°; say otherwise with recording: {{origin: {{latitude: …, "

@@ -17,9 +17,9 @@ def world_of_bag(path: Path, recording: RecordingKeys, warnings: list[str]) -> G
 
     Raises UsageError where there is no such bag.
     """
-    with opened(path) as reader:
-        chosen = topics_of(reader.connections, recording.topics or TopicsKeys(), path, [])
-    sensors = RECEIVER if "fix" in chosen else []
+    with opened(path) as bag:
+        chosen = topics_of(bag.connections, recording.topics or TopicsKeys(), path, [])
+    sensors = RECEIVER if any(one.role == "fix" for one in chosen) else []
     warnings.append(
         f"{path}: no world is named: one is made, system: {SYSTEM}, sensors: "
         f"{'gnss' if sensors else 'none'}, with the noise that is usual there; say otherwise with "

@@ -46,6 +46,15 @@ def pose_of(message: Any) -> tuple[float, float, float]:
     held = getattr(message, "transform", None)
     if held is not None:
         return held.translation.x, held.translation.y, yaw_of(held.rotation)
-    held = message.pose
+    held = getattr(message, "pose", None)
+    if held is None:  # of a plane alone
+        return message.x, message.y, message.theta
     held = getattr(held, "pose", held)  # of one with a covariance
     return held.position.x, held.position.y, yaw_of(held.orientation)
+
+
+def twist_of(message: Any) -> Any:
+    """The speeds that a message tells, in its robot's own frame; None where it tells none."""
+    held = getattr(message, "twist", message)
+    held = getattr(held, "twist", held)  # of one with a covariance
+    return held if hasattr(held, "linear") else None

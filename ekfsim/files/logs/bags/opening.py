@@ -1,6 +1,6 @@
-"""A path → a reader of the package rosbags."""
+"""A path → a bag that is open, read by the package rosbags."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -12,29 +12,78 @@ from ekfsim.late import found
 KINDS = (".bag", ".mcap", ".db3")
 HOLDS = "a .bag of ROS 1, a folder of ROS 2 with its metadata.yaml, an .mcap or a .db3"
 MISSING = "bags need the package 'rosbags': pip install 'ekfsim[bags]'"
+MOST = 200  # characters of what rosbags says, which may be a whole definition
+MENDED = {  # what mends a bag whose recording was cut off
+    ".bag": "`rosbag reindex`",
+    ".mcap": "`mcap recover`",
+    "": "`ros2 bag reindex`",
+}
+
+
+class Opened:
+    """A bag that is open."""
+
+    def __init__(self, path: Path, reader: Any) -> None:
+        self._path, self._reader = path, reader
+        # topics of no message do not count: recorders write down all that was offered
+        self.connections = [one for one in reader.connections if one.msgcount]
+
+    def messages(self, topics: Collection[str]) -> Iterator[tuple[str, int, Any]]:
+        """Topic, when the bag received it in ns, and what each message of some topics says.
+
+        Raises UsageError where the bag is broken.
+        """
+        chosen = [one for one in self.connections if one.topic in topics]
+        if not chosen:  # for which rosbags reads all
+            return
+        with told(self._path):
+            messages = self._reader.messages(connections=chosen)
+        while True:
+            with told(self._path):
+                connection, received, raw = next(messages, (None, 0, b""))
+            if connection is None:
+                return
+            with told(self._path, f"a message of {connection.topic} ({connection.msgtype})"):
+                message = self._reader.deserialize(raw, connection.msgtype)
+            yield connection.topic, received, message
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[Any]:
-    """An `AnyReader` of a bag, which is closed again.
+def opened(path: Path) -> Iterator[Opened]:
+    """A bag, which is closed again.
 
     Raises UsageError where there is no bag, where it is broken, or where rosbags is missing.
     """
     try:
-        reader, broken = (
-            found("rosbags.highlevel:AnyReader"),
-            found("rosbags.highlevel:AnyReaderError"),
-        )
+        reader = found("rosbags.highlevel:AnyReader")
         stores, typestore = found("rosbags.typesys:Stores"), found("rosbags.typesys:get_typestore")
     except ImportError:
         raise UsageError(f"{path}: {MISSING}") from None
     bag = _bag(path)
-    try:  # of messages whose definitions the bag does not hold, those of ROS 2 are taken
-        with read_from(bag), reader([bag], default_typestore=typestore(stores.LATEST)) as opened:
-            yield opened
-    except broken as error:
-        why = " ".join(str(error).split()) or type(error).__name__
-        raise UsageError(f"{bag}: rosbags cannot read it: {why}; name {HOLDS}") from None
+    with told(bag):  # of messages whose definitions the bag does not hold, those of ROS 2 are taken
+        inside = reader([bag], default_typestore=typestore(stores.LATEST))
+        inside.open()
+    try:
+        yield Opened(bag, inside)
+    finally:
+        inside.close()
+
+
+@contextmanager
+def told(bag: Path, what: str = "it") -> Iterator[None]:
+    """Tell in a sentence why rosbags cannot read something. Nothing of ours runs inside: bytes that
+    are no bag make it raise whatever its parts do, of KeyError and struct.error to MemoryError.
+
+    Raises UsageError.
+    """
+    try:
+        yield
+    except Exception as error:
+        why = " ".join(str(error).split())[:MOST] or type(error).__name__
+        right = f"one that was cut off is mended by {MENDED.get(bag.suffix, MENDED[''])}"
+        raise UsageError(
+            f"{bag}: rosbags cannot read {what}: {why}; {right}; wanted is {HOLDS}"
+        ) from None
 
 
 def _bag(path: Path) -> Path:

@@ -2,13 +2,60 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
+
+from ekfsim.files.logs.bags.messages import SECOND
+from ekfsim.systems.instruments import Ultrasonic
+
+LONGEST = 1.0  # s that a turn of the scanner may last; more is no time between two beams
 
 
-def beams_of(scan: Any, bearings: Sequence[float]) -> list[tuple[int, float]]:
-    """What a scan tells of each of some bearings (rad): the number of the bearing and the range in
-    m, inf without an echo. Beams of which it tells nothing are left out: those that it does not
-    have, too near ones, and those without a reading.
+class Beams(NamedTuple):
+    """The beams of some scans, and what is to be told of them."""
+
+    rows: list[tuple[int, str, float]]  # ns, number of the beam, range in m, inf without an echo
+    told: list[str]
+
+
+def beams_in(messages: Sequence[tuple[int, Any]], sensor: Ultrasonic) -> Beams:
+    """The beams of a sensor as scans tell them, each at its own instant; what lies beyond the
+    sensor's reach is no echo, and what is nearer than it can see is left out.
+    """
+    rows, told = list[tuple[int, str, float]](), list[str]()
+    far = near = 0
+    seen = set[int]()
+    for t, scan in messages:
+        step = float(scan.time_increment)
+        step = step if 0 < step * len(scan.ranges) <= LONGEST else 0.0
+        for number, index, r in beams_of(scan, sensor.bearings):
+            seen.add(number)
+            if r < sensor.nearest:
+                near += 1
+                continue
+            if sensor.farthest < r < math.inf:
+                far, r = far + 1, math.inf
+            rows.append((t + round(index * step * SECOND), str(number), r))
+    key = f"--set sensors.{sensor.called}"
+    if far:
+        told.append(
+            f"{far} of {len(rows)} beams met a wall beyond {sensor.farthest:g} m, as far as "
+            f"{sensor.called} sees: no echo; say otherwise with {key}.farthest=…"
+        )
+    if near:
+        told.append(
+            f"{near} beams met a wall nearer than {sensor.nearest:g} m, from where on "
+            f"{sensor.called} sees: left out; say otherwise with {key}.nearest=…"
+        )
+    if absent := [n for n in range(len(sensor.bearings)) if n not in seen and messages]:
+        degrees = ", ".join(f"{math.degrees(sensor.bearings[n]):.4g}°" for n in absent)
+        told.append(f"no scan tells of {sensor.called}'s beams at {degrees}")
+    return Beams(rows, told)
+
+
+def beams_of(scan: Any, bearings: Sequence[float]) -> list[tuple[int, int, float]]:
+    """What a scan tells of each of some bearings (rad): the number of the bearing, that of the
+    scan's beam, and the range in m, inf without an echo. Beams of which it tells nothing are left
+    out: those that it does not have, too near ones, and those without a reading.
 
     Beam i points to angle_min + i · angle_increment; how many there are, only the ranges tell
     (angle_max is rounded). +inf is no echo, −inf too near, nan no reading (REP 117).
@@ -26,5 +73,5 @@ def beams_of(scan: Any, bearings: Sequence[float]) -> list[tuple[int, float]]:
         r = float(scan.ranges[index])
         if math.isnan(r) or r < scan.range_min:
             continue
-        told.append((number, r if r <= scan.range_max else math.inf))
+        told.append((number, index, r if r <= scan.range_max else math.inf))
     return told

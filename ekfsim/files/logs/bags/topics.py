@@ -2,11 +2,10 @@
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.topics import TopicsKeys
-from ekfsim.files.logs.tables.declared import Format
+from ekfsim.files.keys.topics import SensorTopicKeys, TopicsKeys
 from ekfsim.files.yaml.telling import nearest, quoted
 
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -16,60 +15,93 @@ POSES = (
     "geometry_msgs/msg/PoseStamped",
     "geometry_msgs/msg/PoseWithCovarianceStamped",
     "geometry_msgs/msg/TransformStamped",
+    "geometry_msgs/msg/Pose2D",
+)
+SPEEDS = (
+    "geometry_msgs/msg/TwistStamped",
+    "geometry_msgs/msg/TwistWithCovarianceStamped",
+    "geometry_msgs/msg/Twist",
 )
 TYPES = {  # of the messages that can tell it; of landmarks any with a list of poses
-    "motion": (ODOMETRY, "geometry_msgs/msg/TwistStamped", "geometry_msgs/msg/Twist"),
+    "motion": (*POSES, *SPEEDS),
     "fix": (FIX,),
     "scan": (SCAN,),
     "truth": POSES,
 }
-_READ = "; ".join(f"`{role}` from {', '.join(types)}" for role, types in TYPES.items())
-BAGS = Format(
-    "bag",
-    "A ROS 1 bag, a bag of ROS 2 or an MCAP file, read by the package rosbags (`pip install "
-    f"'ekfsim[bags]'`). `topics:` of the recording says which topic tells what: {_READ}.",
-    (),
-    alone=True,
-)
 FOUND = {"motion": ODOMETRY, "fix": FIX, "scan": SCAN}  # by their type, where no topic is named
+
+
+class Chosen(NamedTuple):
+    """A topic that is read."""
+
+    role: str
+    topic: str
+    sensor: str | None = None  # of the world, where it is said
+    said: bool = True  # whether the recording names it
 
 
 def topics_of(
     connections: Iterable[Any], asked: TopicsKeys, path: Path, warnings: list[str]
-) -> dict[str, str]:
-    """The topic for each role that a bag has one for: those that are named, else the only one of
-    its type.
+) -> list[Chosen]:
+    """The topics that a bag has for each role: those that are named, else the only one of its type.
 
+    connections : of the bag, each with topic, msgtype and msgcount
     Raises UsageError where a named topic is not there or tells another thing, where several could
     tell it, or where nothing tells the motion.
     """
-    types = {connection.topic: connection.msgtype for connection in connections}
-    chosen = dict[str, str]()
-    for role, topic in asked.model_dump(exclude_none=True).items():
-        if topic not in types:
-            near = nearest(topic, list(types))
-            right = f"did you mean {quoted(near)}?" if near else _listed(types)
-            raise UsageError(f"{path}: topics.{role}: there is no topic {quoted(topic)}; {right}")
-        if role in TYPES and types[topic] not in TYPES[role]:
-            wrong = f"{quoted(topic)} is of the type {types[topic]}"
-            right = f"it is read from {' or '.join(TYPES[role])}"
-            raise UsageError(f"{path}: topics.{role}: {wrong}; {right}")
-        chosen[role] = topic
-    free = {topic: type for topic, type in types.items() if topic not in chosen.values()}
+    connections = list(connections)
+    all_types = {one.topic: one.msgtype for one in connections}
+    # topics without a message do not count: recorders write down all that was offered
+    types = {one.topic: one.msgtype for one in connections if one.msgcount}
+    chosen = _named(asked)
+    for one in chosen:
+        if one.topic not in types:
+            raise UsageError(
+                f"{path}: topics.{one.role}: {_not_there(one.topic, types, all_types)}"
+            )
+        if one.role in TYPES and types[one.topic] not in TYPES[one.role]:
+            wrong = f"{quoted(one.topic)} is of the type {types[one.topic]}"
+            right = f"it is read from {' or '.join(TYPES[one.role])}"
+            raise UsageError(f"{path}: topics.{one.role}: {wrong}; {right}")
+    said = {one.role for one in chosen}
+    taken = {one.topic for one in chosen}
     for role, type in FOUND.items():
-        if role not in chosen:
-            found = [topic for topic in free if free[topic] == type]
-            if len(found) == 1:
-                chosen[role] = found[0]
-            elif found:
-                _several(path, role, found, warnings)
-    if "motion" not in chosen:
-        wrong = f"no topic of the type {ODOMETRY} tells the motion"
-        raise UsageError(f"{path}: {wrong}; write topics: {{motion: …}}; {_listed(types)}")
-    taken = ", ".join(f"{role}: {topic}" for role, topic in chosen.items())
-    if set(chosen) - set(asked.model_dump(exclude_none=True)):
-        warnings.append(f"{path}: read as topics: {{{taken}}}; say otherwise in the recording")
+        fit = [topic for topic, own in types.items() if own == type and topic not in taken]
+        if role in said or not fit:
+            continue
+        if len(fit) == 1:
+            chosen.append(Chosen(role, fit[0], said=False))
+        else:
+            _several(path, role, fit, warnings)
+    if not any(one.role == "motion" for one in chosen):
+        raise UsageError(f"{path}: {_no_motion(types)}")
+    if not all(one.said for one in chosen):
+        read = ", ".join(f"{one.role}: {one.topic}" for one in chosen)
+        warnings.append(f"{path}: read as topics: {{{read}}}; say otherwise in the recording")
     return chosen
+
+
+def _named(asked: TopicsKeys) -> list[Chosen]:
+    """The topics that the recording names."""
+    chosen = list[Chosen]()
+    for role in TopicsKeys.model_fields:
+        told: str | SensorTopicKeys | list[SensorTopicKeys] | None = getattr(asked, role)
+        for one in told if isinstance(told, list) else [told] if told is not None else []:
+            if isinstance(one, str):
+                chosen.append(Chosen(role, one))
+            else:
+                chosen.append(Chosen(role, one.topic, one.sensor))
+    return chosen
+
+
+def _not_there(topic: str, types: dict[str, str], all_types: dict[str, str]) -> str:
+    """What is wrong with a topic that holds nothing."""
+    if topic in all_types:
+        return f"{quoted(topic)} holds no message; {_listed(types)}"
+    near = nearest(topic, list(types))
+    return f"there is no topic {quoted(topic)}; " + (
+        f"did you mean {quoted(near)}?" if near else _listed(types)
+    )
 
 
 def _several(path: Path, role: str, found: Sequence[str], warnings: list[str]) -> None:
@@ -80,5 +112,16 @@ def _several(path: Path, role: str, found: Sequence[str], warnings: list[str]) -
     warnings.append(f"{path}: topics.{role}: {wrong}: none is read; {right}")
 
 
+def _no_motion(types: dict[str, str]) -> str:
+    """What is wrong with a bag in which nothing surely tells the motion."""
+    wrong = f"no topic of the type {ODOMETRY} tells the motion"
+    fit = [topic for topic, type in types.items() if type in TYPES["motion"]]
+    if fit:
+        return f"{wrong}; name one that does: topics: {{motion: {fit[0]}}}; {_listed(types)}"
+    return f"{wrong}, nor one of {' or '.join(TYPES['motion'][1:])}; {_listed(types)}"
+
+
 def _listed(types: dict[str, str]) -> str:
+    if not types:
+        return "it has no messages at all"
     return "it has " + ", ".join(f"{topic} ({type})" for topic, type in sorted(types.items()))

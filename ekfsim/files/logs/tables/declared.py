@@ -88,6 +88,8 @@ class Format:
     told: str  # who writes it, and what a row is
     tables: tuple[Table, ...]
     alone: bool = False  # whether one file is the whole log
+    example: str = ""  # how a commands file names it, where more is to be said than its path
+    notes: tuple[str, ...] = ()  # what else is to be known, in Markdown
 
     @property
     def holds(self) -> str:

@@ -12,6 +12,7 @@ def as_json(formats: Iterable[Format]) -> dict[str, Any]:
         format.name: {
             "description": format.told,
             "oneFile": format.alone,
+            "notes": list(format.notes),
             "files": [_file(table) for table in format.tables],
         }
         for format in formats
@@ -51,11 +52,16 @@ def page(format: Format) -> str:
     parts = [
         f"# Logs of the format `{format.name}`",
         f"{format.told} The log is {where}:" if format.tables else format.told,
-        f"```yaml\nrecording: {{format: {format.name}, path: ../logs/mine}}\n```",
+        f"```yaml\n{format.example or _named(format)}```",
+        *format.notes,
         *(_section(table) for table in format.tables),
         READ_AS if any(table.columns[0].unit == "s" for table in format.tables) else AS_JSON,
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _named(format: Format) -> str:
+    return f"recording: {{format: {format.name}, path: ../logs/mine}}\n"
 
 
 AS_JSON = "`ekfsim schema recording` prints all formats as JSON."
