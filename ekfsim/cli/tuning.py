@@ -59,9 +59,9 @@ def tune(out: Path, keys: str | None, force: bool, confidence: float, **chosen: 
     hidden = not sys.stderr.isatty()
     with click.progressbar(length=200, label="trials", file=sys.stderr, hidden=hidden) as bar:
 
-        def heard() -> None:
+        def heard(trials: int) -> None:
             heed()
-            bar.update(1)
+            bar.update(trials)
 
         trial = tried(scene, tuple(keys.split(",")) if keys else (), heard)
     given: Any = trial.scene.log.given if trial.scene.log is not None else None

@@ -1,25 +1,23 @@
 """The numbers of noise that make a log most likely, and how sure that is."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ekfsim.fitting.likelihood import Likelihood, refused_by
 from ekfsim.fitting.noises import NoiseNumber, Retold
-from ekfsim.geometry import Array
+from ekfsim.fitting.search import Bowl, Costs, ends, lowest
+from ekfsim.geometry import Array, Integers
 from ekfsim.scene import Scene
 
-Z = 1.96  # of a 95 % interval
 FAR = math.log(1e3)  # from where it begins a number is looked for up to so many times as far
+NOTHING = math.log(50.0)  # a number so many times less than the best is as good as 0
 LOOK = math.log(3.0)  # how far a number is moved to see whether it matters
 MATTERS = 2.0  # of −ln p: what moves it less than this is not to be found in the log
-STEP = 1e-3  # of a derivative, in the logarithm
-CURVE = 0.05  # of a second derivative
 ROUNDS = 4  # of gate and fit in turn
-VAGUE = 1.2  # σ of a logarithm beyond which the curvature says nothing
-HALVINGS = 4  # of a step across the end of an interval
+ABREAST = 64  # sets of numbers that are tried in one run
 HALF_BELOW = 1.92  # of −ln p: half of the 95 % quantile of χ² of one freedom
 
 
@@ -50,139 +48,86 @@ class Fit:
 
 
 def fit(
-    retold: Retold, until: int, gate: float | None, heard: Callable[[], None] = lambda: None
+    retold: Retold, until: int, gate: float | None, heard: Callable[[int], None] = lambda _: None
 ) -> Fit:
-    """The most likely numbers on the first `until` entries of a log; `heard` hears of each trial.
+    """The most likely numbers on the first `until` entries of a log; `heard` hears how many sets
+    of numbers were tried, each time.
 
     Outliers are looked for with what was fitted, at first to all readings, so that a number that
     was told too small does not call sound readings outliers.
     """
     zero = tuple(one for one in retold.numbers if one.value <= 0)
     asked = tuple(one for one in retold.numbers if one.value > 0)
-    search = Search(Retold(retold.scene, asked), until, heard)
-    out = frozenset[int]()
+    trials = Trials(Retold(retold.scene, asked), until, heard)
     start = np.log([one.value for one in asked])
-    kept = search.of_matter(start) if asked else []
-    best = start
-    for _ in range(ROUNDS if gate is not None else 1):
-        search.likelihood = Likelihood(out, gate if out else None)
-        best = search.best(best, kept)
-        if gate is None:
-            break
-        now = refused_by(gate, search.scene(best))
-        if now == out:
-            break
-        out = now
-    found = search.intervals(best, kept)
+    kept = of_matter(trials.costs, start)
     idle = tuple(one for i, one in enumerate(asked) if i not in kept)
-    return Fit(tuple(found), idle, zero, out, search.trials)
+    if not len(kept):
+        return Fit((), idle, zero, frozenset(), trials.count)
+    costs = among(trials.costs, start, kept)
+    best = lowest(costs, start[kept], FAR)
+    for _ in range(ROUNDS if gate is not None else 0):
+        assert gate is not None
+        out = refused_by(gate, trials.scene(within(start, kept, best.at)))
+        if out == trials.likelihood.out:
+            break
+        trials.likelihood = Likelihood(out, gate if out else None)
+        best = lowest(costs, best.at, FAR)
+    numbers = [asked[i] for i in kept]
+    found = tuple(intervals(numbers, costs, best))
+    return Fit(found, idle, zero, trials.likelihood.out, trials.count)
 
 
-class Search:
-    """A search in the logarithms of numbers, each trial one run of the filter."""
+class Trials:
+    """How unlikely a log is under sets of numbers; it counts them."""
 
-    def __init__(self, retold: Retold, until: int, heard: Callable[[], None]) -> None:
+    def __init__(self, retold: Retold, until: int, heard: Callable[[int], None]) -> None:
         self.retold, self.until, self.heard = retold, until, heard
-        self.likelihood, self.trials = Likelihood(), 0
+        self.likelihood, self.count = Likelihood(), 0
 
     def scene(self, logs: Array) -> Scene:
-        """The part of the log that is looked at, under these numbers."""
+        """The part of the log that is looked at, under numbers of these logarithms."""
         return self.retold.with_(np.exp(logs).tolist(), self.until)
 
-    def cost(self, logs: Array) -> float:
-        """−ln p of that."""
-        self.heard()
-        self.trials += 1
-        return self.likelihood.of(self.scene(logs))
-
-    def of_matter(self, logs: Array) -> list[int]:
-        """Which of the numbers the log depends on."""
-        here, kept = self.cost(logs), list[int]()
-        for i in range(len(logs)):
-            moved = (self.cost(logs + way * LOOK * unit(i, len(logs))) for way in (1, -1))
-            if max(abs(cost - here) for cost in moved) > MATTERS:
-                kept.append(i)
-        return kept
-
-    def best(self, logs: Array, kept: Sequence[int]) -> Array:
-        """Where the cost is least; the other numbers stay as they are."""
-        from scipy.optimize import minimize
-
-        def cost(part: Array) -> float:
-            return self.cost(within(logs, kept, part))
-
-        if not kept:
-            return logs
-        start = logs[list(kept)]
-        bounds = [(x - FAR, x + FAR) for x in start]
-        found = minimize(
-            cost, start, method="L-BFGS-B", bounds=bounds,
-            options={"eps": STEP, "ftol": 1e-9, "maxiter": 60, "maxls": 12},
-        )  # fmt: skip
-        return within(logs, kept, found.x)
-
-    def intervals(self, logs: Array, kept: Sequence[int]) -> list[Estimate]:
-        """The numbers with their intervals: how far each can be moved, the others along with it as
-        the curvature of the cost has it, until the cost has risen by half the 95 % quantile of χ².
-
-        The curvature alone would not do: where a number may as well be 0 the cost is far from a
-        parabola.
-        """
-        if not kept:
-            return []
-        here, covariance = self.cost(logs), np.linalg.pinv(self.curvature(logs, kept))
+    def costs(self, logs: Array) -> Array:
+        """−ln p under each of m sets of numbers, by their logarithms (m, n) : (m)"""
         found = []
-        for place, i in enumerate(kept):
-            variance, ridge = float(covariance[place, place]), unit(i, len(logs))
-            if 0 < variance < VAGUE**2:
-                ridge[list(kept)] = covariance[:, place] / variance
-            first = Z * math.sqrt(variance) if 0 < variance < VAGUE**2 else 1.0
-            up = self.reach(logs, ridge, here, first)
-            down = self.reach(logs, -ridge, here, first)
-            value = math.exp(logs[i])
-            low = value * math.exp(-down) if down < FAR else 0.0
-            found.append(Estimate(self.retold.numbers[i], value, low, value * math.exp(up)))
-        return found
-
-    def reach(self, logs: Array, way: Array, here: float, first: float) -> float:
-        """How far along a way the cost has risen by half the quantile; FAR where it has not."""
-        near, far = 0.0, first
-        while self.cost(logs + far * way) < here + HALF_BELOW:
-            near, far = far, 1.6 * far
-            if far > FAR:
-                return FAR
-        for _ in range(HALVINGS):
-            middle = (near + far) / 2
-            risen = self.cost(logs + middle * way) > here + HALF_BELOW
-            near, far = (near, middle) if risen else (middle, far)
-        return (near + far) / 2
-
-    def curvature(self, logs: Array, kept: Sequence[int]) -> Array:
-        """The second derivatives of the cost by the logarithms : (n, n)"""
-        n = len(kept)
-        H, here = np.empty((n, n)), self.cost(logs)
-        steps = [CURVE * unit(i, len(logs)) for i in kept]
-        up = [self.cost(logs + step) for step in steps]
-        down = [self.cost(logs - step) for step in steps]
-        for i in range(n):
-            H[i, i] = (up[i] - 2 * here + down[i]) / CURVE**2
-            for j in range(i):
-                both = self.cost(logs + steps[i] + steps[j])
-                neither = self.cost(logs - steps[i] - steps[j])
-                mixed = both + neither + 2 * here - up[i] - down[i] - up[j] - down[j]
-                H[i, j] = H[j, i] = mixed / (2 * CURVE**2)
-        return H
+        for first in range(0, len(logs), ABREAST):
+            some = np.exp(logs[first : first + ABREAST])
+            found.append(self.likelihood.of_all(self.retold, some, self.until))
+            self.count += len(some)
+            self.heard(len(some))
+        return np.concatenate(found)
 
 
-def unit(i: int, n: int) -> Array:
-    """1 at the place i : (n,)"""
-    one = np.zeros(n)
-    one[i] = 1.0
-    return one
+def of_matter(costs: Costs, logs: Array) -> Integers:
+    """Which of the numbers the log depends on."""
+    ways = LOOK * np.eye(len(logs))
+    if not len(ways):
+        return np.arange(0)
+    here, *moved = costs(np.concatenate([logs[None], logs + ways, logs - ways]))
+    by_number = np.abs(np.array(moved).reshape(2, -1) - here).max(axis=0)
+    return np.flatnonzero(by_number > MATTERS)
 
 
-def within(logs: Array, kept: Sequence[int], part: Array) -> Array:
-    """Numbers of which some are others."""
+def among(costs: Costs, logs: Array, kept: Integers) -> Costs:
+    """The cost of those that are kept, the others being as they are."""
+    return lambda parts: costs(np.array([within(logs, kept, part) for part in parts]))
+
+
+def within(logs: Array, kept: Integers, part: Array) -> Array:
+    """Numbers of which some are others : (n,)"""
     whole = logs.copy()
-    whole[list(kept)] = part
+    whole[kept] = part
     return whole
+
+
+def intervals(numbers: list[NoiseNumber], costs: Costs, best: Bowl) -> Iterator[Estimate]:
+    """The numbers with their intervals, by the profile of the likelihood: the curvature alone would
+    not do, for where a number may as well be 0 the cost is far from a parabola.
+    """
+    found = ends(costs, best, HALF_BELOW, (NOTHING, FAR))
+    for i, number in enumerate(numbers):
+        down, up = (found[2 * i + side].at[i] for side in (0, 1))
+        low = 0.0 if found[2 * i].open else math.exp(down)
+        yield Estimate(number, math.exp(best.at[i]), low, math.exp(up))

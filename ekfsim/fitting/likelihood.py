@@ -8,7 +8,10 @@ from functools import cache
 
 import numpy as np
 
-from ekfsim.filters.belief import Refused
+from ekfsim.filters.belief import Correction, Refused
+from ekfsim.fitting import abreast
+from ekfsim.fitting.noises import Retold
+from ekfsim.geometry import Array, Integers
 from ekfsim.localization import play
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
@@ -35,17 +38,34 @@ class Likelihood:
         try:
             for step in self.steps(scene):
                 c = step.correction
-                if c is None or int(c.refused) != Refused.NOT or np.isnan(c.nis):
-                    continue
-                _, ln_det = np.linalg.slogdet(c.S)
-                total += float(c.nis) / truncation(self.gate, c.innovation.shape[-1]) + float(
-                    ln_det
-                )
+                if c is not None and int(c.refused) == Refused.NOT:
+                    total += float(self._of(c))
         except (ArithmeticError, np.linalg.LinAlgError):
             return IMPOSSIBLE
-        return total / 2 if np.isfinite(total) else IMPOSSIBLE
+        return total if np.isfinite(total) else IMPOSSIBLE
 
-    def steps(self, scene: Scene) -> Iterator[Step]:
+    def of_all(self, retold: Retold, values: Array, until: int) -> Array:
+        """Of the first `until` entries of a log, under each of N sets of numbers : (N, n) → (N)"""
+        if abreast.possible(retold.scene):
+            scene, total = abreast.side_by_side(retold, values, until), np.zeros(len(values))
+            try:
+                for step in self.steps(scene, np.arange(len(values))):
+                    c = step.correction
+                    if c is not None:
+                        total += np.where(c.refused == Refused.NOT, self._of(c), 0.0)
+                return np.where(np.isfinite(total), total, IMPOSSIBLE)
+            except (ArithmeticError, np.linalg.LinAlgError):
+                pass  # one of them: which, each for itself tells
+        return np.array([self.of(retold.with_(row.tolist(), until)) for row in values])
+
+    def _of(self, c: Correction) -> Array:
+        """½ (νᵀ S⁻¹ ν + ln det S) : (…), 0 of a reading of which the filter was certain"""
+        with np.errstate(invalid="ignore"):  # S is nan where nothing is predicted
+            _, ln_det = np.linalg.slogdet(c.S)
+        whole = c.nis / truncation(self.gate, c.innovation.shape[-1]) + ln_det
+        return np.where(np.isnan(c.nis), 0.0, whole) / 2
+
+    def steps(self, scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
         """What its filter makes of the log without those that are left out, and without a gate."""
         assert scene.log is not None
         entries = scene.log.entries
@@ -56,7 +76,7 @@ class Likelihood:
                 else entry
                 for entry in entries
             )
-        return play(replace(scene, log=replace(scene.log, entries=entries), gate=None))
+        return play(replace(scene, log=replace(scene.log, entries=entries), gate=None), runs)
 
 
 @cache

@@ -1,9 +1,9 @@
 """The numbers by which a filter is told of noise: ratios, standard deviations, densities."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from ekfsim.files.keys.fields import PartKeys, aliases, keys_of_kind
 from ekfsim.models.motions.move_turn import MoveTurn
@@ -132,47 +132,54 @@ class Retold:
     scene: Scene
     numbers: tuple[NoiseNumber, ...]
 
+    def world(self, values: Sequence[float]) -> World:
+        """The scene's world under these values."""
+        return told(self.scene.world, self.numbers, values)
+
     def with_(self, values: Sequence[float], until: int | None = None) -> Scene:
         """The scene under these values; of its log the first `until` entries, without a truth."""
         log = self.scene.log
         assert log is not None
-        world = told(self.scene.world, self.numbers, values)
-        before, after = _parts(self.scene.world, self.scene), _parts(world, self.scene)
+        world = self.world(values)
+        before, after = parts_of(self.scene.world, self.scene), parts_of(world, self.scene)
         entries = tuple(
-            Entry(entry.index, _anew(entry.given, world, before, after), t=entry.t)
+            Entry(entry.index, anew(entry.given, before, after), t=entry.t)
             if until is not None
-            else replace(entry, given=_anew(entry.given, world, before, after))
+            else replace(entry, given=anew(entry.given, before, after))
             for entry in log.entries[:until]
         )
         return replace(self.scene, world=world, log=Log(entries, log.first))
 
 
-Parts = tuple[Motion | None, dict[str, Sensor]]
+class Parts(NamedTuple):
+    """The models of a log, as a filter is told."""
+
+    motion: Motion | None
+    sensors: Mapping[str, Sensor]  # by their names; none of the classroom
+    laser: Callable[[Laser], Sensor]  # the classroom's, which has one for each bearing
 
 
-def _parts(world: World, scene: Scene) -> Parts:
-    """The motion model and the sensors by their names, as a world's filter is told; none of the
-    classroom, which has one for each bearing.
-    """
+def parts_of(world: World, scene: Scene) -> Parts:
+    """The models as a world's filter is told."""
+    noise = world.told.noise
+    laser = lambda one: Laser(one.walls, one.bearing, noise.range)  # noqa: E731
     if world.told_robot is None:
-        noise = world.told.noise
-        return MoveTurn(noise.odometry_distance, noise.odometry_angle), {}
+        return Parts(MoveTurn(noise.odometry_distance, noise.odometry_angle), {}, laser)
     sensors = {target.name: target.sensor for _, target in world.targets(scene.reading)}
-    return world.believed_robot.motion(scene.reading), sensors
+    return Parts(world.believed_robot.motion(scene.reading), sensors, laser)
 
 
-def _anew(
-    given: Control | Reading | None, world: World, before: Parts, after: Parts
-) -> Control | Reading | None:
+def anew(given: Control | Reading | None, before: Parts, after: Parts) -> Control | Reading | None:
     """What the filter is given, with the model of other numbers where its own is the scene's."""
+    own = before.sensors
     match given:
         case Control(motion, u):
-            same = type(motion) is type(before[0]) and after[0] is not None
-            return Control(after[0], u) if same and after[0] is not None else given
-        case Reading(Laser(walls, bearing, _), z, name):
-            return Reading(Laser(walls, bearing, world.told.noise.range), z, name)
-        case Reading(sensor, z, name) if name in before[1] and _as_sure(sensor, before[1][name]):
-            return Reading(after[1][name], z, name)
+            same = type(motion) is type(before.motion) and after.motion is not None
+            return Control(after.motion, u) if same and after.motion is not None else given
+        case Reading(Laser() as laser, z, name):
+            return Reading(after.laser(laser), z, name)
+        case Reading(sensor, z, name) if name in own and _as_sure(sensor, own[name]):
+            return Reading(after.sensors[name], z, name)
     return given
 
 

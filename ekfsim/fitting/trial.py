@@ -78,7 +78,7 @@ def chosen(scene: Scene, keys: Sequence[str]) -> tuple[NoiseNumber, ...]:
 
 
 def tried(
-    scene: Scene, keys: Sequence[str] = (), heard: Callable[[], None] = lambda: None
+    scene: Scene, keys: Sequence[str] = (), heard: Callable[[int], None] = lambda _: None
 ) -> Trial:
     """Fit the numbers of a log's filter. `heard` hears of each trial.
 
