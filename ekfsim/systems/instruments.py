@@ -130,13 +130,17 @@ class Ranges(Looking):
         """The range that a raw reading stands for, in m."""
         return (raw - self.bias) / self.scale
 
+    def raw(self, z: Array) -> Array:
+        """What it says where corrected ranges (…, 1) were read."""
+        return self.scale * z + self.bias
+
     def as_given(self, z: Array, believed: Instrument) -> Array:
         """Readings corrected by the scale and the bias that the radio is believed to have."""
         if not isinstance(believed, Ranges):
             return z
         if (self.scale, self.bias) == (believed.scale, believed.bias):
             return z
-        return (self.scale * z + self.bias - believed.bias) / believed.scale
+        return (self.raw(z) - believed.bias) / believed.scale
 
 
 @dataclass(frozen=True)

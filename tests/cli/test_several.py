@@ -164,7 +164,10 @@ def test_driven_and_recorded_robots_have_several_filters_too(place):
     (place / "drive.yaml").write_text(f"world: {world}\ndrive: [{{v: 1, omega: 30, for: 3}}]\n")
     lines = told("run", "drive.yaml", "-q", "--filter", "ekf,ukf").splitlines()
     assert [line.split()[0] for line in lines[1:]] == ["filter", "ekf", "ukf", "odometry", "ekf"]
-    assert ekfsim("record", "drive.yaml", "--filter", "ekf,ukf", "-o", "log").status == 0
+    assert (
+        ekfsim("record", "drive.yaml", "--filter", "ekf,ukf", "--format", "own", "-o", "log").status
+        == 0
+    )
     assert (
         told("run", "gnss_log", "-q", "--filter", "ekf,ukf", "--log", "log").splitlines()[2:4]
         == lines[2:4]

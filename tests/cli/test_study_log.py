@@ -17,7 +17,16 @@ SWEEP = "sensors.gnss.sigma=0.05,0.2"
 def log(tmp_path_factory):
     folder = tmp_path_factory.mktemp("logs")
     (folder / "short.yaml").write_text(SHORT)
-    made = ekfsim("record", f"{folder}/short.yaml", "--world", "gnss", "-o", f"{folder}/log")
+    made = ekfsim(
+        "record",
+        f"{folder}/short.yaml",
+        "--world",
+        "gnss",
+        "--format",
+        "own",
+        "-o",
+        f"{folder}/log",
+    )
     assert made.status == 0, made.err
     return folder / "log"
 

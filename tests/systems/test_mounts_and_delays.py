@@ -233,11 +233,11 @@ def filter_of(scene):
 
 def test_what_is_recorded_with_a_delay_reads_back_as_it_was(tmp_path):
     """Written with the stamps that the sensor would have given, read with the delay taken off."""
-    from ekfsim.files.logs.written import write_log
+    from ekfsim.files.logs.writing.written import write_log
 
     one = GNSS + "sensors: [{gnss: {rate: 2, delay: 0.37, mount: {x: 0.4}}}]\n"
     scene = scene_of(tmp_path, one)
-    write_log(scene, simulate(scene), tmp_path / "log", force=False)
+    write_log(scene, simulate(scene), tmp_path / "log", force=False, format="own")
     stamps = np.loadtxt(tmp_path / "log/gnss.csv", delimiter=",", skiprows=1)[:, 0]
     np.testing.assert_allclose(stamps, 0.5 * np.arange(1, len(stamps) + 1) + 0.37)
     told = tmp_path / "read.yaml"

@@ -21,7 +21,8 @@ from ekfsim.files.logs.named.declared import LOG
 from ekfsim.files.logs.named.log import read_named
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.tables.declared import Format
-from ekfsim.files.logs.written import WRITERS, write_log
+from ekfsim.files.logs.writing.own import WRITERS
+from ekfsim.files.logs.writing.written import write_log
 from ekfsim.systems.document import DocumentReading
 from ekfsim.world import World
 

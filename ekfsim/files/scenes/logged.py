@@ -1,5 +1,6 @@
 """A scene whose run was recorded: its log, and the world that a log may bring."""
 
+import fnmatch
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -8,12 +9,14 @@ from typing import NamedTuple
 from ekfsim.errors import InputError, UsageError
 from ekfsim.files.given.given import Given
 from ekfsim.files.keys.recording import ANY, BAG, OF_ANY_ROBOT, LogFormat, RecordingKeys
+from ekfsim.files.looking import is_folder, read_from
 from ekfsim.files.packaged import source_name
 from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.scenes.one_file import File, Loaded
 from ekfsim.scene import Scene
 
 CLASSROOM: LogFormat = "classroom"  # whose logs bring their world
+WORLD = "world.yaml"  # of a log that has one
 
 
 class LogGiven(NamedTuple):
@@ -41,6 +44,7 @@ def with_log(
         return loaded
     source = os.path.normpath(log if log is not None else path.parent / (recording.path or ""))
     warnings = list(loaded.warnings)
+    recording = recognised(recording, source, warnings)
     try:
         scene = read_into(scene, recording, source, warnings)
     except InputError as error:
@@ -53,6 +57,30 @@ def with_log(
         mistake = sound.mistake(("recording", "path"), wrong, right)
         return replace(loaded, mistakes=[mistake], warnings=warnings)
     return replace(loaded, value=scene, warnings=warnings)
+
+
+def recognised(recording: RecordingKeys, source: str, warnings: list[str]) -> RecordingKeys:
+    """The recording as it is to be read: by the format `log` where the files of that lie there, and
+    none of those of the format that is named. `warnings` tell.
+    """
+    format, place = recording.format, Path(source)
+    if format in (CLASSROOM, *OF_ANY_ROBOT):
+        return recording
+    from ekfsim.files.logs import DECLARED
+
+    motion, readings, *_ = (table.files[0] for table in DECLARED[ANY].tables)
+    with read_from(place):
+        names = os.listdir(place) if is_folder(place) else []
+    needed = [table.files for table in DECLARED[format].tables if table.needed]
+    own = [any(fnmatch.filter(names, pattern) for pattern in files) for files in needed]
+    is_other = DECLARED[format].alone or not all(own)
+    if not (is_other and fnmatch.filter(names, motion) and fnmatch.filter(names, readings)):
+        return recording
+    told = f"holds {motion.replace('*', '')} and no log of the format {format}: read as format: log"
+    if WORLD in names:
+        told += f", in the scene's world; that of the log is --world {place / WORLD}"
+    warnings.append(f"{source}: {told}")
+    return recording.model_copy(update={"format": ANY})
 
 
 def read_into(scene: Scene, recording: RecordingKeys, source: str, warnings: list[str]) -> Scene:

@@ -42,7 +42,7 @@ def truthless(folder, drive, heading, seed):
     place = world("gnss", start=(30.0, -4.0, heading), robot=replace(GnssMower(), rate=50.0),
                   instruments=(Gnss(rate=5.0),))  # fmt: skip
     scene = Scene(place, drive=Stretches(tuple(Stretch(*one) for one in drive)), seed=seed)
-    write_log(scene, simulate(scene), folder, force=True)
+    write_log(scene, simulate(scene), folder, force=True, format="own")
     truth = np.loadtxt(folder / "groundtruth.csv", delimiter=",", skiprows=1)
     (folder / "groundtruth.csv").unlink()
     found = read_log(RecordingKeys(format="gnss"), folder, world("gnss", robot=place.robot,

@@ -9,7 +9,7 @@ import pytest
 from log_worlds import lay, read, steps_of, world
 
 from ekfsim.errors import InputError, UsageError
-from ekfsim.files.logs.written import write_log
+from ekfsim.files.logs.writing.written import write_log
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.simulation import simulate
 from ekfsim.systems.drive import Course
@@ -197,7 +197,7 @@ def shared_stamps(tmp_path_factory):
         seed=5,
     )
     folder = tmp_path_factory.mktemp("mower") / "log"
-    write_log(scene, simulate(scene), folder, force=False)
+    write_log(scene, simulate(scene), folder, force=False, format="own")
     poses, angles, marks = (
         np.loadtxt(folder / f"marker-001-{name}.txt") for name in ("poselog", "003-angles", "map")
     )

@@ -50,7 +50,7 @@ t,x,y
 GNSS = Format(
     "gnss",
     "Wheel speeds and satellite fixes in metres of a plane, as in the course TME290; "
-    "`ekfsim record` writes it of the system gnss.",
+    "`ekfsim record --format own` writes it of the system gnss.",
     (WHEELS, FIXES, GROUNDTRUTH),
 )
 

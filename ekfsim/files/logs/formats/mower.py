@@ -86,7 +86,7 @@ MAP = Table(
 MOWER = Format(
     "mower",
     "Ways of the wheels and angles to markers, as document 000 and its MATLAB listing have them; "
-    "`ekfsim record` writes it. White space or commas between the columns, no names.",
+    "`ekfsim record --format own` writes it. White space or commas between the columns, no names.",
     (POSELOG, ANGLES, MAP),
 )
 MUCH_LATER = 10  # steps dT from which on it is told that a picture has to wait so long for its row

@@ -97,7 +97,7 @@ GYRO = COMPASS.but(what="the gyro's yaw", files=("gyro*.csv",))
 PIONEER = Format(
     "pioneer",
     "Ways of the wheels and beams among walls, the robot of document 001 in ekfsim's own format; "
-    "`ekfsim record` writes it.",
+    "`ekfsim record --format own` writes it.",
     (ODOMETRY, ULTRASONIC, INFRARED, COMPASS, GYRO, GROUNDTRUTH),
 )
 FILES = {

@@ -58,7 +58,7 @@ nan,nan,-0.36,6871947673900000,34.106,-117.705,359.9,0.0,0.0,0.1,0.0,0.0
 PYLON = Format(
     "pylon",
     "One CSV file of document 004: the pylon as the lidar sees it, the inertial unit, GPS; "
-    "`ekfsim record` writes it.",
+    "`ekfsim record --format own` writes it.",
     (TABLE,),
     alone=True,
 )

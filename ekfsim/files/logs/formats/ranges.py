@@ -79,7 +79,7 @@ node,x,y
 PLAZA = Format(
     "ranges",
     "Way and turn of a robot, and ranges to radio nodes, as in the Plaza data; `ekfsim record` "
-    "does not write it. A row of the odometry is a stride that ends at its time.",
+    "writes the format log in its place. A row of the odometry is a stride that ends at its time.",
     (ODOMETRY, RANGES, NODES, GROUNDTRUTH),
 )
 FIRST_METRES = 2.0  # of travel, by which a stored heading is found to point ahead or back

@@ -7,7 +7,9 @@ from ekfsim.files.logs.tables.declared import Column, Format, Table
 LOG = Format(
     "log",
     "Tables of any make whose columns have names, in a folder or in one file. A unit may stand in "
-    "a name: `t_ms`, `bearing [deg]`. Files of other make are told of in the recording: "
+    "a name: `t_ms`, `bearing [deg]`. `ekfsim record` writes it of every robot that drives, with "
+    "the units in the names, one `readings.csv` for all sensors, and a `world.yaml` of what the "
+    "filter is told. Files of other make are told of in the recording: "
     "`columns: {t: time_ns, x: 3}` (a name of theirs, or a number from 1), `units: {t: ns}`, for "
     "all tables or for one of `motion:`, `readings:`, `landmarks:`, `truth:`, each with its "
     "`file:`, and `rows:` with the word that begins its rows where one file holds several kinds. A "

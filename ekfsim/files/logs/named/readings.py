@@ -40,11 +40,7 @@ class Fitting:
     columns: tuple[str, ...]
     targets: Mapping[str, Target]  # by a landmark's id or name, or a beam's number
     only: Target | None  # where it reads one thing alone
-
-    @property
-    def names(self) -> tuple[str, str]:
-        """How a log may call it: its own name, and its kind."""
-        return self.instrument.called, self.instrument.name
+    names: tuple[str, ...]  # how a log may call it: its own name, and its kind
 
     @property
     def is_beam(self) -> bool:
@@ -65,6 +61,12 @@ class Fitting:
             return np.array([self.instrument.corrected(float(numbers[0]))])
         return numbers
 
+    def told(self, z: Array) -> Array:
+        """A reading as the instrument told it: the other way round."""
+        if isinstance(self.instrument, Ranges):
+            return self.instrument.raw(z)
+        return z
+
 
 def fittings_of(
     world: World,
@@ -74,7 +76,7 @@ def fittings_of(
 ) -> list[Fitting]:
     """The world's instruments around these landmarks, which may go by names."""
     around = world.around(reading)._replace(landmarks=tuple(landmarks))
-    fittings = []
+    fittings, called = [], {instrument.called for instrument in world.told_instruments}
     for instrument in world.told_instruments:
         targets = list(instrument.targets(around))
         if not targets:
@@ -87,7 +89,9 @@ def fittings_of(
         if placed and ids:
             named.update({name: named[str(number)] for name, number in ids.items()})
         only = targets[0] if len(targets) == 1 and not placed else None
-        fittings.append(Fitting(instrument, columns, named, only))
+        kind = () if instrument.name in called else (instrument.name,)  # of which it is no name
+        names = (instrument.called, *kind)
+        fittings.append(Fitting(instrument, columns, named, only, names))
     return fittings
 
 

@@ -1,100 +1,24 @@
-"""A simulated run → the files of a recorded log,
-from which the filter makes the same numbers again.
-"""
+"""A simulated run → the files of the format that its robot's own logs have."""
 
 import math
-from collections.abc import Callable, Iterable
-from dataclasses import replace
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from ekfsim.errors import UsageError
 from ekfsim.files.logs.formats.pylon import CLOCK, EARTH_RADIUS
-from ekfsim.files.logs.handed_out import hand_out
-from ekfsim.files.logs.ticks import Run, as_written, numbered
-from ekfsim.files.results.writing import whole_folder
+from ekfsim.files.logs.writing.ticks import Run, as_written, numbered
 from ekfsim.models.sensors.mounted import place_of
 from ekfsim.models.sensors.offset import from_global
-from ekfsim.provenance import told_in_a_line
-from ekfsim.records import Entry
 from ekfsim.scene import Scene
 
-ALL_FILES = ("*.csv", "*.txt")  # what `--force` may replace
 BEGINNING = 1_600_000_000  # s, Unix, at which a simulated pylon log begins
 YAWS = "compass", "gyro"
 GPS_ORIGIN = (47.0, 8.0)  # degrees, of latitude and longitude: where its GPS takes (0, 0) to lie
 
 Files = dict[str, str]  # the text of each file, by its name
 Writer = Callable[[Scene, Run, Path], Files]
-
-
-def write_log(
-    scene: Scene, entries: Iterable[Entry], out: Path, force: bool, with_truth: bool = False
-) -> list[str]:
-    """Write a simulated run into a folder, and return the sentences that its reader should know.
-
-    Raises UsageError where the scene is no simulation, or the folder may not be written.
-    """
-    if scene.log is not None:
-        raise UsageError(f"{scene.commands_source}: is a recorded log already; name a simulation")
-    if scene.commanded:
-        hand_out(scene, entries, out, force, with_truth)
-        return []
-    if with_truth:
-        wrong = f"--truth: a log of the system '{scene.world.system}' holds the truth in any case"
-        raise UsageError(f"{wrong}; leave this out")
-    writer = _writer_of(scene)
-    with whole_folder(out, *ALL_FILES, force=force) as folder:
-        run = Run.of(entries)
-        files = {
-            **writer(scene, run, out),
-            "about.txt": f"A recorded log: {told_in_a_line(_as_told(scene))}\n",
-        }
-        for name, text in files.items():
-            (folder / name).write_text(text, encoding="utf-8")
-    return _differences(scene, run)
-
-
-def _as_told(scene: Scene) -> Scene:
-    """The scene without the settings that no one knows of:
-    its faults, and what the filter is told otherwise.
-    """
-    told = scene.world.told
-    hidden = [
-        "faults.",
-        *(["robot."] if told.robot else ()),
-        *(["sensors."] if told.instruments else ()),
-    ]
-    return replace(
-        scene, settings=tuple(one for one in scene.settings if not one.startswith(tuple(hidden)))
-    )
-
-
-def _writer_of(scene: Scene) -> Writer:
-    """How the log of a scene's robot is written. Raises UsageError where it cannot be."""
-    if scene.world.system not in WRITERS:
-        wrong = f"a run of the system '{scene.world.system}' cannot be recorded"
-        known = ", ".join(WRITERS)
-        raise UsageError(f"{scene.commands_source}: {wrong}; runs of {known} and classroom can")
-    return WRITERS[scene.world.system]
-
-
-def _differences(scene: Scene, run: Run) -> list[str]:
-    """What the log cannot hold of the run."""
-    told, system = scene.world.told, scene.world.system
-    if system == "mower" and scene.reading == "coded":
-        return [
-            "the listing begins with the mean heading of the first second: the log's numbers "
-            "differ from the run's"
-        ]
-    starts_elsewhere = system in ("gnss", "pioneer") and not np.array_equal(told.start, run.truth)
-    if not starts_elsewhere and not np.any(told.sigma):
-        return []
-    return [
-        "the filter of this run began otherwise than the log says: its numbers come again only in "
-        "a world with the same belief.start and belief.sigma"
-    ]
 
 
 def _mower(scene: Scene, run: Run, out: Path) -> Files:
