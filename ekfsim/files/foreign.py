@@ -1,12 +1,29 @@
-"""What a file is that is none of ours, and what reads it: told in place of what is wrong in it."""
+"""What a file or folder is that is none of ours, and what reads it: told in place of what is wrong
+in it.
+"""
 
 import re
+from collections.abc import Callable, Iterable, Sequence
+from fnmatch import fnmatchcase
 from typing import NamedTuple, get_args
 
 from ekfsim.files.keys.recording import LogFormat
 
 ENOUGH = 4096  # bytes from the beginning, by which a file is recognised
 NUMBERS = re.compile(r"[-+\d.eEnaif]+")
+NO_ROW = re.compile(r"[\[\]{}|]|:\s|:$")  # what stands in texts, in no row of a table
+FEWEST = 2  # numbers in a row
+METADATA = re.compile(r"rosbag2_bagfile_information:\s")
+BAG_FILES = ("metadata.yaml", "*.db3", "*.mcap", "*.bag")
+LOGS = {  # of each format the files by which it is known, and the commands that read it
+    "gnss": (("wheelspeeds*.csv",), "gnss_log"),
+    "mower": (("*poselog.txt",), "mower_log"),
+    "mrclam": (("*Odometry.dat",), "mrclam_log"),
+    "ranges": (("odometry*.csv", "ranges*.csv", "nodes*.csv"), "ranges_log"),
+    "pioneer": (("odometry*.csv", "ultrasonic*.csv"), "pioneer_log"),
+    "classroom": (("entries.csv",), "tour"),
+    "log": (("motion*.csv",), "log"),
+}
 SEPARATORS = re.compile(r"[,;\t ]+")
 ROWS = 3  # of numbers that make a table
 
@@ -57,13 +74,41 @@ def of_bytes(raw: bytes) -> Foreign | None:
 
 
 def of_text(text: str) -> Foreign | None:
-    """What a text is that is no YAML file of ours: rows of numbers, or JSON of a plan."""
+    """What a text is that is no YAML file of ours: rows of numbers, or what lies beside a bag."""
+    if METADATA.match(text):
+        return Foreign("what tells of a ROS 2 bag", "name its folder: `ekfsim run bag --log DIR`")
     lines = [line for line in text[:ENOUGH].splitlines() if line.strip()[:1] not in ("", "#", "%")]
-    rows = [SEPARATORS.split(line.strip().strip(",;")) for line in lines]
-    numbers = [len(row) > 1 and all(NUMBERS.fullmatch(field) for field in row) for row in rows]
-    if sum(numbers[:-1]) >= ROWS and all(numbers[1:-1]):
+    rows = [_is_row(line) for line in lines]
+    if sum(rows[:-1]) >= ROWS and all(rows[1:-1]):
         return Foreign("a table of numbers", TABLE_CURE)
     return None
+
+
+def of_folder(names: Sequence[str], shown: str) -> Foreign | None:
+    """What a folder with files of these names is: a bag, or a log.
+    shown : how the folder was named
+    """
+    if _has(names, BAG_FILES, any):
+        return Foreign("a bag", f"`ekfsim run bag --log {shown}` reads it")
+    for format, (files, commands) in LOGS.items():
+        if _has(names, files, all):
+            cure = f"`ekfsim run {commands} --log {shown}` reads it"
+            return Foreign(f"a log of the format {format}", cure)
+    return None
+
+
+def _has(
+    names: Sequence[str], patterns: Sequence[str], many: Callable[[Iterable[bool]], bool]
+) -> bool:
+    """Whether there are names for any, or for all, of some patterns."""
+    return many(any(fnmatchcase(name, pattern) for name in names) for pattern in patterns)
+
+
+def _is_row(line: str) -> bool:
+    """Whether a line is one of a table: numbers, among which words may stand."""
+    fields = SEPARATORS.split(line.strip().strip(",;"))
+    numbers = sum(NUMBERS.fullmatch(field) is not None for field in fields)
+    return numbers >= FEWEST and 2 * numbers >= len(fields) and not NO_ROW.search(line)
 
 
 def _is_binary(raw: bytes) -> bool:

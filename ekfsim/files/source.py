@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 from ekfsim.errors import InputError, Mistake, Place, UsageError
-from ekfsim.files.foreign import of_bytes
+from ekfsim.files.foreign import of_bytes, of_folder
 from ekfsim.files.looking import contents, current_folder, read_from
 
 MAX_BYTES = 10_000_000
@@ -74,7 +74,10 @@ def bytes_of(path: Path, shown: str) -> bytes:
                 ) from None
             raise UsageError(f"{shown}: no such file" + nearest_file(path, shown)) from None
         except IsADirectoryError:
-            raise UsageError(f"{shown}: is a folder; name a file in it") from None
+            with read_from(shown):
+                found = of_folder(os.listdir(path), shown)
+            right = f"with {found.what}: {found.cure}" if found else "name a file in it"
+            raise UsageError(f"{shown}: is a folder{' ' if found else '; '}{right}") from None
 
 
 def nearest_file(path: Path, shown: str) -> str:

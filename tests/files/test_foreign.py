@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from ekfsim.errors import UsageError
-from ekfsim.files.foreign import of_bytes, of_text
+from ekfsim.files.foreign import of_bytes, of_folder, of_text
 from ekfsim.files.packaged import packaged
+from ekfsim.files.scenes.check_study import check as check_any
 from ekfsim.files.scenes.load import check, load_scene, read_scene
 
 CSV = "t,x,y\n0,1,2\n1,2,3\n2,3,4\n3,4,5\n"
@@ -64,6 +65,56 @@ def test_rows_of_numbers_are_a_table_and_no_file_of_ours_is():
             assert of_bytes(path.read_bytes()) is None
     assert of_bytes(b"BMX: a key\n") is None
     assert of_bytes(b"P5: a key\n") is None
+
+
+def test_tables_with_words_in_their_rows_are_tables_and_texts_with_numbers_are_none(tmp_path):
+    rows = "".join(f"range2 {k / 10} 2.5 0.01 -1.5 2 105 80\n" for k in range(9))
+    assert of_text(rows).what == "a table of numbers"
+    assert of_text("% time,O_x,O_y\n" + "".join(f"{k},0.1,2e-3\n" for k in range(9))) is not None
+    assert of_text("In 2010 a robot drove.\nIt came 2nd.\nIn 2011 it was 3rd.\nThen 4.\n") is None
+    assert of_text("a: 1 2\nb: 3 4\nc: 5 6\nd: 7 8\n") is None
+    assert (
+        of_text("rosbag2_bagfile_information:\n  version: 5\n").what == "what tells of a ROS 2 bag"
+    )
+    (file := tmp_path / "log.txt").write_text("% time,O_x\n" + "1,2\n" * 9)
+    (mistake,) = check_any(file).mistakes
+    assert mistake.wrong == "this is a table of numbers"
+
+
+OF_LOGS = {  # the names of the files that a log of each format has
+    "gnss": ["wheelspeeds-1.csv", "gnss-1.csv"],
+    "mrclam": ["ds1_Odometry.dat", "ds1_Measurement.dat", "Landmark_Groundtruth.dat"],
+    "ranges": ["odometry.csv", "ranges.csv", "nodes.csv"],
+    "pioneer": ["odometry.csv", "ultrasonic.csv"],
+    "mower": ["marker-001-poselog.txt", "marker-001-003-angles.txt", "marker-001-map.txt"],
+}
+
+
+@pytest.mark.parametrize("format", OF_LOGS)
+def test_a_folder_with_a_log_is_told_by_its_format(format, tmp_path):
+    """In place of a scene or a map, and of a log of another format."""
+    for name in OF_LOGS[format]:
+        (tmp_path / name).touch()
+    right = f"a log of the format {format}: `ekfsim run {format}_log --log {tmp_path}` reads it"
+    with pytest.raises(UsageError, match="is a folder with ") as refused:
+        check_any(tmp_path)
+    assert right in str(refused.value)
+    with pytest.raises(UsageError, match="here is ") as refused:
+        load_scene("mower_log" if format == "gnss" else "gnss_log", log=tmp_path)
+    assert right in str(refused.value)
+
+
+def test_a_folder_of_a_bag_and_one_of_nothing_known():
+    assert of_folder(["metadata.yaml", "a_0.db3"], "a").cure == "`ekfsim run bag --log a` reads it"
+    assert of_folder(["letter.txt", "world.yaml"], "a") is None
+
+
+def test_a_world_of_the_classroom_is_told_how_it_takes_any_log(tmp_path):
+    (file := tmp_path / "c.yaml").write_text("recording: {format: log}\n")
+    (mistake,) = read_scene(file, packaged("worlds")["room"]).mistakes
+    assert "the world is of the classroom" in mistake.wrong
+    assert "system: landmarks" in mistake.right
+    assert "sensors: [{ultrasonic: {range: 10}}]" in mistake.right
 
 
 @pytest.mark.parametrize("name", ["log.csv", "log.yaml"])

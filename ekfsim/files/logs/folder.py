@@ -5,7 +5,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from ekfsim.errors import UsageError
-from ekfsim.files.foreign import ENOUGH, of_bytes
+from ekfsim.files.foreign import ENOUGH, of_bytes, of_folder
 from ekfsim.files.looking import contents, exists, is_file, is_folder, read_from
 
 
@@ -34,7 +34,11 @@ def find(folder: Path, what: str, *patterns: str) -> Path:
     """
     found = find_any(folder, what, *patterns)
     if found is None:
-        raise UsageError(f"{folder}: no file {_either(patterns)} in it; it would hold {what}")
+        with read_from(folder):
+            other = of_folder(os.listdir(folder), str(folder))
+        here = f"; here is {other.what}: {other.cure}" if other else ""
+        wrong = f"no file {_either(patterns)} in it; it would hold {what}"
+        raise UsageError(f"{folder}: {wrong}{here}")
     return found
 
 

@@ -6,7 +6,7 @@ from ekfsim.errors import MOST_TOLD, InputError, Mistake
 from ekfsim.files.homework import Homework, check_homework
 from ekfsim.files.scenes import load
 from ekfsim.files.scenes.load_study import FILTER, SWEEP, read_request
-from ekfsim.files.scenes.one_file import Loaded, kind_of
+from ekfsim.files.scenes.one_file import Loaded, foreign_in, kind_of
 from ekfsim.scene import Scene
 from ekfsim.world import World
 
@@ -19,7 +19,7 @@ def check(path: str | Path) -> Loaded[World] | Loaded[Scene] | Loaded[Homework]:
     try:
         kind = kind_of(path)
     except InputError as error:
-        return Loaded[World](mistakes=error.mistakes)
+        return Loaded[World](mistakes=foreign_in(Path(path), str(path)) or error.mistakes)
     if kind == "homework":
         return check_homework(Path(path))
     return check_study(path) if kind == "study" else load.check(path)

@@ -17,7 +17,8 @@ def sentence(found: Found) -> str:
     out = left_out(found)
     if found.word == "no evidence":
         most = max((int(one.readings) for one in found.sensors), default=0)
-        return f"no evidence: {most} readings of one sensor, and {LEAST} are wanted{out}"
+        readings = "1 reading" if most == 1 else f"{most} readings"
+        return f"no evidence: {readings} of one sensor, and {LEAST} are wanted{out}"
     told = ", ".join(f"{int(one.readings)} of {one.sensor}" for one in found.sensors)
     if found.word == "white":
         return f"white around zero (p {float(found.p):.2g}; {told}{out})"

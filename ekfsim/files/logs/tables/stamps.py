@@ -76,7 +76,8 @@ def unit_beside(t: Array, motion: Array) -> tuple[str, str]:
     }
     best = max(within, key=lambda unit: within[unit])
     if within["s"] < FEW and within[best] >= MOST:
-        return best, f"as seconds {within['s']:.0%} of them would lie within the motion"
+        share = f"{within['s']:.0%}" if within["s"] else "none"
+        return best, f"as seconds {share} of them would lie within the motion"
     date = _unit_of_date(t)
     if date is not None and within["s"] == 0:
         return date, f"{_median(t):.6g} s would be no date"

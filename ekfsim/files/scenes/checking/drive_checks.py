@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from ekfsim.errors import Mistake
 from ekfsim.files.keys.commands import WAYS, CommandsKeys
 from ekfsim.files.keys.fields import aliases
-from ekfsim.files.keys.recording import OWN_KEYS, misfit
+from ekfsim.files.keys.recording import OF_ANY_ROBOT, OWN_KEYS, misfit
 from ekfsim.files.scenes.building import drive_of
 from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.yaml.telling import meant
@@ -89,7 +89,15 @@ def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake
             f"a '{keys.recording.format}' log is of the system '{wanted}', the world of the "
             f"system '{system}'"
         )
-        yield file.mistake(("recording", "format"), wrong, f"name a world of the system '{wanted}'")
+        right = f"name a world of the system '{wanted}'"
+        if keys.recording.format in OF_ANY_ROBOT:
+            format = keys.recording.format
+            wrong = f"the world is of the classroom, whose robot leaves no '{format}' log"
+            right = (
+                "write in it, in place of noise:, system: landmarks (or ranges, gnss …) and its "
+                "sensors, for a laser among its walls sensors: [{ultrasonic: {range: 10}}]"
+            )
+        yield file.mistake(("recording", "format"), wrong, right)
     if keys.recording is not None:
         for format, own in OWN_KEYS.items():
             for key in own if keys.recording.format != format else ():
