@@ -17,12 +17,19 @@ COLUMNS = {  # what each column holds, and in which unit where nobody says anoth
     "right": "the same of the right wheel; of a lidar, how far to the right, m",
     "distance": "way ahead since the row before, m",
     "turn": "turn counter-clockwise since the row before, rad",
+    "turn_before": "of an odometry that tells turn, way and turn: the turn before the way, rad",
     "ax": "acceleration ahead, m/s²",
     "ay": "acceleration to the left, m/s²",
     "yaw": "heading counter-clockwise from east that a sensor tells, rad",
     "x": "place, m: of a fix, of the truth, of a landmark, of the odometry",
     "y": "place, m",
+    "latitude": "in place of x and y, on the earth: degrees north (WGS 84)",
+    "longitude": "degrees east",
     "theta": "heading counter-clockwise from +x, rad: of the truth, of the odometry",
+    "qx": "in place of theta, of a quaternion; of a robot on level ground qz and qw suffice",
+    "qy": "of the same",
+    "qz": "of the same",
+    "qw": "of the same",
     "sensor": "which sensor of the world it is, by its name or its kind; a word",
     "target": "what is seen: the id or the name of a landmark, or the number of a beam",
     "range": "m",
@@ -66,6 +73,16 @@ def place(value: Any) -> Any:
     raise PydanticCustomError("order", "this names no column; write its name, or its number from 1")
 
 
+def target(value: Any) -> Any:
+    """What is seen: a name or a number. Raises PydanticCustomError for what is none."""
+    if isinstance(value, str) and value.strip():
+        return value
+    if isinstance(value, int) and not isinstance(value, bool) and value >= 0:
+        return value
+    right = "write a landmark's id or name, or the number of a beam"
+    raise PydanticCustomError("order", f"this names nothing; {right}")
+
+
 def unit(value: Any) -> Any:
     """A unit, or how many s, m, rad, … one is. Raises PydanticCustomError for what is none."""
     if isinstance(value, str) and value in UNITS:
@@ -81,6 +98,8 @@ def unit(value: Any) -> Any:
 PLACE: Any = {"title": "the name of a column, or its number", "type": ["string", "integer"]}
 UNIT: Any = {"title": "a unit, or a number of s, m or rad", "type": ["string", "number"]}
 Place = Annotated[Any, AfterValidator(place), WithJsonSchema({**PLACE, "examples": ["time_ns"]})]
+TARGET: Any = {"title": "a landmark, or the number of a beam", "type": ["string", "integer"]}
+Target = Annotated[Any, AfterValidator(target), WithJsonSchema({**TARGET, "examples": ["A1"]})]
 Unit = Annotated[Any, AfterValidator(unit), WithJsonSchema({**UNIT, "examples": ["ns"]})]
 
 
@@ -176,6 +195,20 @@ class ReadingsKeys(TableKeys):
         description="Which sensor of the world it is, by its name or its kind, where no column "
         "says it.",
         examples=["gnss"],
+    )
+    target: Target | None = Field(
+        None,
+        description="What all of its rows are of, where no column says it: of a file with a column "
+        "for each landmark, which is named once for each.",
+        examples=["A1"],
+    )
+    every: int | None = Field(
+        None,
+        description="Of rows that tell several readings: how many columns further on the next "
+        "begins, to the end of the row. The columns are those of the first.",
+        ge=1,
+        le=1000,
+        examples=[3],
     )
     held: bool | None = Field(
         None,

@@ -47,7 +47,7 @@ SYSTEM_OF: dict[str, SystemName] = {  # the system that each other format of a l
 WITH_LANDMARKS = ("mower", "mrclam", "ranges", ANY)  # formats that tell what stands where
 
 OWN_KEYS = {  # of one kind of log alone
-    ANY: ("columns", "units", "motion", "readings", "landmarks", "truth"),
+    ANY: ("columns", "units", "motion", "readings", "landmarks", "truth", "origin"),
     BAG: ("topics", "origin"),
 }
 
@@ -158,6 +158,7 @@ class RecordingKeys(Strict):
     origin: OriginKeys | None = Field(
         None,
         title="a place on the earth",
-        description="bag: where (0, 0) of its fixes is on the earth; the first fix where absent.",
+        description="bag and log: where (0, 0) is on the earth, for latitudes and longitudes; the "
+        "first fix where absent.",
         examples=[{"latitude": 48.137, "longitude": 11.575}],
     )

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+import yaml
 from click.testing import CliRunner
 from log_worlds import CLOSET, MARKS, PYLON, lay, world
 
@@ -59,6 +60,12 @@ def test_the_page_of_a_format_is_what_is_declared_of_it(name):
             assert {column.name for column in table.columns} == set(
                 table.example.splitlines()[0].split(",")
             )
+
+
+def test_the_maps_of_a_page_are_recordings():
+    for what, text in DECLARED["log"].maps:
+        keys = yaml.safe_load(text)["recording"]
+        assert RecordingKeys.model_validate(keys).format == "log", what
 
 
 def test_every_format_is_declared_and_told_as_json_and_as_pages():

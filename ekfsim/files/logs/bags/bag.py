@@ -39,6 +39,10 @@ class Bag:
         """Which topic is not named."""
         return "no topic is named for the true poses (topics: {truth: …})"
 
+    def on_one_plane(self, warnings: list[str]) -> "Bag":
+        """The same: its fixes are in m already."""
+        return self
+
     def motion(self) -> tuple[Source, MotionKeys]:
         """What the robot did; speeds are told at the beginning of the time that they hold for."""
         (source,) = self._of("motion")

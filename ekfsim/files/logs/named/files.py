@@ -8,6 +8,7 @@ from ekfsim.errors import UsageError
 from ekfsim.files.keys.columns import MotionKeys, ReadingsKeys, TableKeys
 from ekfsim.files.keys.recording import RecordingKeys
 from ekfsim.files.logs.folder import find, find_any
+from ekfsim.files.logs.named.opening.opened import first_place
 from ekfsim.files.logs.named.tables import Source
 from ekfsim.files.looking import exists, is_folder, read_from
 
@@ -38,6 +39,11 @@ class Sources(Protocol):
 
     def truth(self) -> Source | None:
         """The true poses, None where the log has none."""
+
+    def on_one_plane(self, warnings: list[str]) -> "Sources":
+        """The same, with one origin for all that is told by latitude and longitude, which is told.
+        Raises as `opened` does.
+        """
 
 
 class Files(NamedTuple):
@@ -80,6 +86,24 @@ class Files(NamedTuple):
         keys = self.recording.truth
         file = self._own(keys, "the true poses", TRUTH)
         return None if file is None else Source(file, keys or TableKeys(), self.recording)
+
+    def on_one_plane(self, warnings: list[str]) -> "Files":
+        """The same, with one origin for all places on the earth: the first fix, else the first true
+        place, where the commands file names none. Raises as `opened` does.
+        """
+        if self.recording.origin is not None:
+            return self
+        truth = self.truth()
+        for source in [one for one, _ in self.readings()] + [truth] * (truth is not None):
+            origin = first_place(source) if source is not None else None
+            if source is not None and origin is not None:
+                warnings.append(
+                    f"{source.path}: x is m east and y m to true north of its first place, latitude"
+                    f" {origin.latitude:.9g}°, longitude {origin.longitude:.9g}°; say otherwise "
+                    "with recording: {origin: {latitude: …, longitude: …}}"
+                )
+                return self._replace(recording=self.recording.model_copy(update={"origin": origin}))
+        return self
 
     def _told(self, keys: TableKeys) -> Path | None:
         """The file that is named."""

@@ -11,6 +11,8 @@ from ekfsim.files.logs.tables.names import OTHERS, named
 from ekfsim.files.logs.text import first_line
 from ekfsim.files.yaml.telling import quoted
 
+# what stands before the name of a field in a table of ROS messages
+OF_A_POSE = ("pose_", "pose_pose_", "field_pose_", "field_pose_pose_")
 ALSO = {  # how else a first line may call a column, which is not told
     "t": ("time", "timestamp", "stamp"),
     "v": ("speed",),
@@ -19,6 +21,12 @@ ALSO = {  # how else a first line may call a column, which is not told
     "right": ("vr", "v_right"),
     "turn": ("dheading", "dtheta"),
     "theta": ("heading", "phi", "orientation"),
+    "latitude": ("lat", "gps_lat", "field_latitude"),
+    "longitude": ("lon", "lng", "long", "gps_lon", "field_longitude"),
+    **{
+        f"q{one}": (f"orientation_{one}", *(f"{of}orientation_{one}" for of in OF_A_POSE))
+        for one in "xyzw"
+    },
     "id": ("landmark", "node", "marker", "subject"),
     "target": ("landmark", "node", "marker", "id", "beam", "pair"),
     **{

@@ -13,9 +13,9 @@ Form = Literal["speeds", "wheels", "way", "inertial", "pose"]
 COLUMNS: dict[Form, tuple[str, ...]] = {  # that tell a motion; the first that are there count
     "wheels": ("left", "right"),
     "way": ("distance", "turn"),
-    "inertial": ("ax", "ay", "yaw"),
     "pose": ("x", "y", "theta"),
     "speeds": ("v", "omega"),
+    "inertial": ("ax", "ay", "yaw"),
 }
 OWN: dict[Form, str] = {  # what the first input is called of a robot that takes them as they are
     "wheels": "left",

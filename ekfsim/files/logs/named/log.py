@@ -4,11 +4,13 @@ from ekfsim.errors import UsageError
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.named.files import Sources, files_of
 from ekfsim.files.logs.named.inputs import WANTED as MOTION
-from ekfsim.files.logs.named.motion import motions_of, rows_of
+from ekfsim.files.logs.named.motion import motions_of, rows_of, tells_ways
+from ekfsim.files.logs.named.opening.opened import opened, opened_all
+from ekfsim.files.logs.named.opening.ordered import after, numbered
 from ekfsim.files.logs.named.places import landmarks_in, truth_in
 from ekfsim.files.logs.named.readings import WANTED as READINGS
 from ekfsim.files.logs.named.readings import fittings_of, samples_of
-from ekfsim.files.logs.named.tables import Table, opened
+from ekfsim.files.logs.named.tables import Table
 from ekfsim.files.logs.recorded import Recorded
 from ekfsim.files.logs.timeline import Timeline
 
@@ -31,16 +33,21 @@ def read_tables(asked: Asked, files: Sources) -> Recorded:
     tables = list[Table]()
     source, of_motion = files.motion()
     motion = opened(source, MOTION)
+    if not motion.has("t") and tells_ways(motion, of_motion):
+        motion = numbered(motion, warnings)
     rows = rows_of(motion, asked)
+    files = files.on_one_plane(warnings)
     landmarks, ids = landmarks_in(files, tables, asked)
-    truth = truth_in(files, tables, asked, rows)
+    truth = truth_in(files, tables, asked, motion, rows)
     motions = motions_of(motion, rows, of_motion, asked, truth)
     known = world.landmarks if landmarks is None else landmarks
     fittings = fittings_of(world, reading, known, ids)
     samples = []
     for source, of_readings in files.readings():
-        tables.append(opened(source, READINGS))
-        samples += samples_of(tables[-1], of_readings, fittings, asked, rows)
+        for part in opened_all(source, READINGS):
+            tables.append(after(part, motion))
+            samples += samples_of(tables[-1], of_readings, fittings, asked, rows)
+            warnings[:] = dict.fromkeys(warnings)  # what is true of one file is told once
     _refuse_unknown(asked, [motion, *tables])
     start = float(motions.begin[0]) if len(motions.begin) else float(rows.t[0])
     timeline = Timeline(str(path), start, motions, samples, truth, landmarks, between=False)

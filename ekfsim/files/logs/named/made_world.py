@@ -10,8 +10,9 @@ from ekfsim.files.logs.folder import find_any
 from ekfsim.files.logs.named.files import files_of
 from ekfsim.files.logs.named.inputs import WANTED, Form
 from ekfsim.files.logs.named.motion import form_of
+from ekfsim.files.logs.named.opening.opened import opened, opened_all
 from ekfsim.files.logs.named.readings import WANTED as READINGS
-from ekfsim.files.logs.named.tables import Table, opened
+from ekfsim.files.logs.named.tables import Table
 from ekfsim.systems.robots import GnssMower
 
 WORLD = "world.yaml"
@@ -50,7 +51,7 @@ def world_brought(log: Path, recording: RecordingKeys, warnings: list[str]) -> P
         robot["halfTrack"] = motion.width / 2
     sensors = dict[str, dict[str, object]]()
     for table, keys in files.readings():
-        sensors.update(_sensors(opened(table, READINGS), keys))
+        sensors.update(_sensors(opened_all(table, READINGS)[0], keys))
     width = f" {GnssMower().half_track * 2:g} m between the wheels," * (
         form == "wheels" and not robot
     )

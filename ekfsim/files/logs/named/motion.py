@@ -20,10 +20,17 @@ SIDEWAYS = 0.2  # of the way, from which on it is told that a pose went aside
 
 def form_of(table: Table) -> Form:
     """How a table tells the motion. Raises InputError where it does not."""
-    for form, columns in COLUMNS.items():
-        if table.has(*columns):
+    told = [form for form, columns in COLUMNS.items() if table.told.issuperset(columns)]
+    for form in (*told, *COLUMNS):
+        if table.has(*COLUMNS[form]):
             return form
     raise table.lacks("as a motion's are", f"write {WANTED}")
+
+
+def tells_ways(table: Table, keys: MotionKeys) -> bool:
+    """Whether a table tells ways or poses, which follow one another without any time."""
+    form = form_of(table)
+    return form in ("way", "pose") or (form == "wheels" and keys.wheels == "ways")
 
 
 def rows_of(table: Table, asked: Asked) -> Rows:
@@ -31,7 +38,8 @@ def rows_of(table: Table, asked: Asked) -> Rows:
     form = form_of(table)
     _tell_others(table, form, asked.warnings)
     gyro = ("omega",) if form == "wheels" and table.has("omega") else ()
-    names = (*COLUMNS[form], *gyro)
+    before = ("turn_before",) if form == "way" and table.has("turn_before") else ()
+    names = (*COLUMNS[form], *gyro, *before)
     rows = table.rows(("t", *names), asked, maybe=frozenset(names))
     return some(_with_motion(rows, asked.warnings), "what the robot did")
 
@@ -69,7 +77,7 @@ def motions_of(
     elif speeds:
         held = _spans(form, rows, until_next)
     else:
-        held = _since(form, rows, truth)
+        held = _in_turn(_since(form, rows, truth))
     robot = asked.world.believed_robot
     motion = robot.motion(asked.reading)
     u = inputs_of(held, robot, motion, keys.width)
@@ -83,7 +91,7 @@ def _tell_others(table: Table, form: Form, warnings: list[str]) -> None:
         for other, columns in COLUMNS.items()
         if other != form and table.has(*columns)
     ]
-    if others:
+    if others and not table.told.issuperset(COLUMNS[form]):
         told = f"the motion is taken from {','.join(COLUMNS[form])}, not from {' or '.join(others)}"
         warnings.append(f"{table.file}: {told}; name the columns in recording.motion.columns")
 
@@ -118,6 +126,21 @@ def _since(form: Form, rows: Rows, truth: Truth | None) -> Held:
         nearest = float(truth.t[np.argmin(np.abs(truth.t - start))])
         start = nearest if abs(nearest - start) < step / 2 else start
     return Held(form, False, np.concatenate([[start], t[:-1]]), t, values)
+
+
+def _in_turn(held: Held) -> Held:
+    """The motions, those of a turn, a way and a turn one after the other, the way half of the time:
+    Thrun, Burgard & Fox, Probabilistic Robotics, 2005, Table 5.6.
+    """
+    if held.form != "way" or held.values.shape[1] < 3:
+        return held
+    way, after, before = held.values.T
+    none = np.zeros_like(way)
+    values = np.stack([[none, before], [way, none], [none, after]]).transpose(2, 0, 1)
+    ends = held.begin[:, None] + held.dt[:, None] * np.array([0.25, 0.75, 1.0])
+    ends[:, -1] = held.end
+    begins = np.column_stack([held.begin, ends[:, :-1]])
+    return held._replace(begin=begins.ravel(), end=ends.ravel(), values=values.reshape(-1, 2))
 
 
 def _steps(rows: Rows, warnings: list[str]) -> Held:

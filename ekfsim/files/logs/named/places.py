@@ -9,7 +9,9 @@ import numpy as np
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.named.files import Sources
-from ekfsim.files.logs.named.tables import Source, Table, opened
+from ekfsim.files.logs.named.opening.opened import opened
+from ekfsim.files.logs.named.opening.ordered import after
+from ekfsim.files.logs.named.tables import Source, Table
 from ekfsim.files.logs.table import Rows, Wanted, bare_table, is_number
 from ekfsim.files.logs.truth import Truth, truth_of
 from ekfsim.geometry import Array
@@ -66,31 +68,35 @@ def _is_whole(word: str) -> bool:
     return is_number(word) and float(word).is_integer() and 0 <= float(word) < 2**31
 
 
-def truth_in(files: Sources, tables: list[Table], asked: Asked, motion: Rows) -> Truth | None:
-    """The true poses, None where the log has none. Raises InputError with what is wrong in them."""
+def truth_in(
+    files: Sources, tables: list[Table], asked: Asked, motion: Table, rows: Rows
+) -> Truth | None:
+    """The true poses, None where the log has none, beside a motion, a table and its rows.
+    Raises InputError with what is wrong in them.
+    """
     source = files.truth()
     if source is None:
         told = "the truth is unknown, and so are the errors"
         asked.warnings.append(f"{asked.path}: {files.no_truth}: {told}")
         return None
-    rows = _poses(source, tables, asked, motion)
+    rows = _poses(source, tables, asked, motion, rows)
     if asked.recording.turn_truth == "always":
         rows = replace(rows, values=rows.values + np.array([0, 0, 0, math.pi]))
     return truth_of(rows, asked.warnings)
 
 
-def _poses(source: Source, tables: list[Table], asked: Asked, motion: Rows) -> Rows:
+def _poses(source: Source, tables: list[Table], asked: Asked, motion: Table, beside: Rows) -> Rows:
     """The rows of the truth, t, x, y, heading, by the course where no heading is told."""
     if source.path.suffix == ".tum":
         rows = bare_table(source.path, TUM, asked.warnings)
         qx, qy, qz, qw = rows.values[:, 3:].T
         θ = np.arctan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy**2 + qz**2))
         return replace(rows, values=np.column_stack([rows.values[:, :3], θ]))
-    table = opened(source, ",".join(POSE))
+    table = after(opened(source, ",".join(POSE)), motion)
     tables.append(table)
     if table.has("theta"):
-        return table.rows(POSE, asked, motion)
-    rows = table.rows(POSE[:3], asked, motion)
+        return table.rows(POSE, asked, beside)
+    rows = table.rows(POSE[:3], asked, beside)
     told = "it tells no heading (theta): taken from the course, so errors of it are not to be taken"
     asked.warnings.append(f"{table.file}: {told} for the robot's own where it slides or backs up")
     return replace(rows, values=np.column_stack([rows.values, course_of(rows.values[:, 1:3])]))

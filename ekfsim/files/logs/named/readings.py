@@ -142,7 +142,8 @@ def _of_one(
     warnings = asked.warnings
     ranges = frozenset(one.columns) & {"range"} if not one.is_beam else frozenset[str]()
     sigmas = columns_of_sigmas(table, one.columns)
-    by_bearing = one.is_beam and table.has("bearing") and not table.has("target")
+    told_of = keys.target is not None or table.has("target")
+    by_bearing = one.is_beam and table.has("bearing") and not told_of
     names = ["t", *one.columns, *(["bearing"] if by_bearing else []), *sigmas]
     rows = table.rows(names, asked, motion, frozenset(names[1:]), ranges)
     rows = in_order(_of_sensor(table, one, rows), warnings)
@@ -151,11 +152,12 @@ def _of_one(
     if unread.any() and not one.is_beam:
         rows, values = rows[~unread], values[~unread]
     rows, values = _fresh(rows, values, keys.held, one, warnings)
-    tell_gaps(rows, warnings)
+    if keys.every is None and keys.target is None:  # what is not in sight leaves gaps
+        tell_gaps(rows, warnings)
     if by_bearing:
         targets = [one.beam(bearing) for bearing in rows.values[:, 1 + len(one.columns)].tolist()]
     else:
-        targets = _targets(table, one, rows)
+        targets = _targets(table, keys, one, rows)
     unknown = list[int]()
     σ = sigmas_of(one.columns, sigmas, rows, warnings)
     samples = list[Sample]()
@@ -167,7 +169,7 @@ def _of_one(
         read = Reading(sensor, one.z(values[row]), target.name)
         samples.append(Sample(t, read, target.delay))
     if unknown:
-        _tell_unknown(table, one, rows, unknown, warnings)
+        _tell_unknown(table, keys, one, rows, unknown, warnings)
     return samples
 
 
@@ -200,10 +202,12 @@ def _fresh(
     return rows[~same], values[~same]
 
 
-def _targets(table: Table, one: Fitting, rows: Rows) -> list[Target | None]:
+def _targets(table: Table, keys: ReadingsKeys, one: Fitting, rows: Rows) -> list[Target | None]:
     """What each row is of, None where the world has no such thing."""
     if one.only is not None:
         return [one.only] * len(rows)
+    if keys.target is not None:
+        return [one.targets.get(_id(str(keys.target)))] * len(rows)
     if not table.has("target"):
         right = "name what is seen: a landmark's id, or a beam's number"
         raise table.lacks("'target'", right)
@@ -218,10 +222,16 @@ def _id(word: str) -> str:
 
 
 def _tell_unknown(
-    table: Table, one: Fitting, rows: Rows, unknown: list[int], warnings: list[str]
+    table: Table,
+    keys: ReadingsKeys,
+    one: Fitting,
+    rows: Rows,
+    unknown: list[int],
+    warnings: list[str],
 ) -> None:
     row = unknown[0]
     more = f", nor is that of {len(unknown) - 1} more rows" if len(unknown) > 1 else ""
-    word = table.words("target", rows[row : row + 1])[0]
+    told = keys.target
+    word = table.words("target", rows[row : row + 1])[0] if told is None else str(told)
     what = "beam" if one.is_beam else "landmark"
     warnings.append(f"{rows.at(row)}: target {word!r} is no {what} that is known{more}: left out")

@@ -11,23 +11,13 @@ from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.keys.columns import UNITS, TableKeys
 from ekfsim.files.keys.recording import RecordingKeys
 from ekfsim.files.logs.asked import Asked
-from ekfsim.files.logs.header import separator_of
-from ekfsim.files.logs.named.head import (
-    ALSO,
-    absent,
-    fields_of,
-    meant,
-    names_in,
-    place_of,
-    placed,
-    stated,
-)
+from ekfsim.files.logs.named.head import ALSO, meant
 from ekfsim.files.logs.table import Rows, Wanted
 from ekfsim.files.logs.tables.angles import BEYOND_A_TURN
 from ekfsim.files.logs.tables.declared import Column
-from ekfsim.files.logs.tables.layout import Layout, plain, unquoted
+from ekfsim.files.logs.tables.layout import Layout, plain
 from ekfsim.files.logs.tables.reading import in_units
-from ekfsim.files.logs.text import Lines, lines_of
+from ekfsim.files.logs.text import Lines
 from ekfsim.files.yaml.telling import quoted
 from ekfsim.geometry import Array
 
@@ -35,6 +25,7 @@ from ekfsim.geometry import Array
 ANGLES = {
     "omega": 10.0,
     "turn": np.pi,
+    "turn_before": np.pi,
     "yaw": np.inf,
     "theta": np.inf,
     "bearing": BEYOND_A_TURN,
@@ -45,7 +36,6 @@ ANGLES = {
 LARGEST = {"t": 1e12, "x": 1e8, "y": 1e8}  # beyond which a number cannot be meant
 SQUARED = "variance"  # how the names of columns begin whose unit is a square
 NOTHING = ("", "inf", "+inf", "-inf")  # is no number, and no mistake where a field may be empty
-MANY = 8  # kinds of rows that are listed
 
 
 class Source(NamedTuple):
@@ -88,6 +78,7 @@ class Table:
     places: Mapping[str, int]  # of each column by its name, from 0
     units: Mapping[str, str | float]  # of the columns that tell theirs
     shared: frozenset[str] = frozenset()  # names that were told for all tables, and found here
+    told: frozenset[str] = frozenset()  # names whose places the commands file tells for this table
 
     @property
     def file(self) -> str:
@@ -240,76 +231,3 @@ def _scaled(values: Array, factors: Array) -> Array:
         for column, one in zip(values.T, factors.tolist(), strict=True)
     ]
     return np.column_stack(parts)
-
-
-def opened(source: Source, wanted: str) -> Table:
-    """A table whose columns are found by the names of its first line, or as the commands file says;
-    `wanted` is an example of such a line.
-
-    Raises UsageError where there is no such file, InputError where it lacks a column that is told.
-    """
-    lines = source.lines or lines_of(source.path)
-    lines = replace(lines, texts=[unquoted(text) for text in lines.texts])
-    if source.keys.rows is not None:
-        lines = _of_kind(lines, source.keys.rows)
-    if not len(lines):
-        right = f"it begins with the line {wanted}"
-        raise InputError([Mistake(Place(lines.file, 1, 1), "", "the file is empty", right)])
-    separator = separator_of(lines.texts[0])
-    fields = fields_of(lines.texts[0], separator)
-    head = None if source.keys.rows else names_in(source.path, fields)
-    body = lines
-    if head == fields:
-        body = replace(lines[1:], ended=lines.ended or len(lines) == 1)
-    body = _ended(body, separator, len(fields))
-    at = Place(lines.file, lines.numbers[0], 1)
-    columns, shared = source.columns(), source.shared()
-    if head is None and not columns and not shared:
-        right = f"the first line says what they are: {wanted}; or recording.columns their numbers"
-        wrong = f"{quoted(lines.texts[0])} names no columns"
-        raise InputError([Mistake(at, "", wrong, right)])
-    places, units = placed(head or [], at)
-    for name, theirs in columns.items():
-        place = place_of(theirs, head or [], len(fields))
-        if place is None:
-            raise absent(at, name, theirs, head)
-        places[name] = place
-    found = {n: place_of(theirs, head or [], len(fields)) for n, theirs in shared.items()}
-    there = {name: place for name, place in found.items() if place is not None}
-    places = {**places, **there, **{name: places[name] for name in columns}}
-    units = {**units, **_stated(places, head or []), **source.units()}
-    return Table(body, separator, len(fields), places, units, frozenset(there))
-
-
-def _ended(lines: Lines, separator: str | None, width: int) -> Lines:
-    """The lines with nan for a last field that is empty, and is no separator that ends the line."""
-    if separator is None:
-        return lines
-
-    def ended(text: str) -> str:
-        bare = text.rstrip()
-        is_empty = bare.endswith(separator) and bare.count(separator) == width - 1
-        return f"{bare}nan" if is_empty else text
-
-    return replace(lines, texts=[ended(text) for text in lines.texts])
-
-
-def _stated(places: Mapping[str, int], head: list[str]) -> dict[str, str | float]:
-    """The units that a first line states of columns that go by other names here."""
-    units = ((name, stated(head[place])[1]) for name, place in places.items() if place < len(head))
-    return {name: unit for name, unit in units if unit is not None}
-
-
-def _of_kind(lines: Lines, word: str) -> Lines:
-    """The rows that begin with a word. Raises InputError where none does."""
-    firsts = [text.split(separator_of(text), 1)[0].strip() for text in lines.texts]
-    kept = [i for i, first in enumerate(firsts) if first == word]
-    if not kept:
-        kinds = list(dict.fromkeys(firsts))
-        more = ", …" if len(kinds) > MANY else ""
-        right = f"they begin with {', '.join(map(quoted, kinds[:MANY]))}{more}"
-        wrong = f"no row begins with {quoted(word)}"
-        raise InputError([Mistake(Place(lines.file, 1, 1), "", wrong, right)])
-    ended = lines.ended or kept[-1] != len(lines) - 1
-    numbers, texts = [lines.numbers[i] for i in kept], [lines.texts[i] for i in kept]
-    return Lines(lines.file, numbers, texts, ended)

@@ -11,6 +11,8 @@ DEGREE = math.pi / 180
 ANGLES = {"rad": 1.0, "rad/s": 1.0, "degrees": DEGREE, "degrees/s": DEGREE}
 BEYOND_A_TURN = 3 * math.pi  # rad: an angle within half a turn, and a turn more or less
 MANY = 0.02  # the share of numbers beyond what radians can be, from which on they are degrees
+# the same of angles that a program may leave unwrapped over several turns, as a few are
+MANY_UNWRAPPED = 0.15
 ALMOST_A_TURN = 300.0  # degrees between two rows, where a heading is folded
 SHORT, PARTS = 0.1, 200  # m that a piece of a way has at least, and at most so many pieces across
 FEWEST = 5  # pieces
@@ -24,7 +26,8 @@ def are_degrees(values: Array, column: Column) -> bool:
     size = np.abs(values[np.isfinite(values) & (values != 0)])
     if not len(size) or math.isinf(column.most):
         return False
-    return bool(np.mean(size > column.most) >= MANY and np.quantile(size, 0.99) <= A_TURN)
+    many = MANY_UNWRAPPED if column.most == BEYOND_A_TURN else MANY
+    return bool(np.mean(size > column.most) >= many and np.quantile(size, 0.99) <= A_TURN)
 
 
 def are_degrees_of_course(x: Array, y: Array, heading: Array) -> bool:

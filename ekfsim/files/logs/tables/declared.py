@@ -90,6 +90,7 @@ class Format:
     alone: bool = False  # whether one file is the whole log
     example: str = ""  # how a commands file names it, where more is to be said than its path
     notes: tuple[str, ...] = ()  # what else is to be known, in Markdown
+    maps: tuple[tuple[str, str], ...] = ()  # files of other make, and how the recording tells of it
 
     @property
     def holds(self) -> str:

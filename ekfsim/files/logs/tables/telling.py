@@ -55,6 +55,7 @@ def page(format: Format) -> str:
         f"```yaml\n{format.example or _named(format)}```",
         *format.notes,
         *(_section(table) for table in format.tables),
+        *_maps(format),
         READ_AS if any(table.columns[0].unit == "s" for table in format.tables) else AS_JSON,
     ]
     return "\n\n".join(parts) + "\n"
@@ -98,6 +99,14 @@ def _section(table: Table) -> str:
         + "\n".join(rows)
         + f"\n\n```\n{table.example}```"
     )
+
+
+def _maps(format: Format) -> list[str]:
+    """How files of other make are told of."""
+    if not format.maps:
+        return []
+    told = "## Files of other make\n\nA commands file tells how they are to be read:"
+    return [told, *(f"{what}:\n\n```yaml\n{text}```" for what, text in format.maps)]
 
 
 def _names(column: Column) -> str:

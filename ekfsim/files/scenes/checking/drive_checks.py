@@ -99,9 +99,10 @@ def check_fit(file: Sound, keys: CommandsKeys, world: World) -> Iterator[Mistake
             )
         yield file.mistake(("recording", "format"), wrong, right)
     if keys.recording is not None:
+        known = OWN_KEYS.get(keys.recording.format, ())
         for format, own in OWN_KEYS.items():
-            for key in own if keys.recording.format != format else ():
-                if file.root.at(("recording", key)) is not None:
+            for key in own:
+                if key not in known and file.root.at(("recording", key)) is not None:
                     wrong = f"a '{keys.recording.format}' log has columns and files of its own"
                     right = f"delete it, or write format: {format}"
                     yield file.mistake(("recording", key), wrong, right)
