@@ -233,7 +233,9 @@ def plot(
 @click.command()
 @scene_options
 @click.option("--trace", type=Result(), help="Write every number of every step, as JSON lines.")
-@click.option("--tum", type=Result(), help="Folder for truth.tum and estimate.tum.")
+@click.option(
+    "--tum", type=Result(), help="Folder for estimate.tum and, where it is known, truth.tum."
+)
 @click.option("--csv", type=Result(), help="Write a flat table.")
 @click.option("--summary", type=Result(), help="Write the closing summary as JSON.")
 @click.option("--quiet", "-q", is_flag=True, help="Only the closing summary, no narrative.")
@@ -260,6 +262,8 @@ def run(
         runs = []
         for one, result, files in zip(alone, results, outputs.for_each(scene), strict=True):
             sinks = stack.enter_context(files.open(one, confidence, result))
+            if (unknown := files.unknown_truth(one)) is not None:
+                say(f"{unknown}: left out, for the log does not tell the truth")
             runs.append(kept(result.following(steps_of(one)), [sink.write for sink in sinks]))
         for view in together(runs[0], runs[1:], (scene.filter, *scene.beside)):
             heed()

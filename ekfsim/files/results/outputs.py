@@ -70,6 +70,8 @@ class Outputs:
             refuse_existing(path, self.force)
             _refuse_the_scene_itself(path, scene)
         _refuse_one_place_for_two([path for path in paths if not special(path)])
+        unknown = self.unknown_truth(scene)
+        paths = [path for path in paths if path != unknown]
         with ExitStack() as stack:
             file_of = {path: stack.enter_context(whole_text(path, self.force)) for path in paths}
             sinks: list[Sink] = []
@@ -80,7 +82,7 @@ class Outputs:
                 sinks.append(Table(file_of[self.csv], scene, confidence))
             if self.tum:
                 truth, estimate = self._tum()
-                tum = Tum(file_of[truth], file_of[estimate], scene)
+                tum = Tum(file_of.get(truth), file_of[estimate], scene)
                 sinks.append(tum)
             yield sinks
             if tum is not None:
@@ -95,6 +97,15 @@ class Outputs:
                 file_of[self.summary].write("\n")
             for file in file_of.values():
                 file.flush()  # a full disk must show before the first of them appears
+            if unknown is not None:
+                with told(unknown):
+                    unknown.unlink(missing_ok=True)  # that of another run
+
+    def unknown_truth(self, scene: Scene) -> Path | None:
+        """The file that is left out where a log tells no truth: evo reads none without rows."""
+        if scene.log is None or any(entry.truth is not None for entry in scene.log.entries):
+            return None
+        return next(iter(self._tum()), None)
 
     def on_stdout(self) -> bool:
         """Whether a result goes to standard output, where the closing summary would spoil it."""

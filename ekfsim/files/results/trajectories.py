@@ -24,21 +24,21 @@ class Tum:
 
     The poses are those after its last reading. t is the instant in s;
     where there is no clock, in the classroom, the index of the step.
-    So the RMSE that evo finds between the two files is the summary's.
+    So the RMSE that evo finds between the two files is the summary's. Of a log without truth there
+    is no file of it: evo reads none that has no rows.
     """
 
-    def __init__(self, truth: TextIO, estimate: TextIO, scene: Scene) -> None:
+    def __init__(self, truth: TextIO | None, estimate: TextIO, scene: Scene) -> None:
         self._truth, self._estimate, self._layout = truth, estimate, scene.world.layout
         self._instants = Instants()
         self._waiting: Step | None = None  # the last step of an instant, until the next begins
         clock = "step" if scene.commanded else "t (s)"
         for file, name in ((truth, "truth"), (estimate, "estimate")):
-            file.write(
-                f"# {name}: {told_in_a_line(scene)}\n# {clock} x y z qx qy qz qw (m, "
-                "unit quaternion)\n"
-            )
-        if scene.log is not None and all(entry.truth is None for entry in scene.log.entries):
-            truth.write("# the log does not tell the truth\n")
+            if file is not None:
+                file.write(
+                    f"# {name}: {told_in_a_line(scene)}\n# {clock} x y z qx qy qz qw (m, "
+                    "unit quaternion)\n"
+                )
 
     def write(self, step: Step) -> None:
         """Append the two poses after this step; with a clock, once the next instant begins."""
@@ -59,7 +59,7 @@ class Tum:
 
     def _append(self, t: float, step: Step) -> None:
         self._estimate.write(_tum_line(t, self._layout.pose(step.posterior.mean)))
-        if step.entry.truth is not None:
+        if self._truth is not None and step.entry.truth is not None:
             self._truth.write(_tum_line(t, step.entry.truth))
 
 

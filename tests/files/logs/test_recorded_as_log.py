@@ -134,3 +134,92 @@ def test_a_run_and_its_log_give_the_same_numbers(tmp_path, name):
     assert [one for one in told if "a gap of" not in one] == []
     assert isinstance(logged.world.told_robot, Estimating) == ("estimate" in str(WORLDS[name]))
     assert_alike(list(play(scene)), list(play(logged)))
+
+
+@pytest.mark.parametrize("reading", ["coded", "printed"])
+@pytest.mark.parametrize("name", ["mower", "pylon"])
+def test_so_they_do_in_every_reading_of_the_document(tmp_path, name, reading):
+    scene = load_scene({"drive": AROUND, "world": name}, name, reading=reading)
+    write_log(scene, simulate(scene), tmp_path / "log", force=False)
+    run, log = list(play(scene)), list(play(again(tmp_path / "log", reading)[0]))
+    assert len(run) == len(log)
+    np.testing.assert_allclose(log[-1].posterior.mean, run[-1].posterior.mean, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("name", ["landmarks by several", "pylon by its lidar", "mower"])
+def test_a_log_without_its_truth_gives_the_same_estimates(tmp_path, name):
+    scene = scene_of(name)
+    write_log(scene, simulate(scene), tmp_path / "log", force=False)
+    (tmp_path / "log/truth.csv").unlink()
+    logged, told = again(tmp_path / "log")
+    unknown = "no truth.csv and no truth.tum in it: the truth is unknown, and so are the errors"
+    first, start = (one for one in told if "a gap of" not in one)
+    assert first == f"{tmp_path / 'log'}: {unknown}"
+    assert start.startswith(f"{tmp_path / 'log'}: starts at (0, 0, 10°) as told, to within ")
+    for a, b in zip(play(scene), play(logged), strict=True):
+        np.testing.assert_allclose(b.posterior.mean, a.posterior.mean, rtol=0, atol=1e-11)
+
+
+def test_readings_that_repeat_are_no_readings_that_are_held(tmp_path):
+    """Of a receiver without noise on a robot that stands, and of beams that see walls alike."""
+    standing = [{"v": 0, "omega": 0, "for": 3}, {"v": 1, "omega": 10, "for": 1}]
+    exact = {"sigma": 0, "sigmaPerMetre": 0}
+    square = [[-1, -1], [1, -1], [1, 1], [-1, 1]]
+    for world in (
+        {"system": "gnss", "sensors": [{"gnss": {"sigma": 0}}]},
+        {"system": "pioneer", "boundary": square, "sensors": [{"ultrasonic": exact}]},
+    ):
+        world = {"name": "test", "start": {"x": 0, "y": 0, "theta": 0}, **world}
+        scene = load_scene({"drive": standing}, world)
+        write_log(scene, simulate(scene), tmp_path / world["system"], force=False)
+        logged, told = again(tmp_path / world["system"])
+        assert told == []
+        assert_alike(list(play(scene)), list(play(logged)))
+
+
+def test_a_drive_without_a_sensor_or_a_sight_is_a_log_too(tmp_path):
+    start = {"x": 0, "y": 0, "theta": 0}
+    for name, sensors in ("none", []), ("blind", [{"rangeBearing": {"range": 0.1}}]):
+        world = {
+            "name": "test", "system": "landmarks", "start": start, "landmarks": MARKS,
+            "sensors": sensors,
+        }  # fmt: skip
+        scene = load_scene({"drive": AROUND}, world)
+        write_log(scene, simulate(scene), tmp_path / name, force=False)
+        logged, told = again(tmp_path / name)
+        assert [one.partition(": ")[2] for one in told] == [
+            "no reading is left: the filter follows the motion alone"
+        ]
+        run, log = list(play(scene)), list(play(logged))
+        assert len(run) == len(log)
+        np.testing.assert_allclose(log[-1].posterior.mean, run[-1].posterior.mean, atol=1e-12)
+
+
+def test_ranges_that_a_reader_leaves_out_are_told(tmp_path):
+    world = {
+        "name": "test", "system": "ranges", "start": {"x": 0, "y": 0, "theta": 0},
+        "landmarks": [{"id": 1, "x": 0.1, "y": 0.1}],
+    }  # fmt: skip
+    scene = load_scene({"drive": [{"v": 0.1, "omega": 0, "for": 5}]}, world)
+    (told,) = write_log(scene, simulate(scene), tmp_path / "log", force=False)
+    logged, _ = again(tmp_path / "log")
+    missed = len(list(play(scene))) - len(list(play(logged)))
+    assert told.startswith(f"{missed} readings have ranges of 0 m or less")
+
+
+def test_the_files_are_text_with_units_and_shortest_numbers(tmp_path):
+    scene = scene_of("mower by its wheels")
+    write_log(scene, simulate(scene), tmp_path / "log", force=False)
+    heads = {
+        file.name: file.read_text().splitlines()[:2] for file in (tmp_path / "log").glob("*.csv")
+    }
+    assert heads["motion.csv"] == ["t [s],left [m],right [m],omega [rad/s]", "0.0,0.0,0.0,0.0"]
+    assert heads["readings.csv"][0] == (
+        "t [s],sensor,target,azimuth [rad],elevation [rad],yaw [rad]"
+    )
+    assert heads["landmarks.csv"] == ["id,x [m],y [m]", "6,3.0,2.0"]
+    assert heads["truth.csv"][0] == "t [s],x [m],y [m],theta [rad]"
+    told = (tmp_path / "log/world.yaml").read_text()
+    assert "mount: {x: 0.3, y: -0.1, theta: 33.3}" in told
+    assert "orientation: 12.3" in told
+    assert "estimate: {wheelScale: {sigma: 0.05, drift: 0.0}}" in told

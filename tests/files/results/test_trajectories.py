@@ -12,6 +12,7 @@ from systems_scenes import gnss, mower
 
 from ekfsim.commands import Kidnap, Move, Say, Sense
 from ekfsim.diagnostics.summary import Summary
+from ekfsim.files.results.outputs import Outputs
 from ekfsim.files.results.trajectories import COLUMNS, DRIVEN_COLUMNS, Table, Tum
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.belief import Refused
@@ -190,11 +191,18 @@ def test_instants_keep_all_their_digits():
     assert told == [step.entry.t for step in play(made)]
 
 
-def test_a_run_without_truth_has_an_empty_one_that_says_so():
-    truth, estimate = tum_of(speeds(6, 3))
-    assert [line[0] for line in truth.splitlines()] == ["#", "#", "#"]
-    assert truth.endswith("\n# the log does not tell the truth\n")
-    assert len(estimate.splitlines()) == 2 + 7
+def test_of_a_run_without_truth_there_is_the_estimate_alone(tmp_path):
+    """And no truth.tum of an earlier run beside it, of which evo would find errors."""
+    made = speeds(6, 3)
+    outputs = Outputs(tum=tmp_path, force=True)
+    (tmp_path / "truth.tum").write_text("0 0 0 0 0 0 0 1\n")
+    assert outputs.unknown_truth(made) == tmp_path / "truth.tum"
+    with outputs.open(made, 0.954, Summary.of(made)) as sinks:
+        for step in play(made):
+            sinks[0].write(step)
+    assert [file.name for file in tmp_path.iterdir()] == ["estimate.tum"]
+    assert len((tmp_path / "estimate.tum").read_text().splitlines()) == 2 + 7
+    assert outputs.unknown_truth(rich()) is None
 
 
 @pytest.mark.parametrize("made", [recording(), speeds(9, 3)])

@@ -120,6 +120,8 @@ def turned_to(sensor: Sensor, bearing: float) -> Sensor:
 def _fit(table: Table, keys: ReadingsKeys, fittings: Sequence[Fitting]) -> list[Fitting]:
     """The instruments whose columns a table has. Raises InputError where there is none."""
     known = [one for one in fittings if keys.sensor is None or keys.sensor in one.names]
+    if not fittings and not len(table.lines):
+        return []  # a log of the motion alone
     if not fittings:
         right = "landmarks.csv (id,x,y) in the log, or landmarks: and sensors: in the world"
         wrong = "the world has no sensor that could see anything, or nothing to be seen"
@@ -146,12 +148,13 @@ def _of_one(
     by_bearing = one.is_beam and table.has("bearing") and not told_of
     names = ["t", *one.columns, *(["bearing"] if by_bearing else []), *sigmas]
     rows = table.rows(names, asked, motion, frozenset(names[1:]), ranges)
-    rows = in_order(_of_sensor(table, one, rows), warnings)
+    rows = _in_order(table, one, _of_sensor(table, one, rows), warnings)
     values = rows.values[:, 1 : 1 + len(one.columns)]
     unread: Booleans = np.all(np.isnan(values), axis=1)
     if unread.any() and not one.is_beam:
         rows, values = rows[~unread], values[~unread]
-    rows, values = _fresh(rows, values, keys.held, one, warnings)
+    held = False if table.has("sensor") and keys.held is None else keys.held
+    rows, values = _fresh(rows, values, held, one, warnings)
     if keys.every is None and keys.target is None:  # what is not in sight leaves gaps
         tell_gaps(rows, warnings)
     if by_bearing:
@@ -179,6 +182,16 @@ def _of_sensor(table: Table, one: Fitting, rows: Rows) -> Rows:
         return rows
     words = table.words("sensor", rows)
     return rows[np.array([word in one.names for word in words], bool)]
+
+
+def _in_order(table: Table, one: Fitting, rows: Rows, warnings: list[str]) -> Rows:
+    """The rows by time, none twice: two that differ in what was seen are no repetition."""
+    if one.only is not None or not table.has("target"):
+        return in_order(rows, warnings)
+    seen = np.unique(table.words("target", rows), return_inverse=True)[1]
+    both = replace(rows, values=np.column_stack([rows.values, seen.reshape(len(rows))]))
+    rows = in_order(both, warnings)
+    return replace(rows, values=rows.values[:, :-1])
 
 
 def _fresh(

@@ -54,28 +54,23 @@ def _readings(scene: Scene, run: Run) -> str:
     """What all sensors told, a row a reading, by its stamp; of one instant in the order in which
     the filter is given them.
     """
-    world = scene.world
-    fittings = fittings_of(world, scene.reading, world.landmarks, None)
-    named = dict[str, list[tuple[Fitting, str]]]()
-    for fitting in fittings:
-        for key, target in fitting.targets.items():
-            named.setdefault(target.name, []).append((fitting, key))
+    known, fittings = _by_name(scene), _fittings(scene)
     units = dict[str, str]()
     for fitting in fittings:
         outputs = next(iter(fitting.targets.values())).sensor.outputs
         units.update(zip(fitting.columns, (one.unit for one in outputs), strict=True))
     several = {"target": ""} if any(fitting.only is None for fitting in fittings) else {}
     columns = {"t": "s", "sensor": "", **several, **units}
-    rows = sorted(_rows(run, named, columns), key=lambda row: float(row[0]))
+    rows = sorted(_rows(run, known, columns), key=lambda row: float(row[0]))
     return _table(columns, rows)
 
 
 def _rows(
-    run: Run, named: dict[str, list[tuple[Fitting, str]]], columns: Iterable[str]
+    run: Run, known: dict[str, list[tuple[Fitting, str]]], columns: Iterable[str]
 ) -> Iterator[list[str]]:
     for tick in run.ticks:
         for reading in tick.readings:
-            fitting, key = _read_by(reading, named[reading.name])
+            fitting, key = _read_by(reading, known[reading.name])
             told = dict(zip(fitting.columns, fitting.told(reading.z).tolist(), strict=True))
             row = {
                 "t": repr(tick.t + fitting.targets[key].delay),
@@ -84,6 +79,20 @@ def _rows(
                 **{column: repr(one) for column, one in told.items()},
             }
             yield [row.get(column, "") for column in columns]
+
+
+def _fittings(scene: Scene) -> list[Fitting]:
+    """The sensors and what each tells of what it sees."""
+    return fittings_of(scene.world, scene.reading, scene.world.landmarks, None)
+
+
+def _by_name(scene: Scene) -> dict[str, list[tuple[Fitting, str]]]:
+    """By the names of readings, what may have told them, and of what."""
+    known = dict[str, list[tuple[Fitting, str]]]()
+    for fitting in _fittings(scene):
+        for key, target in fitting.targets.items():
+            known.setdefault(target.name, []).append((fitting, key))
+    return known
 
 
 def _read_by(reading: Reading, known: list[tuple[Fitting, str]]) -> tuple[Fitting, str]:
@@ -113,5 +122,14 @@ def _table(columns: dict[str, str], rows: Iterable[list[str]]) -> str:
 
 
 def differences(scene: Scene, run: Run) -> list[str]:
-    """What the log does not hold of the run."""
-    return []
+    """What whoever reads the log makes otherwise of it."""
+    known, missed = _by_name(scene), 0
+    for tick in run.ticks:
+        for reading in tick.readings:
+            fitting, _ = _read_by(reading, known[reading.name])
+            if "range" in fitting.columns and not fitting.is_beam:
+                missed += bool(fitting.told(reading.z)[0] <= 0)
+    if not missed:
+        return []
+    told = "1 reading has a range" if missed == 1 else f"{missed} readings have ranges"
+    return [f"{told} of 0 m or less, which is none to a reader of logs: left out there"]
