@@ -110,8 +110,8 @@ def test_a_folder_of_a_bag_and_one_of_nothing_known():
 
 
 def test_a_world_of_the_classroom_is_told_how_it_takes_any_log(tmp_path):
-    (file := tmp_path / "c.yaml").write_text("recording: {format: log}\n")
-    (mistake,) = read_scene(file, packaged("worlds")["room"]).mistakes
+    (file := tmp_path / "c.yaml").write_text("recording: {format: log, path: .}\n")
+    mistake, *_ = read_scene(file, packaged("worlds")["room"]).mistakes
     assert "the world is of the classroom" in mistake.wrong
     assert "system: landmarks" in mistake.right
     assert "sensors: [{ultrasonic: {range: 10}}]" in mistake.right
