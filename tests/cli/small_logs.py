@@ -50,3 +50,12 @@ LOGS = {
         "marker-001-map.txt": "0 4 1\n1 4 -1.5\n",
     },
 }
+
+_ROWS = [
+    [254 if 9 < row < 50 and 9 < column < 70 else 0 for column in range(80)] for row in range(60)
+]
+MAP = {  # of ROS: a room of 6 m by 4 m
+    "map.yaml": "image: map.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\n"
+    "occupied_thresh: 0.65\nfree_thresh: 0.196\n",
+    "map.pgm": "P2\n80 60\n255\n" + "\n".join(" ".join(map(str, row)) for row in _ROWS) + "\n",
+}
