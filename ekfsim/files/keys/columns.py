@@ -57,8 +57,8 @@ UNITS = {  # s, m, rad, m/s, rad/s, m/s², V that one of each is
     "m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0,
     "m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "km/h": 1 / 3.6,
     "rad": 1.0, "deg": 0.017453292519943295, "degrees": 0.017453292519943295, "radians": 1.0,
-    "rad/s": 1.0, "deg/s": 0.017453292519943295, "m/s²": 1.0, "m/s^2": 1.0, "g": 9.80665,
-    "V": 1.0, "mV": 0.001,
+    "rad/s": 1.0, "deg/s": 0.017453292519943295, "degrees/s": 0.017453292519943295,
+    "m/s²": 1.0, "m/s^2": 1.0, "g": 9.80665, "V": 1.0, "mV": 0.001,
 }  # fmt: skip
 OF_FIXES: JsonDict = {"examples": [{"sensor": "gnss", "columns": {"x": "easting"}}]}
 THEIRS: JsonDict = {"t": "time_ns", "bearing": 4}

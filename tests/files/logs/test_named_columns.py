@@ -235,3 +235,18 @@ def test_what_is_wrong_with_a_log_without_a_world_is_told(tmp_path):
     assert told(tmp_path / "d", odd, fix, "recording.columns.omega=rate") == []
     (line,) = told(tmp_path / "e", rows, fix, "recording.motion.file=drive.csv")
     assert line == "drive.csv: no such file"
+
+
+@pytest.mark.parametrize(
+    ("head", "factor"),
+    [("v_ms", 1.0), ("v [m/s]", 1.0), ("speed (km/h)", 3.6), ("v_cm/s", 100.0), ("v_mm/s", 1e3)],
+)
+def test_speeds_are_in_what_their_name_says(head, factor, tmp_path):
+    """`_ms` behind a speed is m/s, as it is written where no stroke can be; behind a time it is
+    milliseconds.
+    """
+    rows = [[100.0 * k, 0.3 * factor, 0.1] for k in range(5)]
+    laid(tmp_path, table(f"t_ms,{head},omega", rows), "t,target,range,bearing\n0.2,1,1,1\n")
+    scene = scene_of(tmp_path, BY_LANDMARKS, RECORDING)
+    np.testing.assert_allclose(inputs_of(scene)[:, 0], 0.3, rtol=1e-12)
+    assert [e.t for e in scene.log.entries][-1] == pytest.approx(0.4)

@@ -179,3 +179,17 @@ def test_units_in_names():
     assert named('"Yaw Rate [deg/s]"')[1:] == ("yaw_rate", "degrees/s")
     assert named("sigma_x")[1:] == ("sigma_x", None)
     assert named("v (m/s)")[1:] == ("v", "m/s")
+
+
+@pytest.mark.parametrize(
+    ("head", "factor"), [("v [m/s]", 1), ("v_ms", 1), ("v (cm/s)", 100), ("v [km/h]", 3.6)]
+)
+def test_speeds_are_in_what_the_first_line_says(tmp_path, head, factor):
+    sound = read("mrclam", lay(tmp_path / "sound", **FILES))
+    rows = [line.split() for line in ODOMETRY.splitlines()]
+    text = "".join(f"{t},{float(v) * factor!r},{w}\n" for t, v, w in rows)
+    odometry = {"Robot3_Odometry.dat": f"t,{head},omega\n{text}"}
+    found = read("mrclam", lay(tmp_path / "other", **{**FILES, **odometry}))
+    for (_, one, _, _), (_, other, _, _) in zip(entries(found), entries(sound), strict=True):
+        if one is not None:
+            np.testing.assert_allclose(one, other, rtol=1e-12)

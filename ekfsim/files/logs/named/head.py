@@ -1,10 +1,9 @@
 """The names of a table's columns: in its first line, in a comment above, in the commands file."""
 
-import re
 from pathlib import Path
 
 from ekfsim.errors import InputError, Mistake, Place
-from ekfsim.files.keys.columns import COLUMNS, UNITS
+from ekfsim.files.keys.columns import COLUMNS
 from ekfsim.files.logs.header import separator_of
 from ekfsim.files.logs.table import is_number
 from ekfsim.files.logs.tables.names import OTHERS, named
@@ -38,29 +37,12 @@ TWINS = {  # of our columns, those of the other formats that mean the same
     "v": "speed", "omega": "turn rate", "left": "vl", "right": "vr", "turn": "dheading",
     "theta": "heading", "id": "node", "target": "node",
 }  # fmt: skip
-BRACKETS = re.compile(r"(.+?)[ _]*[\[(]\s*([^])]+?)\s*[\])]")
-AFTER_BAR = re.compile(r"(.+)_([^_ ]+)")
 
 
 def meant(name: str) -> tuple[str, ...]:
     """What one would take for a column of this name, where nothing is called so, and tells."""
     others = OTHERS.get(TWINS.get(name, name), ())
     return tuple(one for one in others if one not in COLUMNS)
-
-
-def stated(field: str) -> tuple[str, str | None]:
-    """The name of a column, and the unit that stands with it.
-
-    >>> stated("t_ms"), stated("Speed [km/h]"), stated("sigma_x")
-    (('t', 'ms'), ('speed', 'km/h'), ('sigma_x', None))
-    """
-    found = named(field)
-    if found.unit is not None:
-        return found.name, found.unit
-    for pattern in BRACKETS, AFTER_BAR:
-        if (own := pattern.fullmatch(found.whole)) and own[2] in UNITS:
-            return named(own[1]).name, own[2]
-    return found.name, None
 
 
 def fields_of(line: str, separator: str | None) -> list[str]:
@@ -92,7 +74,7 @@ def placed(head: list[str], at: Place) -> tuple[dict[str, int], dict[str, str | 
     """
     places, units = dict[str, int](), dict[str, str | float]()
     for place, field in enumerate(head):
-        name, unit = stated(field)
+        _, name, unit = named(field)
         if name in places:
             wrong = f"two columns are named {quoted(name)}"
             raise InputError([Mistake(at, "", wrong, "give one another name")])
@@ -108,7 +90,7 @@ def place_of(theirs: str | int, head: list[str], width: int) -> int | None:
         return theirs - 1 if theirs <= width else None
     wanted = theirs.strip().lower()
     names = [field.lower() for field in head]
-    bare = [stated(name)[0] for name in names]
+    bare = [named(name).name for name in names]
     return next((known.index(wanted) for known in (names, bare) if wanted in known), None)
 
 

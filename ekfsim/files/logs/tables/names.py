@@ -33,16 +33,19 @@ OTHERS = {
     "barcode": ("barcode_#", "subject_#", "code", "id", "landmark", "landmark_id"),
     "orientation": ("heading", "theta", "yaw", "phi", "psi"),
 }  # fmt: skip
-UNITS = {
+# how a first line writes a unit, in small letters, and what that is among keys.columns.UNITS
+SPELLED = {
     "s": "s", "sec": "s", "secs": "s", "seconds": "s", "ms": "ms", "msec": "ms",
     "milliseconds": "ms", "us": "us", "µs": "us", "usec": "us", "microseconds": "us", "ns": "ns",
     "nsec": "ns", "nsecs": "ns", "nanoseconds": "ns", "m": "m", "cm": "cm", "mm": "mm", "km": "km",
-    "metres": "m", "meters": "m", "rad": "rad", "radians": "rad", "deg": "degrees",
-    "degrees": "degrees", "degree": "degrees", "°": "degrees", "m/s": "m/s", "rad/s": "rad/s",
-    "deg/s": "degrees/s", "°/s": "degrees/s", "degrees/s": "degrees/s",
+    "metres": "m", "meters": "m", "m/s": "m/s", "cm/s": "cm/s", "mm/s": "mm/s", "km/h": "km/h",
+    "rad": "rad", "radians": "rad", "deg": "degrees", "degrees": "degrees", "degree": "degrees",
+    "°": "degrees", "rad/s": "rad/s", "deg/s": "degrees/s", "°/s": "degrees/s",
+    "degrees/s": "degrees/s", "m/s²": "m/s²", "m/s^2": "m/s²",
 }  # fmt: skip
+TIMES = ("s", "ms", "us", "ns")
 IN_BRACKETS = re.compile(r"(.*?)[\s_]*[\[(]\s*([^\])]*?)\s*[\])]")
-AFTER_BAR = re.compile(r"(.+)_([a-zµ]+)")
+AFTER_BAR = re.compile(r"(.+)_([^_\s]+)")
 
 
 class Named(NamedTuple):
@@ -56,16 +59,26 @@ class Named(NamedTuple):
 def named(text: str) -> Named:
     """A name of a first line, and the unit that it tells.
 
-    >>> named("Time_ns"), named("Bearing [deg]")
-    (Named(whole='time_ns', name='time', unit='ns'), Named(whole='bearing [deg]', \
-name='bearing', unit='degrees'))
+    >>> [one[1:] for one in map(named, ("Time_ns", "Bearing [deg]", "v_ms", "sigma_x"))]
+    [('time', 'ns'), ('bearing', 'degrees'), ('v', 'm/s'), ('sigma_x', None)]
     """
     whole = text.strip().strip("\"'").strip().lower()
     for pattern in IN_BRACKETS, AFTER_BAR:
         found = pattern.fullmatch(whole)
-        if found and found[1] and found[2] in UNITS:
-            return Named(whole, _joined(found[1]), UNITS[found[2]])
+        if found and found[1] and found[2] in SPELLED:
+            name, unit = _joined(found[1]), SPELLED[found[2]]
+            if unit not in TIMES or _is_time(name):
+                return Named(whole, name, unit)
+            if unit == "ms":  # m/s, as it is written where no stroke can be
+                return Named(whole, name, "m/s")
+    found = IN_BRACKETS.fullmatch(whole)
+    if found and found[1] and found[2] == "g":  # behind a bar it is no unit: x_g, the x of a goal
+        return Named(whole, _joined(found[1]), "g")
     return Named(whole, _joined(whole), None)
+
+
+def _is_time(name: str) -> bool:
+    return name in ("t", *OTHERS["t"]) or "time" in name or "stamp" in name
 
 
 def _joined(name: str) -> str:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ekfsim.files.keys.columns import UNITS
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.table import Rows, sane, values_of, whole
 from ekfsim.files.logs.tables.angles import ANGLES, DEGREE, are_degrees, are_degrees_of_course
@@ -21,7 +22,8 @@ from ekfsim.files.logs.tables.stamps import (
 from ekfsim.files.logs.text import lines_of
 from ekfsim.geometry import Array
 
-LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0}
+# of the lengths and speeds that a first line may tell
+TOLD = {"m": ("m", "cm", "mm", "km"), "m/s": ("m/s", "cm/s", "mm/s", "km/h")}
 
 
 class Read(NamedTuple):
@@ -75,8 +77,8 @@ def in_units(
         elif column.unit in ANGLES:
             step = usual_step(values[:, 0]) if columns[0].unit == "s" else 0.0
             values[:, n] *= _angle(layout, column, values[:, n], asked, step)
-        elif column.unit == "m":
-            values[:, n] *= LENGTHS.get(layout.units.get(column.name, "m"), 1.0)
+        elif (unit := layout.units.get(column.name, "")) in TOLD.get(column.unit, ()):
+            values[:, n] *= UNITS[unit]
     _turn_headings(layout, columns, values, asked)
     rows = Rows(layout.lines.file, np.array(layout.lines.numbers, np.int64), values)
     return Read(sane(rows, layout.wanted, asked.warnings), layout)

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from ekfsim.files.logs.named.head import stated
 from ekfsim.files.logs.named.readings import Fitting, fittings_of
+from ekfsim.files.logs.tables.names import named
 from ekfsim.files.logs.writing.ticks import Run
 from ekfsim.files.logs.writing.told_world import driven_world
 from ekfsim.records import Reading
@@ -115,7 +115,7 @@ def _table(columns: dict[str, str], rows: Iterable[list[str]]) -> str:
     """A table whose first line tells the units, where the reader knows them."""
     head = [f"{name} [{unit}]" if unit else name for name, unit in columns.items()]
     heads = [
-        told if stated(told) == (name, unit) else name
+        told if named(told)[1:] == (name, unit) else name
         for told, (name, unit) in zip(head, columns.items(), strict=True)
     ]
     return "".join(f"{','.join(row)}\n" for row in (heads, *rows))

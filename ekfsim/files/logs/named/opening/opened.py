@@ -7,12 +7,13 @@ from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.keys.columns import MotionKeys, ReadingsKeys
 from ekfsim.files.keys.topics import OriginKeys
 from ekfsim.files.logs.header import separator_of
-from ekfsim.files.logs.named.head import ALSO, absent, fields_of, names_in, place_of, placed, stated
+from ekfsim.files.logs.named.head import ALSO, absent, fields_of, names_in, place_of, placed
 from ekfsim.files.logs.named.opening.derived import EARTH, place_of_first, with_derived
 from ekfsim.files.logs.named.opening.ragged import in_groups, levelled
 from ekfsim.files.logs.named.tables import Source, Table
 from ekfsim.files.logs.table import is_number
 from ekfsim.files.logs.tables.layout import unquoted
+from ekfsim.files.logs.tables.names import named
 from ekfsim.files.logs.text import Lines, first_line, lines_of
 from ekfsim.files.yaml.telling import quoted
 
@@ -82,7 +83,7 @@ def first_place(source: Source) -> OriginKeys | None:
         return None
     told = {**source.shared(), **source.columns()}
     head = first_line(source.path).lstrip("#% \t")
-    names = {stated(field)[0] for field in fields_of(head, separator_of(head))} if head else set()
+    names = {named(field).name for field in fields_of(head, separator_of(head))} if head else set()
     if LATITUDE not in told and names.isdisjoint((LATITUDE, *ALSO[LATITUDE])):
         return None
     return place_of_first(opened(source, ""))
@@ -134,7 +135,7 @@ def _ended(lines: Lines, separator: str | None, width: int) -> Lines:
 
 def _stated(places: Mapping[str, int], head: list[str]) -> dict[str, str | float]:
     """The units that a first line states of columns that go by other names here."""
-    units = ((name, stated(head[place])[1]) for name, place in places.items() if place < len(head))
+    units = ((name, named(head[place]).unit) for name, place in places.items() if place < len(head))
     return {name: unit for name, unit in units if unit is not None}
 
 
