@@ -38,6 +38,7 @@ class Foreign(NamedTuple):
 PICTURE = "of a ROS map name its map.yaml: ekfsim world map.yaml -o world.yaml"
 UNPACK = "unpack it first"
 LOG = "a commands file names a log: recording: {format: …, path: …}; see `ekfsim schema recording`"
+BAG = "recording: {format: bag, path: …, topics: {…}}"
 TABLE_CURE = f"{LOG}, or `ekfsim run log --log DIR`"
 SIGNS: tuple[tuple[bytes, str, str], ...] = (
     (b"#ROSBAG V", "a ROS 1 bag", "bag"),
@@ -119,5 +120,5 @@ def _is_binary(raw: bytes) -> bool:
 def _bag_cure() -> str:
     """What reads a bag."""
     if "bag" in get_args(LogFormat):
-        return "a commands file reads it: recording: {format: bag, path: …}"
+        return f"`ekfsim run bag --log …` reads it, and a commands file: {BAG}"
     return "write its topics as CSV files: `ekfsim schema recording` tells which"

@@ -22,6 +22,12 @@ class SensorTopicKeys(Strict):
         "could be it.",
         examples=["front"],
     )
+    held: bool | None = Field(
+        None,
+        description="Whether a fix that repeats the one before holds it, and tells nothing new. "
+        "Where absent, found by how many do.",
+        examples=[False],
+    )
 
 
 def kind_of_topic(value: Any) -> str | None:
@@ -38,7 +44,11 @@ def kind_of_topic(value: Any) -> str | None:
 SensorTopics = Annotated[
     Annotated[Name, Tag("name")]
     | Annotated[SensorTopicKeys, Tag("one")]
-    | Annotated[list[SensorTopicKeys], Tag("several")],
+    | Annotated[
+        list[SensorTopicKeys],
+        Tag("several"),
+        Field(title="a list of topics", min_length=1, examples=[[FRONT]]),
+    ],
     Discriminator(kind_of_topic),
     Field(title="a topic, or {topic: …, sensor: …}, or a list of those"),
 ]

@@ -169,10 +169,13 @@ def fault_of(one: Setting, is_told: bool = True) -> tuple[str, str] | None:
             meant = whole if sound else ".".join([*parts[:n], near])
             return f"unknown key {quoted(part)}", f"did you mean '{meant}'?"
         path = (*path, part)
+    found = schema_at(kind, indexed(path, 0))
+    if any(choice.get("type") == "string" for choice in found.get("oneOf", ())):
+        return None  # a word or more, as the topic of a bag
     if known := _known(kind, path):
         name = ", and name the filter itself by --filter" if path == (OF_FILTERS,) else ""
         return f"'{one.key}' is no single value", f"write e.g. {one.key}.{known[0]}{name}"
-    if schema_at(kind, indexed(path, 0)).get("type") == "array":
+    if found.get("type") == "array":
         return f"'{one.key}' is a list", "only single values can be set, e.g. noise.rangeSigmaRatio"
     return None
 

@@ -143,10 +143,11 @@ def keys_at(kind: Kind, path: tuple[str | int, ...]) -> Schema:
 
 
 def one_kind(found: Schema, whole: Schema, is_list: bool) -> Schema:
-    """Of what may be a list or a mapping, as a drive, the one that it is."""
+    """Of what may be a list, a mapping or a word, as a drive, the list or the mapping."""
     if "oneOf" not in found or "properties" in found:
         return found
-    return resolved(next(one for one in found["oneOf"] if ("items" in one) == is_list), whole)
+    several = (one for one in found["oneOf"] if one.get("type") != "string")
+    return resolved(next(one for one in several if ("items" in one) == is_list), whole)
 
 
 def resolved(found: Schema, whole: Schema) -> Schema:

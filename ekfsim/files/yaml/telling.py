@@ -22,7 +22,12 @@ NOUNS = {
     "object": "a mapping 'key: value'",
 }
 EACH = "[]"  # of a list
-OF_TWO_KINDS = (("drive",), ("walls", EACH), ("belief", "walls", EACH))
+OF_SEVERAL_KINDS = (
+    ("drive",),
+    ("walls", EACH),
+    ("belief", "walls", EACH),
+    *(("recording", "topics", topic) for topic in ("fix", "scan", "landmarks")),
+)
 
 
 def tell(error: ValidationError, kind: Kind, root: Node, file: str) -> list[Mistake]:
@@ -54,13 +59,13 @@ def mark_of(detail: ErrorDetails, root: Node) -> Mark:
 
 
 def details_of(error: ValidationError) -> list[ErrorDetails]:
-    """All that a model found, each at the path of the file: in those of a drive's way and of a
-    wall stands which of the two kinds it is.
+    """All that a model found, each at the path of the file: in those of a drive's way, of a wall
+    and of a bag's topic stands which of the kinds it is.
     """
     details = error.errors(include_url=False, include_input=False, include_context=False)
     for detail in details:
         path = detail["loc"]
-        for kind in OF_TWO_KINDS:
+        for kind in OF_SEVERAL_KINDS:
             depth = len(kind)
             if len(path) > depth and all(
                 part == key or (key == EACH and isinstance(part, int))

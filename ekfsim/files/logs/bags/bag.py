@@ -51,7 +51,10 @@ class Bag:
     def readings(self) -> list[tuple[Source, ReadingsKeys]]:
         """What the sensors told."""
         return [
-            (self._source(lines), ReadingsKeys(sensor=topic.instrument.called))
+            (
+                self._source(lines),
+                ReadingsKeys(sensor=topic.instrument.called, held=topic.chosen.held),
+            )
             for topic, lines in self.tables
             if topic.instrument is not None
         ]
@@ -77,6 +80,9 @@ def read_bag(asked: Asked) -> Recorded:
     wrong in the numbers.
     """
     path, world, _, recording, warnings = asked
+    if recording.time_unit is not None or recording.angle_unit is not None:
+        right = "leave timeUnit and angleUnit out of the recording"
+        raise UsageError(f"{path}: a bag tells times in ns and angles in rad; {right}")
     with opened(path) as bag:
         keys = recording.topics or TopicsKeys()
         chosen = topics_of(bag.connections, keys, path, warnings)

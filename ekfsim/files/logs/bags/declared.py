@@ -18,7 +18,7 @@ _ROWS = (
     (
         "scan",
         "angle_min, angle_increment, rad; ranges, range_min, range_max, m: the beam nearest to "
-        "each of the sensor's bearings; time_increment, s",
+        "each of the sensor's bearings, along its own; time_increment, s",
     ),
     (
         "landmarks",
@@ -54,7 +54,7 @@ recording:
         "Where the world has several sensors that a topic could be of, or the bag several "
         "scanners or receivers, each is named: "
         "`scan: [{topic: /scan_front, sensor: front}, {topic: /scan_rear, sensor: rear}]`. Scans "
-        "are for the world's `ultrasonic` (`bearings: [-90, 0, 90]`, `nearest`, `farthest`), fixes "
+        "are for the world's `ultrasonic` (`bearings: [-90, 0, 90]`, `nearest`, `range`), fixes "
         "for its `gnss`, landmarks for its `rangeBearing`, `range` or `bearing`. Where a sensor "
         "sits and which way it looks, its `mount` in the world says; transforms (`/tf`) are not "
         "read. Without a world one is made, with a receiver where there are fixes.",
@@ -66,7 +66,9 @@ recording:
         "3°); headings count counter-clockwise from x, so 90° is true north, and a compass's "
         "0° clockwise from north is 90° here. No fix (status −1), 0° 0° and numbers that are none "
         "are left out and told.",
-        "A range is no echo where it is inf, beyond range_max or beyond the sensor's farthest; "
+        "A fix that repeats the one before is left out where many do, which is told: "
+        "`fix: {topic: /gps/fix, held: false}` says otherwise. A range is "
+        "no echo where it is inf, beyond range_max or beyond the `range` of the sensor; "
         "−inf, nan and those below range_min tell nothing.",
     ),
 )

@@ -9,6 +9,7 @@ from ekfsim.errors import UsageError
 from ekfsim.files.looking import exists, is_folder, read_from
 from ekfsim.late import found
 
+DESCRIPTION = "metadata.yaml"  # of the files of a bag of ROS 2, beside them
 KINDS = (".bag", ".mcap", ".db3")
 HOLDS = "a .bag of ROS 1, a folder of ROS 2 with its metadata.yaml, an .mcap or a .db3"
 MISSING = "bags need the package 'rosbags': pip install 'ekfsim[bags]'"
@@ -91,7 +92,9 @@ def _bag(path: Path) -> Path:
     with read_from(path):
         if not exists(path):
             raise UsageError(f"{path}: no such file or folder; name {HOLDS}")
-        if not is_folder(path) or exists(path / "metadata.yaml"):
+        if path.name == DESCRIPTION:
+            return path.parent
+        if not is_folder(path) or exists(path / DESCRIPTION):
             return path
         inside = sorted(file for file in path.iterdir() if file.suffix in KINDS)
     if len(inside) == 1:

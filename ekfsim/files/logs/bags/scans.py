@@ -7,21 +7,24 @@ from typing import Any, NamedTuple
 from ekfsim.files.logs.bags.messages import SECOND
 from ekfsim.systems.instruments import Ultrasonic
 
+TURN = 2 * math.pi
+ROUNDED = 1e-4  # rad, by which a scan's angles are off that are told in single precision
 LONGEST = 1.0  # s that a turn of the scanner may last; more is no time between two beams
 
 
 class Beams(NamedTuple):
     """The beams of some scans, and what is to be told of them."""
 
-    rows: list[tuple[int, str, float]]  # ns, number of the beam, range in m, inf without an echo
+    rows: list[tuple[int, float, float]]  # ns, bearing in rad, range in m, inf without an echo
     told: list[str]
 
 
 def beams_in(messages: Sequence[tuple[int, Any]], sensor: Ultrasonic) -> Beams:
-    """The beams of a sensor as scans tell them, each at its own instant; what lies beyond the
-    sensor's reach is no echo, and what is nearer than it can see is left out.
+    """The beams of a sensor as scans tell them, each at its own instant, and along the scanner's
+    beam that is nearest; what lies beyond the sensor's reach is no echo, and what is nearer than it
+    can see is left out.
     """
-    rows, told = list[tuple[int, str, float]](), list[str]()
+    rows, told = list[tuple[int, float, float]](), list[str]()
     far = near = 0
     seen = set[int]()
     for t, scan in messages:
@@ -29,17 +32,21 @@ def beams_in(messages: Sequence[tuple[int, Any]], sensor: Ultrasonic) -> Beams:
         step = step if 0 < step * len(scan.ranges) <= LONGEST else 0.0
         for number, index, r in beams_of(scan, sensor.bearings):
             seen.add(number)
+            bearing = sensor.bearings[number]
+            aside = math.remainder(scan.angle_min + index * scan.angle_increment - bearing, TURN)
+            if abs(aside) > ROUNDED:
+                bearing = math.remainder(bearing + aside, TURN)
             if r < sensor.nearest:
                 near += 1
                 continue
             if sensor.farthest < r < math.inf:
                 far, r = far + 1, math.inf
-            rows.append((t + round(index * step * SECOND), str(number), r))
+            rows.append((t + round(index * step * SECOND), bearing, r))
     key = f"--set sensors.{sensor.called}"
     if far:
         told.append(
             f"{far} of {len(rows)} beams met a wall beyond {sensor.farthest:g} m, as far as "
-            f"{sensor.called} sees: no echo; say otherwise with {key}.farthest=…"
+            f"{sensor.called} sees: no echo; say otherwise with {key}.range=…"
         )
     if near:
         told.append(

@@ -18,7 +18,7 @@ from ekfsim.systems.instrument import Instrument
 from ekfsim.systems.instruments import Ultrasonic
 
 POSES, SPEEDS = "t,x,y,theta", "t,v,omega"
-FIXES, BEAMS, MARKS = "t,x,y,sigma_x,sigma_y", "t,target,range", "t,target,range,bearing"
+FIXES, BEAMS, MARKS = "t,x,y,sigma_x,sigma_y", "t,bearing,range", "t,target,range,bearing"
 
 
 @dataclass

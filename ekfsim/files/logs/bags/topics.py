@@ -37,6 +37,7 @@ class Chosen(NamedTuple):
     role: str
     topic: str
     sensor: str | None = None  # of the world, where it is said
+    held: bool | None = None  # whether a reading that repeats the one before is no new one
     said: bool = True  # whether the recording names it
 
 
@@ -90,7 +91,7 @@ def _named(asked: TopicsKeys) -> list[Chosen]:
             if isinstance(one, str):
                 chosen.append(Chosen(role, one))
             else:
-                chosen.append(Chosen(role, one.topic, one.sensor))
+                chosen.append(Chosen(role, one.topic, one.sensor, one.held))
     return chosen
 
 
