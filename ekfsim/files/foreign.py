@@ -15,15 +15,16 @@ NO_ROW = re.compile(r"[\[\]{}|]|:\s|:$")  # what stands in texts, in no row of a
 FEWEST = 2  # numbers in a row
 METADATA = re.compile(r"rosbag2_bagfile_information:\s")
 BAG_FILES = ("metadata.yaml", "*.db3", "*.mcap", "*.bag")
-LOGS = {  # of each format the files by which it is known, and the commands that read it
-    "gnss": (("wheelspeeds*.csv",), "gnss_log"),
-    "mower": (("*poselog.txt",), "mower_log"),
-    "mrclam": (("*Odometry.dat",), "mrclam_log"),
-    "ranges": (("odometry*.csv", "ranges*.csv", "nodes*.csv"), "ranges_log"),
-    "pioneer": (("odometry*.csv", "ultrasonic*.csv"), "pioneer_log"),
-    "classroom": (("entries.csv",), "tour"),
-    "log": (("motion*.csv",), "log"),
-}
+LOGS = (  # a format, the files by which it is known, and the commands that read it
+    ("gnss", ("wheelspeeds*.csv",), "gnss_log"),
+    ("mower", ("*poselog.txt",), "mower_log"),
+    ("mrclam", ("*Odometry.dat",), "mrclam_log"),
+    ("ranges", ("odometry*.csv", "ranges*.csv", "nodes*.csv"), "ranges_log"),
+    ("pioneer", ("odometry*.csv", "ultrasonic*.csv"), "pioneer_log"),
+    ("classroom", ("entries.csv",), "tour"),
+    ("log", ("motion*.csv",), "log"),
+    ("log", ("odometry*.csv", "readings*.csv"), "log"),
+)
 SEPARATORS = re.compile(r"[,;\t ]+")
 ROWS = 3  # of numbers that make a table
 
@@ -91,7 +92,7 @@ def of_folder(names: Sequence[str], shown: str) -> Foreign | None:
     """
     if _has(names, BAG_FILES, any):
         return Foreign("a bag", f"`ekfsim run bag --log {shown}` reads it")
-    for format, (files, commands) in LOGS.items():
+    for format, files, commands in LOGS:
         if _has(names, files, all):
             cure = f"`ekfsim run {commands} --log {shown}` reads it"
             return Foreign(f"a log of the format {format}", cure)

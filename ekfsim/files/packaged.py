@@ -69,8 +69,8 @@ LOGS = "logs"
 GROUPS = (  # of the other commands that come along: what their names begin or end with
     ("proofs", "proofs: each shows one thing", re.compile("proof-.*")),
     ("divergence", "divergence: how a filter gets lost, and why", re.compile("diverge-.*")),
-    ("systems", "other systems", re.compile("(?!log$).*(?<!_log)")),
-    (LOGS, "recorded logs, by --log", re.compile("(.*_)?log")),
+    ("systems", "other systems", re.compile("(?!(log|bag)$).*(?<!_log)")),
+    (LOGS, "recorded logs, by --log", re.compile("(.*_)?log|bag")),
 )
 
 

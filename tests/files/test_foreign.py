@@ -106,6 +106,7 @@ def test_a_folder_with_a_log_is_told_by_its_format(format, tmp_path):
 
 def test_a_folder_of_a_bag_and_one_of_nothing_known():
     assert of_folder(["metadata.yaml", "a_0.db3"], "a").cure == "`ekfsim run bag --log a` reads it"
+    assert of_folder(["odometry.csv", "readings.csv"], "a").what == "a log of the format log"
     assert of_folder(["letter.txt", "world.yaml"], "a") is None
 
 

@@ -1,11 +1,13 @@
 """A path → a bag that is open, read by the package rosbags."""
 
+import os
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from ekfsim.errors import UsageError
+from ekfsim.files.foreign import of_folder
 from ekfsim.files.looking import exists, is_folder, read_from
 from ekfsim.late import found
 
@@ -96,8 +98,13 @@ def _bag(path: Path) -> Path:
             return path.parent
         if not is_folder(path) or exists(path / DESCRIPTION):
             return path
-        inside = sorted(file for file in path.iterdir() if file.suffix in KINDS)
+        names = sorted(os.listdir(path))
+        inside = [path / name for name in names if Path(name).suffix in KINDS]
     if len(inside) == 1:
         return inside[0]
-    names = f"several bags in it: {', '.join(file.name for file in inside[:4])}" if inside else ""
-    raise UsageError(f"{path}: {names or 'no bag in it'}; name {HOLDS}")
+    if inside:
+        listed = ", ".join(file.name for file in inside[:4])
+        raise UsageError(f"{path}: several bags in it: {listed}; name {HOLDS}")
+    other = of_folder(names, str(path))
+    here = f"here is {other.what}: {other.cure}" if other else f"name {HOLDS}"
+    raise UsageError(f"{path}: no bag in it; {here}")
