@@ -1,6 +1,7 @@
 """The first line of a table with names."""
 
 import difflib
+import re
 from collections.abc import Sequence
 
 from ekfsim.errors import InputError, Mistake, Place
@@ -8,13 +9,18 @@ from ekfsim.files.logs.text import Lines
 from ekfsim.files.source import mistake
 from ekfsim.files.yaml.telling import quoted
 
+PARTED = re.compile(r"\s*([-+]?\d+(,\d+)?([eE][-+]?\d+)?)?\s*")
+
 
 def separator_of(line: str) -> str | None:
-    """What stands between the columns: a comma, else a semicolon, else white space (None).
+    """What stands between the columns: a comma, else a semicolon, else white space (None). Commas
+    within numbers that semicolons part are decimal commas.
 
-    >>> separator_of("t,x"), separator_of("t x")
-    (',', None)
+    >>> separator_of("t,x"), separator_of("t x"), separator_of("0,5;1,25;2")
+    (',', None, ';')
     """
+    if ";" in line and all(PARTED.fullmatch(field) for field in line.rstrip().split(";")):
+        return ";"
     return next((mark for mark in ",;" if mark in line), None)
 
 

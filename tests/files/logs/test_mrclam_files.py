@@ -52,6 +52,24 @@ def test_one_of_several_robots_is_named_by_its_odometry_or_its_number(folder):
     assert speed(asked(folder / "Robot2_Odometry.dat", robot=2)[0]) == 2
 
 
+def test_files_may_end_otherwise_and_landmarks_go_by_their_barcodes(folder):
+    """As one repository has them: newRobot1_Odometry.txt, and barcodes in Landmark_Groundtruth."""
+    for name in [path.name for path in folder.iterdir() if path.name.startswith("Robot")]:
+        (folder / name).rename(folder / f"new{name.replace('.dat', '.txt')}")
+    sound, told = asked(folder, robot=2)
+    assert speed(sound) == speed(asked(folder / "newRobot2_Odometry.txt")[0]) == 2
+    (folder / "Landmark_Groundtruth.dat").write_text("63 2.0 0.5 0 0\n")
+    found, warnings = asked(folder, robot=2)
+    readings = [entry.given for entry in found.log.entries if isinstance(entry.given, Reading)]
+    assert [one.name for one in readings] == ["landmark 63"]
+    (said,) = set(warnings) - set(told)
+    assert said == (
+        f"{folder}/Landmark_Groundtruth.dat: its numbers are barcodes, for those of the "
+        "measurements are among them and no subjects' are: read so (otherwise: --set "
+        "recording.targets=barcodes)"
+    )
+
+
 def test_of_several_robots_none_is_taken_unasked(folder):
     choice = (
         "name one of Robot1_Odometry.dat, Robot2_Odometry.dat, Robot3_Odometry.dat: "

@@ -178,4 +178,21 @@ def test_bearings_that_are_unwrapped_are_no_degrees():
     column = Column("bearing", "rad", "", most=BEYOND_A_TURN)
     bearings = np.concatenate([np.linspace(-3, 3, 180), np.linspace(9.5, 13, 15)])
     assert not are_degrees(bearings, column)
-    assert are_degrees(np.degrees(bearings[:180]), column)
+    assert are_degrees(np.degrees(bearings), column)
+
+
+def test_rows_without_names_may_have_decimal_commas_and_turn_rates_degrees(tmp_path):
+    poses = arc()
+    d, T = chords(poses).T
+    ways = np.vstack([np.column_stack([d / 0.25, np.degrees(T / 0.25)]), [0, 0]])
+    rows = np.column_stack([poses[:, 0], ways]).tolist()
+    for head, key in (("t,v,omega [deg/s]", ""), ("", ", units: {omega: degrees/s}")):
+        log = tmp_path / ("named" if head else "bare")
+        motion = table(head, rows)
+        if not head:
+            motion = motion.lstrip("\n").replace(",", ";").replace(".", ",")
+        files = {"readings.csv": perfect(poses), "landmarks.csv": CORNERS.replace("id", "name")}
+        lay(log / "log", **{"motion.csv": motion}, **files)
+        columns = "columns: {t: 1, v: 2, omega: 3}"
+        steps, _, _ = played(log, f"  motion: {{{columns}{key}}}\n")
+        assert max(step.correction.nis for step in steps if step.correction) < 1e-20

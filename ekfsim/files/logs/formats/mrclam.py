@@ -121,7 +121,31 @@ def _names(
             "(otherwise: --set recording.targets=barcodes)"
         )
         return themselves
+    if are_barcodes and (worn := _worn(numbers, subject_of, landmarks)):
+        warnings.append(
+            f"{files.landmarks}: its numbers are barcodes, for those of the measurements are among "
+            "them and no subjects' are: read so (otherwise: --set recording.targets=barcodes)"
+        )
+        return worn
     return Names(subject_of, "barcode")
+
+
+def _worn(
+    numbers: Array, subject_of: dict[int, int], landmarks: tuple[Landmark, ...]
+) -> Names | None:
+    """The numbers of the measurements where the landmarks go by their barcodes, None where by their
+    subjects. numbers : (n,)
+    """
+    robots = {code: subject for code, subject in subject_of.items() if subject in ROBOTS}
+    of_landmarks = numbers[~np.isin(numbers, list(robots))]
+    ids = [mark.id for mark in landmarks]
+    by_subject = [code for code, subject in subject_of.items() if subject in ids]
+    if not len(of_landmarks):
+        return None
+    by_subjects, worn = (np.mean(np.isin(of_landmarks, known)) for known in (by_subject, ids))
+    if by_subjects >= 0.5 or worn < ALL_BUT_ODD:
+        return None
+    return Names({**{id: id for id in ids}, **robots}, "barcode")
 
 
 def _subjects(barcodes: Rows) -> dict[int, int]:

@@ -10,6 +10,7 @@ from ekfsim.files.looking import exists, is_folder, read_from
 
 ODOMETRY, MEASUREMENT, GROUNDTRUTH = "Odometry.dat", "Measurement.dat", "Groundtruth.dat"
 LANDMARKS, BARCODES = "Landmark_Groundtruth.dat", "Barcodes.dat"
+ENDINGS = (".dat", ".txt", ".csv")  # of any of these; the first that is there
 HOLDS = f"Robot1_{ODOMETRY}, Robot1_{MEASUREMENT}, {BARCODES} and {LANDMARKS}"
 
 
@@ -36,29 +37,42 @@ def files_of(path: Path, robot: int | None) -> RobotFiles:
         named = not is_folder(path)
     folder = path.parent if named else path
     with read_from(folder):
-        names = sorted(name for name in os.listdir(folder) if not name.startswith("."))
-    if named and not path.name.endswith(ODOMETRY):
+        there = _as_distributed(os.listdir(folder))
+    names = sorted(there)
+    named_so = next((name for name, own in there.items() if own == path.name), path.name)
+    if named and not named_so.endswith(ODOMETRY):
         wrong = "is a file, and no robot's odometry"
         raise UsageError(f"{path}: {wrong}; name Robot1_{ODOMETRY}, or the folder that holds it")
-    odometry = path.name if named else _odometry_in(folder, names, robot)
+    odometry = named_so if named else _odometry_in(folder, names, robot)
     prefix = odometry.removesuffix(ODOMETRY)
     if named and robot is not None and robot != _number(prefix):
         wrong = f"is not the odometry of the robot {robot}, which recording.robot names"
         raise UsageError(f"{path}: {wrong}; leave one of the two out")
-    landmarks = _of_all(folder, names, prefix, LANDMARKS)
+    landmarks = _of_all(names, prefix, LANDMARKS)
     if landmarks is None:
         raise _missing(folder, LANDMARKS, "the landmarks")
     measurement, truth = f"{prefix}{MEASUREMENT}", f"{prefix}{GROUNDTRUTH}"
     if measurement not in names:
         raise _missing(folder, measurement, "the measurements")
+    barcodes = _of_all(names, prefix, BARCODES)
     return RobotFiles(
         prefix.strip("_-. "),
-        folder / odometry,
-        folder / measurement,
-        landmarks,
-        folder / truth if truth in names else None,
-        _of_all(folder, names, prefix, BARCODES),
+        folder / there[odometry],
+        folder / there[measurement],
+        folder / there[landmarks],
+        folder / there[truth] if truth in names else None,
+        folder / there[barcodes] if barcodes is not None else None,
     )
+
+
+def _as_distributed(names: list[str]) -> dict[str, str]:
+    """The files of a folder by the names that they have in the data as distributed, *.dat."""
+    found = dict[str, str]()
+    for ending in ENDINGS:
+        for name in names:
+            if name.endswith(ending) and not name.startswith("."):
+                found.setdefault(f"{name.removesuffix(ending)}{ENDINGS[0]}", name)
+    return found
 
 
 def _odometry_in(folder: Path, names: list[str], robot: int | None) -> str:
@@ -93,11 +107,11 @@ def _number(prefix: str) -> int | None:
     return int(digits[-1]) if digits else None
 
 
-def _of_all(folder: Path, names: list[str], prefix: str, ending: str) -> Path | None:
+def _of_all(names: list[str], prefix: str, ending: str) -> str | None:
     """A file that all robots share: with the robot's own prefix, with none, or with any other."""
     ends = [name for name in names if name.endswith(ending)]
     best = [name for name in (f"{prefix}{ending}", ending) if name in ends]
-    return folder / best[0] if best else folder / ends[0] if len(ends) == 1 else None
+    return best[0] if best else ends[0] if len(ends) == 1 else None
 
 
 def _missing(folder: Path, file: str, what: str) -> UsageError:

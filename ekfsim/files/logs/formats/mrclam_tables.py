@@ -76,7 +76,7 @@ LANDMARKS = Table(
     (SUBJECT, X, Y),
     named=False,
     widths=range(3, 6),
-    told="Deviations of x and y may follow.",
+    told="Deviations of x and y may follow. Where the numbers are barcodes, it is told.",
     example="""\
 6 0.58831396 -4.28264845 0.00004570 0.00027395
 7 0.68214396 -4.44595833 0.00005198 0.00026762

@@ -26,7 +26,7 @@ ALSO = {  # how else a first line may call a column, which is not told
         f"q{one}": (f"orientation_{one}", *(f"{of}orientation_{one}" for of in OF_A_POSE))
         for one in "xyzw"
     },
-    "id": ("landmark", "node", "marker", "subject"),
+    "id": ("name", "landmark", "node", "marker", "subject"),
     "target": ("landmark", "node", "marker", "id", "beam", "pair"),
     **{
         f"variance{of}": (f"var{of}", f"cov{of}", f"variance{of.replace('_', '')}")

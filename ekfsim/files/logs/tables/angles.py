@@ -19,6 +19,7 @@ FEWEST = 5  # pieces
 # mean cosine of headings that lead along their way, and how much less it is of others
 ALONG, CLEARLY = 0.8, 0.3
 A_TURN = 400.0  # degrees that an angle of one turn may have, with some margin
+TURNS = 10 * A_TURN  # of one that is left unwrapped
 
 
 def are_degrees(values: Array, column: Column) -> bool:
@@ -26,8 +27,9 @@ def are_degrees(values: Array, column: Column) -> bool:
     size = np.abs(values[np.isfinite(values) & (values != 0)])
     if not len(size) or math.isinf(column.most):
         return False
-    many = MANY_UNWRAPPED if column.most == BEYOND_A_TURN else MANY
-    return bool(np.mean(size > column.most) >= many and np.quantile(size, 0.99) <= A_TURN)
+    unwrapped = column.most == BEYOND_A_TURN
+    many, most = (MANY_UNWRAPPED, TURNS) if unwrapped else (MANY, A_TURN)
+    return bool(np.mean(size > column.most) >= many and np.quantile(size, 0.99) <= most)
 
 
 def are_degrees_of_course(x: Array, y: Array, heading: Array) -> bool:
