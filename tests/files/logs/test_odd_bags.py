@@ -17,6 +17,7 @@ from test_bags import BEGIN, WAY, WORLD, degrees, drive, given, scene
 
 from ekfsim.cli import ekfsim
 from ekfsim.errors import InputError, UsageError
+from ekfsim.files.logs.bags.fixes import fixes_of
 from ekfsim.files.logs.bags.marks import marks_in
 from ekfsim.files.logs.bags.odometry import poses_of, tells_speeds
 from ekfsim.files.scenes.load import load_scene
@@ -51,6 +52,20 @@ def test_the_order_of_messages_and_when_they_were_received_say_nothing(tmp_path)
     ends = [list(play(one))[-1].posterior for one in (found, plain)]
     np.testing.assert_allclose(ends[0].mean, ends[1].mean, atol=1e-12)
     np.testing.assert_allclose(ends[0].covariance, ends[1].covariance, atol=1e-12)
+
+
+def test_messages_that_came_twice_count_once(tmp_path):
+    rows = drive("mcap")
+    plain = scene(written("mcap", tmp_path / "plain", rows))
+    twice = [(topic, t + late, message) for topic, t, message in rows for late in (0, 0.3)]
+    same(given(scene(written("mcap", tmp_path / "twice", twice)).log), given(plain.log))
+
+
+def test_fixes_far_from_the_origin_are_told_of():
+    make = Messages("db3")
+    found = fixes_of([(0, make.fix(0, LAT + 1, LON))], (LAT, LON))
+    assert "a fix lies 111 km from there" in "".join(found.told)
+    assert "km from there" not in "".join(fixes_of([(0, make.fix(0, LAT, LON))], None).told)
 
 
 def test_messages_without_a_stamp_count_when_they_were_received(tmp_path):
@@ -229,6 +244,8 @@ def test_two_receivers_share_an_origin(tmp_path):
     np.testing.assert_allclose([fix.z for fix in fixes], [(0, 0), (3, 0)], atol=1e-5)
 
 
+# rosbags 0.11.0 leaves a broken file open
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 def test_what_is_refused(tmp_path, monkeypatch):
     path = written("mcap", tmp_path / "b", drive("mcap"))
     with pytest.raises(UsageError, match="a bag tells times in ns and angles in rad"):
@@ -237,6 +254,10 @@ def test_what_is_refused(tmp_path, monkeypatch):
     cut.write_bytes((path / "b.mcap").read_bytes()[:-100])
     with pytest.raises(UsageError, match="one that was cut off is mended by `mcap recover`"):
         scene(cut)
+    make = Messages("mcap")
+    nowhere = [("/odom", BEGIN + k, make.odometry(BEGIN + k, math.nan)) for k in range(5)]
+    with pytest.raises(InputError, match="all 5 rows are left out: not all of the motion stands"):
+        scene(written("mcap", tmp_path / "nan", nowhere))
     monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
     with pytest.raises(UsageError, match=r"pip install 'ekfsim\[bags\]'"):
         scene(path)

@@ -12,6 +12,7 @@ from ekfsim.files.maps.drawn.earth import on_plane
 
 Place = tuple[float, float]  # latitude and longitude in degrees
 
+FAR = 50e3  # m from the origin, 200 m below a plane that touches the earth there
 NO_FIX = -1  # status.status
 UNKNOWN = 0  # position_covariance_type
 
@@ -71,6 +72,11 @@ def fixes_of(messages: Sequence[tuple[int, Any]], origin: Place | None) -> Fixes
         f"longitude {lon:.9g}°; say otherwise with recording: {{origin: {{latitude: …, "
         "longitude: …}}"
     )
+    if (farthest := float(np.hypot(*xy.T).max())) > FAR:
+        told.append(
+            f"a fix lies {farthest / 1000:.0f} km from there, where a plane is no map of the earth "
+            "any more: name an origin near the drive"
+        )
     sigmas = [_sigmas(fix) for _, fix in kept]
     if unknown := sum(each == ("", "") for each in sigmas):
         told.append(f"{unknown} of {len(kept)} tell no covariance: the sensor's own sigma counts")

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ekfsim.files.logs.bags.fixes import Place, fixes_of
 from ekfsim.files.logs.bags.marks import marks_in
@@ -16,6 +16,8 @@ from ekfsim.files.logs.bags.topics import Chosen
 from ekfsim.files.logs.text import Lines
 from ekfsim.systems.instrument import Instrument
 from ekfsim.systems.instruments import Ultrasonic
+
+Row = TypeVar("Row", bound=tuple[float, ...])
 
 POSES, SPEEDS = "t,x,y,theta", "t,v,omega"
 FIXES, BEAMS, MARKS = "t,x,y,sigma_x,sigma_y", "t,bearing,range", "t,target,range,bearing"
@@ -68,12 +70,20 @@ def table_of(topic: Topic, origin: Place | None, path: Path, warnings: list[str]
         case "motion" if tells_speeds(messages):
             speeds, told = speeds_of(messages)
             warnings += [f"{shown}: {told}"] if told else []
-            return _table(shown, SPEEDS, speeds)
+            return _table(shown, SPEEDS, _once(speeds, shown, warnings))
         case "motion":
             poses = poses_of(messages)
             warnings += [f"{shown}: {one}" for one in poses.told]
-            return _table(shown, POSES, poses.rows)
+            return _table(shown, POSES, _once(poses.rows, shown, warnings))
     return _table(shown, POSES, ((t, *pose_of(message)) for t, message in messages))
+
+
+def _once(rows: Sequence[Row], name: str, warnings: list[str]) -> list[Row]:
+    """Rows without those that repeat another of the same time: a message that came twice."""
+    kept = list(dict.fromkeys(rows))
+    if more := len(rows) - len(kept):
+        warnings.append(f"{name}: {more} of {len(rows)} messages came twice: counted once")
+    return kept
 
 
 def _table(name: str, head: str, rows: Iterable[Sequence[Any]]) -> Lines:

@@ -54,7 +54,8 @@ def _with_motion(rows: Rows, warnings: list[str]) -> Rows:
     whole = bool(np.all(empty[parts]))
     what = "no motion stands" if whole else "not all of the motion stands"
     warnings.append(f"{rows.at(row)}: {what} in this row{more}: left out")
-    return replace(rows[~np.any(empty, axis=1)], left_out=rows.left_out + len(parts))
+    kept, left_out = rows[~np.any(empty, axis=1)], rows.left_out + len(parts)
+    return replace(kept, left_out=left_out, why=rows.why or f"{what} in them")
 
 
 def motions_of(
