@@ -44,17 +44,19 @@ def classroom_world(told: Told) -> Iterator[str]:
 
 
 def driven_world(scene: Scene) -> Iterator[str]:
-    """The lines of the world file of a robot that drives, but for the landmarks. The start is the
-    first belief's, whatever a log tells of the truth.
+    """The lines of the world file of a robot that drives. The start is the first belief's, whatever
+    a log tells of the truth.
     """
     world = scene.world
     yield from _head(world.name)
-    if world.landmarks:
-        yield "# The landmarks stand in landmarks.csv.\n"
     yield f"system: {world.system}\n"
     yield from _floor(world.told.map)
     if world.expected_path is not None:
         yield f"expectedPath: {_points(world.expected_path)}\n"
+    if world.landmarks:
+        yield "landmarks:  # landmarks.csv goes before these\n"
+    for mark in world.landmarks:
+        yield f"  - {{id: {mark.id}, x: {mark.x!r}, y: {mark.y!r}}}\n"
     yield f"start: {{{_pose(world.told.start)}}}\n"
     yield f"robot: {_flow(_robot(world.believed_robot))}\n"
     yield "sensors:\n" if world.told_instruments else "sensors: []\n"
