@@ -32,13 +32,14 @@ def tune(out: Path, keys: str | None, force: bool, confidence: float, **chosen: 
     and densities that make the log's innovations most likely.
 
     The first half of the readings is fitted to, the second half is held back and says how the
-    filter does with the numbers, as it was told and as fitted. Without a log it is the simulated
-    run.
+    filter does with the numbers, as it was told and as fitted. Where it does clearly worse, the
+    files keep the numbers that were told. Without a log it is the simulated run.
     """
     from ekfsim.views.picture.look import get_ready
 
     get_ready()
     from ekfsim.files.packaged import resolve
+    from ekfsim.files.results.outputs import refuse_the_scene_itself
     from ekfsim.files.results.writing import refuse_existing, whole_file, whole_text
     from ekfsim.files.scenes.settings import particles_of, setting
     from ekfsim.fitting.trial import tried
@@ -53,6 +54,8 @@ def tune(out: Path, keys: str | None, force: bool, confidence: float, **chosen: 
     for file in (out, world, image):
         refuse_existing(file, force)
     scene = scene_of(**chosen)
+    for file in (out, world, image):
+        refuse_the_scene_itself(file, scene)
     if scene.beside:
         raise UsageError("--filter: numbers are fitted for one filter; name one")
     settings = [*map(setting, chosen["settings"]), *particles_of(chosen["particles"])]
@@ -67,13 +70,16 @@ def tune(out: Path, keys: str | None, force: bool, confidence: float, **chosen: 
     given: Any = trial.scene.log.given if trial.scene.log is not None else None
     recording = given.recording if is_recorded(trial) else None
     commands = resolve(chosen["commands"], "commands")
+    as_world = world_text(trial, settings)
+    as_commands = commands_text(trial, commands, world.name, out, settings, recording)
     with (
         whole_text(world, force) as of_world,
         whole_text(out, force) as of_commands,
         whole_file(image, force) as of_picture,
     ):
-        of_world.write(world_text(trial, settings))
-        of_commands.write(commands_text(trial, commands, world.name, out, settings, recording))
+        of_world.write(as_world)
+        of_commands.write(as_commands)
         save(picture(trial), of_picture, told(trial))
     click.echo(shown(conclude(trial, width())), nl=False)
-    click.echo(in_a_line(f"{out}: ekfsim run {out} plays it with these numbers, of {world}"))
+    which = "those that were told" if trial.is_worse else "these numbers"
+    click.echo(in_a_line(f"{out}: ekfsim run {out} plays it with {which}, of {world}"))

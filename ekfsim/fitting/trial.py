@@ -8,7 +8,7 @@ import numpy as np
 from ekfsim.diagnostics.innovations import Found, Innovations
 from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.errors import UsageError
-from ekfsim.fitting.estimate import Fit, fit
+from ekfsim.fitting.estimate import Estimate, Fit, fit
 from ekfsim.fitting.noises import NoiseNumber, Retold, noises_of
 from ekfsim.localization import entries_of, first_belief, play
 from ekfsim.records import Log, Reading
@@ -49,6 +49,16 @@ class Trial:
     def is_worse(self) -> bool:
         """Whether the second half is clearly less likely under what was fitted to the first."""
         return self.after.cost > self.before.cost + CLEARLY
+
+    @property
+    def is_coloured(self) -> bool:
+        """Whether what the fitted filter leaves of the second half is no noise."""
+        return self.after.found.word == "not white"
+
+    @property
+    def used(self) -> tuple[Estimate, ...]:
+        """What is to be told to the filter: nothing that does worse than what it was told."""
+        return () if self.is_worse else self.fit.found
 
     @property
     def half(self) -> float:

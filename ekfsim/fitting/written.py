@@ -3,6 +3,7 @@
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import yaml
@@ -16,6 +17,7 @@ from ekfsim.files.yaml.parsing import parse
 from ekfsim.fitting.trial import Trial
 from ekfsim.version import VERSION
 
+WIDTH = 98  # of a line that tells what made a file
 DIGITS = 4  # of a number: its interval is wider by far
 
 
@@ -26,13 +28,14 @@ def world_text(trial: Trial, settings: Sequence[Setting]) -> str:
     on_log = of_log(settings) if is_recorded(trial) else settings
     root, _ = given.tree()
     plain: Any = overruled(root, "world", on_log).plain()
-    for one in trial.fit.found:
+    for one in trial.used:
         place = plain
         *way, last = one.number.route
         for part in way:
             place = place.setdefault(part, {})
         place[last] = float(f"{one.number.in_file(one.value):.{DIGITS}g}")
-    return headed(trial, "what the filter is told stands under `belief`", plain)
+    what = "what the filter is told stands under `belief`"
+    return headed(trial, "the numbers are as they were told" if trial.is_worse else what, plain)
 
 
 def commands_text(
@@ -63,7 +66,38 @@ def is_recorded(trial: Trial) -> bool:
 
 
 def headed(trial: Trial, what: str, plain: Any) -> str:
-    """A file with a line that tells what made it."""
+    """A file with lines that tell what made it, and first whether it is to be trusted."""
     source = " ".join(str(trial.scene.log_source).split())
-    head = f"# Made by `ekfsim tune` {VERSION} of {source}: {what}.\n"
+    lines = [*doubts(trial), f"Made by `ekfsim tune` {VERSION} of {source}: {what}."]
+    head = "".join(f"# {line}\n" for told in lines for line in wrap(told, WIDTH))
     return head + yaml.safe_dump(plain, sort_keys=False, allow_unicode=True)
+
+
+def doubts(trial: Trial) -> list[str]:
+    """Why what was fitted is not to be used, or its intervals not to be trusted; mostly nothing."""
+    if trial.is_worse:
+        return [WORSE, DRIFT if trial.is_coloured else UNLIKE]
+    return [COLOURED] if trial.is_coloured else []
+
+
+WORSE = (
+    "NOT TUNED: the half of the log that was held back is clearly less likely with the fitted "
+    "numbers than with those that were told. The files keep those that were told."
+)
+DRIFT = (
+    "The innovations are not white: what is left is a bias or a slow drift and no noise. A fit "
+    "takes what errs alike for a while for a small noise, and is sure of it for no reason. Look "
+    "for a bias, a wrong scale, a delay or a place on the map that is wrong; `robot: {estimate: …}`"
+    " has the filter find some of them."
+)
+UNLIKE = (
+    "Its innovations are no bias either: the halves are not alike (a robot that turns in one "
+    "only?), and one tells nothing of the other."
+)
+COLOURED = (
+    "NO NOISE ALONE: with the fitted numbers, too, the innovations of the half that was held back "
+    "are not white. The numbers do no worse there than those that were told, and their intervals "
+    "are too narrow. What is left is a bias or a slow drift: look for a bias, a wrong scale, a "
+    "delay or a place on the map that is wrong; `robot: {estimate: …}` has the filter find some of "
+    "them."
+)

@@ -68,7 +68,7 @@ class Outputs:
         paths = self._paths()
         for path in paths:
             refuse_existing(path, self.force)
-            _refuse_the_scene_itself(path, scene)
+            refuse_the_scene_itself(path, scene)
         _refuse_one_place_for_two([path for path in paths if not special(path)])
         unknown = self.unknown_truth(scene)
         paths = [path for path in paths if path != unknown]
@@ -132,7 +132,7 @@ def _of_filter(path: Path, filter: str) -> Path:
     return path.with_name(f"{path.stem}.{filter}{path.suffix}")
 
 
-def _refuse_the_scene_itself(path: Path, scene: Scene) -> None:
+def refuse_the_scene_itself(path: Path, scene: Scene) -> None:
     """Raise UsageError where a result would replace the file that it is made from,
     or come to lie within its log.
     """

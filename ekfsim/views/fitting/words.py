@@ -7,6 +7,7 @@ from ekfsim.filters.arithmetic.chi_square import band
 from ekfsim.fitting.estimate import Estimate
 from ekfsim.fitting.noises import told_by_readings
 from ekfsim.fitting.trial import Judged, Trial
+from ekfsim.fitting.written import doubts
 from ekfsim.printable import in_a_line
 from ekfsim.views.words.text_table import aligned, folded
 from ekfsim.views.words.whiteness import sentence
@@ -18,7 +19,8 @@ HEAD = ("number", "was told", "fitted", "95 % interval", "")
 def conclude(trial: Trial, width: int | None = None) -> str:
     """All that is printed when it is over. width : of the terminal; None where there is none"""
     fitted, source = trial.fit, in_a_line(str(trial.scene.log_source))
-    lines = [
+    lines = [line for told in doubts(trial) for line in (*folded(told, width), "")]
+    lines += [
         *folded(f"Fitted to the first half of {source}, by {fitted.trials} runs of the filter "
                 "(m, degrees):", width),
         *aligned([HEAD, *map(_row, fitted.found)], 1, width),
@@ -37,21 +39,7 @@ def conclude(trial: Trial, width: int | None = None) -> str:
     lines += ["", *folded("On the second half, which was held back:", width)]
     for name, half in (("as it was told", trial.before), ("as fitted", trial.after)):
         lines += folded(f"  {name}: {nis(half)}; innovations are {sentence(half.found)}", width)
-    if trial.is_worse:
-        lines += ["", *folded(WORSE, width)]
-    if trial.after.found.word == "not white":
-        lines += ["", *folded(BIAS, width)]
     return "\n".join(lines) + "\n"
-
-
-WORSE = (
-    "The second half is less likely with these numbers than with those that were told: the halves "
-    "are not alike (a robot that turns in one only?), and what was fitted to one is not to be used."
-)
-BIAS = (
-    "What is left is no noise, and no noise that the filter could be told takes it away: look for "
-    "a bias, a wrong scale, a delay or a place on the map that is wrong."
-)
 
 
 def _row(one: Estimate) -> tuple[str, ...]:
