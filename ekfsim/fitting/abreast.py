@@ -16,7 +16,7 @@ from ekfsim.models.sensors.laser import Laser
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.scene import Scene
 
-FILTERS = ("ekf", "iekf", "ukf")  # that take a model of N noises as they take any
+FILTERS = ("ekf", "ukf")  # others look at some of the N runs by themselves
 PROPORTIONAL = (MoveTurn, Unicycle, Stride)  # whose M takes (N,) numbers as it takes one
 
 

@@ -16,8 +16,10 @@ FAR = math.log(1e3)  # from where it begins a number is looked for up to so many
 NOTHING = math.log(50.0)  # a number so many times less than the best is as good as 0
 LOOK = math.log(3.0)  # how far a number is moved to see whether it matters
 MATTERS = 2.0  # of −ln p: what moves it less than this is not to be found in the log
-ROUNDS = 4  # of gate and fit in turn
+ROUNDS = 4  # of gate and fit in turn, and of intervals where a lower cost is met on the way
+LOWER = 0.05  # of −ln p
 ABREAST = 64  # sets of numbers that are tried in one run
+AS_IT_IS = Likelihood()  # with all readings
 HALF_BELOW = 1.92  # of −ln p: half of the 95 % quantile of χ² of one freedom
 
 
@@ -48,8 +50,9 @@ class Fit:
 
 
 def fit(
-    retold: Retold, until: int, gate: float | None, heard: Callable[[int], None] = lambda _: None
-) -> Fit:
+    retold: Retold, until: int, gate: float | None,
+    heard: Callable[[int], None] = lambda _: None, likelihood: Likelihood = AS_IT_IS,
+) -> Fit:  # fmt: skip
     """The most likely numbers on the first `until` entries of a log; `heard` hears how many sets
     of numbers were tried, each time.
 
@@ -58,7 +61,7 @@ def fit(
     """
     zero = tuple(one for one in retold.numbers if one.value <= 0)
     asked = tuple(one for one in retold.numbers if one.value > 0)
-    trials = Trials(Retold(retold.scene, asked), until, heard)
+    trials = Trials(Retold(retold.scene, asked), until, heard, likelihood)
     start = np.log([one.value for one in asked])
     kept = of_matter(trials.costs, start)
     idle = tuple(one for i, one in enumerate(asked) if i not in kept)
@@ -81,9 +84,11 @@ def fit(
 class Trials:
     """How unlikely a log is under sets of numbers; it counts them."""
 
-    def __init__(self, retold: Retold, until: int, heard: Callable[[int], None]) -> None:
+    def __init__(
+        self, retold: Retold, until: int, heard: Callable[[int], None], likelihood: Likelihood
+    ) -> None:
         self.retold, self.until, self.heard = retold, until, heard
-        self.likelihood, self.count = Likelihood(), 0
+        self.likelihood, self.count = likelihood, 0
 
     def scene(self, logs: Array) -> Scene:
         """The part of the log that is looked at, under numbers of these logarithms."""
@@ -126,7 +131,11 @@ def intervals(numbers: list[NoiseNumber], costs: Costs, best: Bowl) -> Iterator[
     """The numbers with their intervals, by the profile of the likelihood: the curvature alone would
     not do, for where a number may as well be 0 the cost is far from a parabola.
     """
-    found = ends(costs, best, HALF_BELOW, (NOTHING, FAR))
+    for _ in range(ROUNDS):
+        found, lower = ends(costs, best, HALF_BELOW, (NOTHING, FAR))
+        if lower.cost > best.cost - LOWER:
+            break
+        best = lowest(costs, lower.at, FAR)
     for i, number in enumerate(numbers):
         down, up = (found[2 * i + side].at[i] for side in (0, 1))
         low = 0.0 if found[2 * i].open else math.exp(down)

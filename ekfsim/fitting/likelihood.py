@@ -47,16 +47,20 @@ class Likelihood:
     def of_all(self, retold: Retold, values: Array, until: int) -> Array:
         """Of the first `until` entries of a log, under each of N sets of numbers : (N, n) → (N)"""
         if abreast.possible(retold.scene):
-            scene, total = abreast.side_by_side(retold, values, until), np.zeros(len(values))
             try:
-                for step in self.steps(scene, np.arange(len(values))):
-                    c = step.correction
-                    if c is not None:
-                        total += np.where(c.refused == Refused.NOT, self._of(c), 0.0)
-                return np.where(np.isfinite(total), total, IMPOSSIBLE)
+                return self.of_runs(abreast.side_by_side(retold, values, until), len(values))
             except (ArithmeticError, np.linalg.LinAlgError):
                 pass  # one of them: which, each for itself tells
         return np.array([self.of(retold.with_(row.tolist(), until)) for row in values])
+
+    def of_runs(self, scene: Scene, runs: int) -> Array:
+        """Of a log that is given to N runs side by side : (N)"""
+        total = np.zeros(runs)
+        for step in self.steps(scene, np.arange(runs)):
+            c = step.correction
+            if c is not None:
+                total += np.where(c.refused == Refused.NOT, self._of(c), 0.0)
+        return np.where(np.isfinite(total), total, IMPOSSIBLE)
 
     def _of(self, c: Correction) -> Array:
         """½ (νᵀ S⁻¹ ν + ln det S) : (…), 0 of a reading of which the filter was certain"""

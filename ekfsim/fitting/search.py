@@ -14,8 +14,10 @@ FLAT = 0.05  # of a second derivative, by which it is taken to curve where it ha
 DAMPINGS = (0.0, 1.0, 10.0, 100.0)  # of a step downhill: the first is Newton's own
 LONGEST = 1.5  # of a step, in the logarithm
 STEPS = 25  # at most, downhill
-ENDS = 12  # at most, to the end of an interval
+ENDS = 16  # at most, to the end of an interval
 SETTLED = 1e-4  # of a cost: a step that promises less is not taken
+CREDIBLE = 0.5  # of a cost: where the others promise more, they have not followed yet
+NARROW = 0.005  # of where an end lies, in the logarithm
 REACHED = 0.02  # of a cost, at the end of an interval
 
 Costs = Callable[[Array], Array]  # of points (m, n) : (m)
@@ -111,19 +113,25 @@ class End:
     i: int
     way: int  # 1 up, −1 down
     at: Array  # (n,)
+    inside: float = 0.0  # so far away from the best the cost has not yet risen enough
+    outside: float = np.inf  # and so far it has
     done: bool = False
     open: bool = False  # the cost never rises so far
 
 
-def ends(costs: Costs, best: Bowl, rise: float, farthest: tuple[float, float]) -> list[End]:
+def ends(
+    costs: Costs, best: Bowl, rise: float, farthest: tuple[float, float]
+) -> tuple[list[End], Bowl]:
     """How far each number can be moved down, and up, all others being the most likely ones then,
     until the cost has risen: the ends of the profile likelihood's intervals (Venzon & Moolgavkar,
-    A method for computing profile-likelihood-based confidence intervals, 1988).
+    A method for computing profile-likelihood-based confidence intervals, 1988). And the lowest bowl
+    that was met: a filter that predicts another wall makes the cost jump, and the best may have
+    been one of several.
 
     farthest : down and up; an end that is not found so far is open. In the order of the numbers,
     the lower end first.
     """
-    covariance = np.linalg.inv(upright(best.H))
+    covariance, lowest = np.linalg.inv(upright(best.H)), best
     found = []
     for i, ridge in enumerate(covariance):
         for way in (-1, 1):
@@ -135,32 +143,47 @@ def ends(costs: Costs, best: Bowl, rise: float, farthest: tuple[float, float]) -
             break
         near, _ = bowls(costs, np.array([end.at for end in looked]), none(best.at))
         for end, bowl in zip(looked, near, strict=True):
-            _moved(end, bowl, best, rise)
-            gone = end.way * (end.at[end.i] - best.at[end.i])
-            end.open = gone > farthest[end.way > 0]
-            end.done = end.done or end.open
-    return found
+            lowest = bowl if bowl.cost < lowest.cost else lowest
+            _moved(end, bowl, best, rise, farthest[end.way > 0])
+    for end in found:
+        if not end.done and np.isfinite(end.outside):
+            end.at[end.i] = best.at[end.i] + end.way * end.outside
+    return found, lowest
 
 
-def _moved(end: End, bowl: Bowl, best: Bowl, rise: float) -> None:
+def _moved(end: End, bowl: Bowl, best: Bowl, rise: float, farthest: float) -> None:
     """One step of an end to where the bowl there has the cost risen, the others lowest:
 
     least(δ) = A + B δ + C δ²/2, the cost where the number is moved by δ and the others follow
+
+    What is known of where the end lies, inside and outside, wins over what the bowl promises.
     """
     i, rest = end.i, np.arange(len(bowl.at)) != end.i
     followed = np.linalg.inv(upright(bowl.H[rest][:, rest]))
     along, g = bowl.H[rest, i], bowl.g[rest]
-    A = bowl.cost - best.cost - g @ followed @ g / 2
+    promise = float(g @ followed @ g) / 2
+    left = rise - (bowl.cost - best.cost - promise)
+    gone = end.way * float(bowl.at[i] - best.at[i])
+    if left > 0:
+        end.inside = max(end.inside, gone)
+    elif promise < CREDIBLE:
+        end.outside = min(end.outside, gone)
+    if end.inside >= end.outside:  # it rose enough, and less farther out: the end is out there
+        end.outside = np.inf
+    if abs(left) < REACHED and promise < REACHED:
+        end.done = True
+        return
     B, C = bowl.g[i] - along @ followed @ g, bowl.H[i, i] - along @ followed @ along
-    left = rise - A
-    δ = _root(end.way, float(left), float(B), float(C))
+    then = gone + end.way * _root(end.way, left, float(B), float(C))
+    if not end.inside < then < end.outside:
+        near, far = end.inside, min(end.outside, end.inside + LONGEST)
+        then = (near + far) / 2 if end.outside < np.inf else far
     at = bowl.at.copy()
-    at[i] += δ
-    at[rest] += shortened(-followed @ (g + along * δ))
-    if end.way * (at[i] - best.at[i]) < 0:  # across the best: half-way back to it
-        at = (bowl.at + best.at) / 2
+    at[i] = best.at[i] + end.way * then
+    at[rest] += shortened(-followed @ (g + along * (at[i] - bowl.at[i])))
     end.at = at
-    end.done = abs(left) < REACHED and g @ followed @ g / 2 < REACHED
+    end.open = then > farthest
+    end.done = end.open or end.outside - end.inside < NARROW
 
 
 def _root(way: int, left: float, B: float, C: float) -> float:

@@ -97,13 +97,13 @@ def tried(
     if scene.filter == "pf":
         raise UsageError("pf: its own draws make every trial another; tune ekf or ukf")
     whole = recorded(scene)
+    numbers = chosen(whole, keys)
     assert whole.log is not None
     read = [n for n, one in enumerate(whole.log.entries) if isinstance(one.given, Reading)]
     if len(read) < LEAST:
         raise UsageError(f"{scene.commands_source}: {len(read)} readings tell no noise; "
                          f"at least {LEAST} are wanted")  # fmt: skip
     until = read[len(read) // 2]
-    numbers = chosen(whole, keys)
     fitted = fit(Retold(whole, numbers), until, whole.gate, heard)
     names, values = [one.number for one in fitted.found], fitted.values
     tuned = Retold(whole, tuple(names)).with_(values)

@@ -7,14 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from program import ekfsim
-from scipy.stats import norm
 
 from ekfsim import load_scene
 from ekfsim.fitting.estimate import fit
-from ekfsim.fitting.likelihood import Likelihood, truncation
+from ekfsim.fitting.likelihood import truncation
 from ekfsim.fitting.noises import Retold, noises_of
 from ekfsim.fitting.trial import recorded, tried
+from ekfsim.fitting.written import UNLIKE, WORSE
 from ekfsim.localization import play
+from ekfsim.views.fitting.words import conclude
 
 KEYS = [f"noise.{name}SigmaRatio" for name in ("odometryDst", "odometryAng", "range")]
 
@@ -36,18 +37,6 @@ def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def test_the_likelihood_is_that_of_the_normal_distribution():
-    """Of ranges, one number each: the product of their densities, by scipy."""
-    scene = recorded(laps())
-    density = 0.0
-    for step in play(scene):
-        if (c := step.correction) is not None:
-            density -= norm.logpdf(float(c.innovation[0]), scale=np.sqrt(float(c.S[0, 0])))
-    n = sum(step.correction is not None for step in play(scene))
-    constant = n * np.log(2 * np.pi) / 2
-    assert Likelihood().of(scene) + constant == pytest.approx(density)
-
-
 def test_it_finds_the_ratios_of_a_simulated_log_within_its_intervals():
     off, truth = doubled(laps(times=3))
     found = fit(Retold(off, noises_of(off)), len(off.log.entries), None)
@@ -60,14 +49,13 @@ def test_it_finds_the_ratios_of_a_simulated_log_within_its_intervals():
 def test_a_gate_does_not_fool_it():
     """A filter that is told far too little noise refuses nearly all, and still finds it."""
     scene = recorded(laps(3))
-    truth = noises_of(scene)
-    off = Retold(scene, truth).with_([one.value / 4 for one in truth])
+    beam = noises_of(scene)[2:]
+    off = Retold(scene, beam).with_([beam[0].value / 5])
     refused = sum(bool(s.correction.refused) for s in play(replace(off, gate=0.99)) if s.correction)
     assert refused > 10
-    found = fit(Retold(off, noises_of(off)), len(off.log.entries), 0.99)
-    for one, right in zip(found.found, truth, strict=True):
-        assert one.low / 1.3 <= right.value <= 1.3 * one.high
-    assert len(found.left_out) < 10
+    found = fit(Retold(off, noises_of(off)[2:]), len(off.log.entries), 0.99)
+    assert found.found[0].low <= beam[0].value <= found.found[0].high
+    assert len(found.left_out) < 5
 
 
 def test_what_a_gate_leaves_has_a_smaller_variance():
@@ -79,13 +67,16 @@ def test_what_a_gate_leaves_has_a_smaller_variance():
 
 def test_a_half_that_was_held_back_says_how_it_does():
     off, _ = doubled(laps(1))
-    trial = tried(off)
+    trial = tried(off, KEYS[2:])
     assert trial.before.mean < 0.5
     assert trial.after.mean == pytest.approx(1.0, abs=0.45)
     assert trial.after.cost < trial.before.cost
-    assert not trial.is_worse
+    assert (trial.is_worse, trial.used) == (False, trial.fit.found)
     assert trial.after.evidence.nis_readings == 32
-    assert tried(off, KEYS[2:]).fit == tried(off, KEYS[2:]).fit
+    assert conclude(trial).startswith("Fitted to the first half of ")
+    worse = replace(trial, after=replace(trial.after, cost=trial.before.cost + 6))
+    assert worse.is_worse
+    assert conclude(worse).startswith(f"{WORSE}\n\n{UNLIKE}\n\nFitted to")
 
 
 def of_columns(sigma=""):
@@ -133,29 +124,44 @@ def log():
 
 
 def test_what_is_written_can_be_run(log):
-    told = ekfsim("tune", "mine.yaml", "--log", log, "-o", "out/tuned.yaml")
+    options = "tune", "mine.yaml", "--log", log, "--fit", "noise.rangeSigmaRatio", "-o"
+    told = ekfsim(*options, "out/tuned.yaml")
     assert (told.status, told.err) == (0, "")
     assert sorted(path.name for path in Path("out").iterdir()) == [
         "tuned-world.yaml", "tuned.png", "tuned.yaml",
     ]  # fmt: skip
     assert "On the second half, which was held back:" in told.out
-    for key in KEYS:
-        assert key in told.out
+    assert "noise.rangeSigmaRatio" in told.out
+    assert "odometry" not in told.out
     assert ekfsim("check", "out/tuned.yaml", "out/tuned-world.yaml").status == 0
     scene, before = load_scene("out/tuned.yaml"), load_scene("mine.yaml", log=log)
     assert scene.world.told.noise.range != before.world.told.noise.range
     assert scene.world.noise == before.world.noise
     assert len(scene.log.entries) == len(before.log.entries)
     assert ekfsim("run", "out/tuned.yaml", "-q").status == 0
+    held = {path: path.read_bytes() for path in Path("out").iterdir()}
+    assert ekfsim(*options, "out/tuned.yaml").status == 2  # they exist
+    assert {path: path.read_bytes() for path in Path("out").iterdir()} == held
 
 
-def test_one_number_alone(log):
-    options = "tune", "mine.yaml", "--log", log, "-o", "tuned.yaml"
-    told = ekfsim(*options, "--fit", "noise.rangeSigmaRatio")
+def test_numbers_that_do_worse_on_the_other_half_are_not_written(log, monkeypatch):
+    monkeypatch.setattr("ekfsim.fitting.trial.CLEARLY", -1e9)  # as if they did
+    options = "--log", log, "--fit", "noise.rangeSigmaRatio"
+    told = ekfsim("tune", "mine.yaml", *options, "-o", "tuned.yaml")
     assert told.status == 0
-    assert "odometry" not in told.out
-    assert ekfsim(*options).status == 2  # they exist
-    assert ekfsim(*options, "--force").status == 0
+    assert told.out.startswith("NOT TUNED: ")
+    assert "plays it with those that were told" in told.out
+    scene, before = load_scene("tuned.yaml"), load_scene("mine.yaml", log=log)
+    assert scene.world.told.noise == before.world.told.noise
+    for file in ("tuned.yaml", "tuned-world.yaml"):
+        assert Path(file).read_text().startswith("# NOT TUNED: the half of the log that was held")
+
+
+def test_nothing_is_written_among_the_files_of_the_log(log):
+    refused = ekfsim("tune", "mine.yaml", "--log", log, "-o", f"{log}/tuned.yaml")
+    assert (refused.status, refused.err) == (
+        2, "ekfsim: log/tuned.yaml: lies in the folder of the log; choose another folder\n",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("options", "line"), [
@@ -167,7 +173,7 @@ def test_one_number_alone(log):
 def test_what_cannot_be_is_refused(options, line):
     refused = ekfsim("tune", "tour", "-o", "tuned.yaml", *options)
     assert refused.status == 2
-    assert refused.err.startswith(f"ekfsim: {line}") or "15 readings" in refused.err
+    assert refused.err.startswith(f"ekfsim: {line}")
 
 
 def test_too_few_readings_and_no_name_for_a_file():
