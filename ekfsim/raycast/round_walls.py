@@ -8,6 +8,7 @@ import numpy as np
 from ekfsim.geometry import Array, Integers
 from ekfsim.raycast.brute import extent, in_portions, nearer, try_all_round
 from ekfsim.raycast.rules import TIE
+from ekfsim.raycast.searches.round_cells import RoundCells
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +43,11 @@ class RoundWalls:
     def extent(self) -> float:
         """The largest coordinate of any circle, in m."""
         return extent(self.circles)
+
+    @cached_property
+    def cells(self) -> RoundCells:
+        """What many beams look many circles up in."""
+        return RoundCells.over(self.circles)
 
     @cached_property
     def plain(self) -> list[tuple[float, float, float]]:

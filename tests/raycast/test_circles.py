@@ -60,7 +60,7 @@ def test_ranges_are_those_of_the_closed_form(shift):
 
 
 @pytest.mark.parametrize("rings", [{}, stars(30, 2)], ids=["alone", "among stars"])
-@pytest.mark.parametrize("count", [1, 60])
+@pytest.mark.parametrize("count", [1, 60, 500])
 def test_all_searches_agree_with_the_text(rings, count):
     lines = {"long": np.array([[0.0, 0], [100, 90]]), "short": np.array([[50.0, 50], [52, 49]])}
     walls = Walls.of(rings, lines, pillars(count, 7))

@@ -9,7 +9,8 @@
     many, and few walls       few_walls.py      all beams × all walls, as products of matrices
     many, and many walls      many_beams.py     all beams at once from cell to cell of a grid
 
-Round walls are tried after them: all by one beam, by many what round_before.py leaves of them.
+Round walls are tried after them: by one beam those on its line, by many what round_before.py leaves
+of them, or from cell to cell of round_cells.py.
 
 choice.py is where it is decided. How many is many, and how few is few, stands in capitals at the
 top of these files. Beams from very far, where rounding is not small against a cell, are brute

@@ -1,5 +1,6 @@
-"""The round walls that many beams close together may meet, as those of a study's runs: those in the
-wedge of nearby_beams.py, and not behind all the straight walls that are met.
+"""The round walls that many beams may meet. Of beams close together, as those of a study's runs, it
+is those in the wedge of nearby_beams.py, and not behind all the straight walls that are met. Where
+these are many, each beam is followed by itself through the cells of round_cells.py.
 """
 
 from math import sqrt
@@ -7,8 +8,12 @@ from math import sqrt
 import numpy as np
 
 from ekfsim.geometry import Array, Integers
+from ekfsim.raycast.brute import nearer
 from ekfsim.raycast.round_walls import RoundWalls
+from ekfsim.raycast.rules import TIE
 from ekfsim.raycast.searches.nearby_beams import SAFE, SPREAD, Wedge
+
+MANY = 64  # circles that are sooner all tried by many beams
 
 
 def round_before(
@@ -16,7 +21,14 @@ def round_before(
 ) -> tuple[Array, Integers]:
     """`RoundWalls.before` of many beams (4, n), x, y in m and the unit direction."""
     x, y, dx, dy = beams
-    return walls.before(straight, x, y, dx, dy, _in_wedge(walls, straight[0], beams))
+    some = _in_wedge(walls, straight[0], beams)
+    if (len(walls.circles) if some is None else len(some)) <= MANY:
+        return walls.before(straight, x, y, dx, dy, some)
+    near = np.abs(x) + np.abs(y) < walls.cells.horizon
+    if not (near.all() and np.isfinite(beams[2:]).all()):
+        return walls.before(straight, x, y, dx, dy, some)
+    met = walls.cells.first(beams, np.where(np.isnan(straight[0]), np.inf, straight[0]))
+    return nearer(straight, met, walls.first, TIE * (walls.extent + np.abs(x) + np.abs(y)))
 
 
 def _in_wedge(walls: RoundWalls, ranges: Array, beams: Array) -> Integers | None:

@@ -1,5 +1,6 @@
 """One beam from cell to cell of a grid, in plain floats: where no array is worth its while."""
 
+from collections.abc import Sequence
 from math import cos, hypot, inf, isfinite, nan, sin, sqrt
 
 import numpy as np
@@ -10,6 +11,7 @@ from ekfsim.raycast.rules import REACH, TIE
 from ekfsim.raycast.searches.grid import Grid, Wall
 from ekfsim.raycast.walls import Walls
 
+FEW_CIRCLES = 32  # that are sooner tried one after another than all at once
 RECENT = 8  # beams that are remembered
 NOTHING: list[Wall] = []
 
@@ -43,8 +45,9 @@ def _before(
     span = round_.extent + abs(x) + abs(y)
     reach, tie, best = REACH * span, TIE * span, inf
     met: list[tuple[float, int]] = []
-    for wall, (east, north, radius) in enumerate(round_.plain, round_.first):
-        east, north = east - x, north - y
+    for circle in _on_the_way(round_, x, y, dx, dy, reach):
+        east, north, radius = round_.plain[circle]
+        wall, east, north = round_.first + circle, east - x, north - y
         across = abs(east * dy - north * dx)
         if across > radius + reach:
             continue
@@ -61,6 +64,20 @@ def _before(
     if not met or r <= best + tie:
         return (min(r, best) if wall >= 0 else nan), wall
     return best, min(wall for r, wall in met if r <= best + tie)
+
+
+def _on_the_way(
+    round_: RoundWalls, x: float, y: float, dx: float, dy: float, reach: float
+) -> Sequence[int]:
+    """The circles that lie on a beam's line, and not wholly behind it; all where they are few."""
+    circles = round_.circles
+    if len(circles) <= FEW_CIRCLES:
+        return range(len(circles))
+    east, north = circles[:, 0] - x, circles[:, 1] - y
+    touched = np.abs(east * dy - north * dx) <= circles[:, 2] + 2 * reach
+    touched &= east * dx + north * dy + circles[:, 2] >= -2 * reach
+    numbers: list[int] = np.flatnonzero(touched).tolist()
+    return numbers
 
 
 def follow(grid: Grid, x: float, y: float, dx: float, dy: float) -> tuple[float, int]:
