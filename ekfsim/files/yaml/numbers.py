@@ -18,7 +18,7 @@ from typing import NamedTuple
 from ekfsim.files.yaml.marked import Mark, Node, Path
 
 LONG = 20_000  # characters, below which PyYAML is quick enough
-SHORTEST = 200  # characters of a list that is worth it
+SHORTEST = 40  # characters of a list that is worth it
 PRIVATE = range(0xE000, 0xF900)  # signs that no person writes
 
 NUMBER = r"-?(?:0|[1-9][0-9]*)(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?"

@@ -11,6 +11,7 @@ from ekfsim.files.maps.making import make
 from ekfsim.files.maps.pixels.cells import Reading
 from ekfsim.files.maps.pixels.image import Grey, grey_of, pgm
 from ekfsim.files.maps.plan import Asked
+from ekfsim.files.maps.standing import roomiest
 
 GREYS = [0, 10, 100, 205, 230, 254, 255]
 SEEN = ["wall", "wall", "unknown", "unknown", "free", "free", "free"]
@@ -193,3 +194,31 @@ def test_slits_that_nobody_has_seen_are_free_and_keys_that_are_not_read_are_told
     assert plan.outlines == ()
     assert plan.told[0] == "the key 'colour' of the map is not read"
     assert "1 slit of unknown cells among free ones, beside nothing occupied, is free" in plan.told
+
+
+def test_the_room_and_the_start_in_it_are_where_somebody_saw_not_where_grey_is_free(tmp_path):
+    pixels = np.full((100, 100), 205)
+    pixels[30:70, 20:60] = 0
+    pixels[32:68, 22:58] = 254
+    shut = plan_of(write(tmp_path, pixels, free_thresh=0.25))
+    assert shut.boundary is not None
+    assert shapely.Polygon(shut.boundary).bounds == pytest.approx((1.1, 1.6, 2.9, 3.4))
+    assert any("22 m² about (" in line or "21 m² about (" in line for line in shut.told)
+    pixels[45:50, 58:60] = 205  # a hole in the wall
+    leaking = plan_of(write(tmp_path, pixels, free_thresh=0.25))
+    assert leaking.boundary is not None
+    assert shapely.Polygon(leaking.boundary).bounds == pytest.approx((0, 0, 5, 5))
+    found = roomiest(leaking)
+    assert found is not None
+    (x, y, _), _ = found
+    assert 1.1 < x < 2.9
+    assert 1.6 < y < 3.4
+
+
+def test_of_few_cells_each_edge_is_a_wall(tmp_path):
+    pixels = room(10, 10)
+    pixels[2:5, 3:5] = pixels[6:8, 5:9] = 0
+    plan = plan_of(write(tmp_path, pixels, resolution=1.0))
+    walls = shapely.Polygon(plan.boundary, [one.points for one in plan.outlines])
+    assert walls.area == pytest.approx(64 - 6 - 8)
+    assert walls.bounds == pytest.approx((1, 1, 9, 9))

@@ -12,9 +12,12 @@ from ekfsim.files.maps.pixels.image import Grey
 from ekfsim.files.maps.pixels.straight import corners, farthest, straightened
 from ekfsim.files.maps.pixels.tracing import outlines, without_corners
 from ekfsim.files.maps.plan import Asked, Outline, Plan, Scan, Start
-from ekfsim.geometry import Array, Booleans
+from ekfsim.geometry import Array, Booleans, Integers
 
 CELLS = 2.0  # the tolerance, in cells, where nobody says another
+SHARE = 0.05  # and no more of the picture's shorter side than this: few cells are no stairs
+NAMED = 3  # other free places whose whereabouts are told
+LARGE = 0.02  # of the room: a place that is worth naming
 NOT_SEEN = 205 / 255  # how bright map savers draw what nobody has seen
 
 
@@ -35,17 +38,20 @@ def plan_of(
     occupied, free = (cells[::-1] for cells in reading.cells(grey))  # row 0 at the bottom
     told += _grey_that_is_free(grey, free[::-1], reading)
     lying = _Lying(resolution, origin)
-    tolerance = CELLS if asked.tolerance is None else asked.tolerance / resolution
+    tolerance = min(CELLS, SHARE * min(free.shape))
+    if asked.tolerance is not None:
+        tolerance = asked.tolerance / resolution
+    unseen = _unseen(grey, reading)[::-1]
     if asked.unknown == "free":
-        seen = _room(without_corners(free), lying, asked, [], shown)
-        indoors = max(outlines(seen), key=_area)
+        seen = _room(without_corners(free), unseen, lying, asked, [], shown)
+        indoors = _largest(seen)
         room, stepped = None, outlines(~without_corners(~occupied))
     else:
         free = without_corners(free | _slits(occupied, free, tolerance, told))
-        room, *holes = sorted(
-            outlines(_room(free, lying, asked, told, shown)), key=_area, reverse=True
-        )
-        indoors, stepped = None, [hole[::-1] for hole in holes]
+        inside = _room(free, unseen, lying, asked, told, shown)
+        room, *holes = sorted(outlines(inside), key=_area, reverse=True)
+        indoors = _largest(inside & ~unseen) if (inside & unseen).any() else None
+        stepped = [hole[::-1] for hole in holes]
     large = [ring for ring in stepped if np.ptp(ring, axis=0).max() >= tolerance]
     rings = large if room is None else [room, *large]
     straight = straightened(rings, tolerance)
@@ -82,13 +88,18 @@ class _Lying:
         return Scan(grey.bright, self.resolution, self.origin)
 
 
-def _room(free: Booleans, lying: _Lying, asked: Asked, told: list[str], shown: str) -> Booleans:
-    """The cells of the room that is wanted. Raises UsageError where there is none."""
+def _room(
+    free: Booleans, unseen: Booleans, lying: _Lying, asked: Asked, told: list[str], shown: str
+) -> Booleans:
+    """The cells of the room that is wanted, or else of the one of which most was seen.
+    Raises UsageError where there is none.
+    """
     rooms, number = ndimage.label(free)
     if not number:
         raise UsageError(f"{shown}: no cell of this map is free")
     sizes = np.bincount(rooms.ravel())[1:]
-    wanted = int(np.argmax(sizes)) + 1
+    seen = np.bincount(rooms[~unseen], minlength=number + 1)[1:]
+    wanted = int(np.lexsort([sizes, seen])[-1]) + 1
     if asked.start is not None:
         row, column = lying.cell(asked.start)
         inside = 0 <= row < free.shape[0] and 0 <= column < free.shape[1]
@@ -97,12 +108,30 @@ def _room(free: Booleans, lying: _Lying, asked: Asked, told: list[str], shown: s
             raise UsageError(f"--start: ({x:g}, {y:g}) is not free in {shown}")
     if others := int(sizes.sum() - sizes[wanted - 1]):
         area = others * lying.resolution**2
+        places = "place" if number == 2 else "places"
         told.append(
-            f"{number - 1} other free {'place' if number == 2 else 'places'}, {area:.3g} m² "
-            "together, cannot be reached from this room, and are left out; --start in one of them "
-            "takes that"
+            f"{number - 1} other free {places}, {area:.3g} m² together, cannot be reached from "
+            f"this room, and are left out; --start in one of them takes that"
+            f"{_where(rooms.astype(np.int64), sizes, wanted, lying)}"
         )
     return np.asarray(rooms == wanted)
+
+
+def _where(rooms: Integers, sizes: Integers, wanted: int, lying: _Lying) -> str:
+    """The largest of the places that are not wanted, as the end of a sentence, each by a point
+    within it; those that are small beside the room are not worth naming.
+    """
+    boxes, named = ndimage.find_objects(rooms), []
+    for room in (np.argsort(-sizes)[: NAMED + 1] + 1).tolist():
+        if room == wanted or sizes[room - 1] < LARGE * sizes[wanted - 1]:
+            continue
+        rows, columns = boxes[room - 1]
+        deep = ndimage.distance_transform_edt(np.pad(rooms[rows, columns] == room, 1))
+        row, column = np.array(np.unravel_index(np.argmax(deep), deep.shape)) - 1
+        x, y = lying.placed(np.array([columns.start + column, rows.start + row]) + 0.5).tolist()
+        area = sizes[room - 1] * lying.resolution**2
+        named.append(f"{area:.3g} m² about ({x:.4g}, {y:.4g})")
+    return f": {', '.join(named[:NAMED])}" if named else ""
 
 
 def _slits(occupied: Booleans, free: Booleans, tolerance: float, told: list[str]) -> Booleans:
@@ -165,6 +194,11 @@ def _straightened(
     return lines
 
 
+def _largest(free: Booleans) -> Array | None:
+    """The outline of the largest place of free cells; None where there is none."""
+    return max(outlines(without_corners(free)), key=_area, default=None)
+
+
 def _area(ring: Array) -> float:
     """The area within an outline, negative where that runs clockwise."""
     (x, y), (u, v) = ring.T, np.roll(ring, -1, axis=0).T
@@ -173,9 +207,7 @@ def _area(ring: Array) -> float:
 
 def _grey_that_is_free(grey: Grey, free: Booleans, reading: Reading) -> list[str]:
     """What is to be said where pixels are free that map savers draw so for unknown."""
-    if reading.mode == "raw" or reading.negate:
-        return []
-    pixels = int(np.count_nonzero(free & (np.abs(grey.bright - NOT_SEEN) < 1e-9)))
+    pixels = int(np.count_nonzero(free & _unseen(grey, reading)))
     if not pixels:
         return []
     return [
@@ -183,3 +215,10 @@ def _grey_that_is_free(grey: Grey, free: Booleans, reading: Reading) -> list[str
         f"unknown, are free by free_thresh {reading.free:g}; write free_thresh: 0.196 in the map "
         "where they are not"
     ]
+
+
+def _unseen(grey: Grey, reading: Reading) -> Booleans:
+    """Which pixels have the grey by which map savers mean unknown."""
+    if reading.mode == "raw" or reading.negate:
+        return np.zeros(grey.bright.shape, bool)
+    return np.asarray(np.abs(grey.bright - NOT_SEEN) < 1e-9)

@@ -108,13 +108,13 @@ def sound_walls(file: Sound) -> Iterator[tuple[str, Points]]:
 def wall_points(file: Sound, wall: Path) -> Path:
     """Where the points of a wall stand: it may be a list of them, or have a name as well."""
     node = file.root.at(wall)
-    return (*wall, "points") if node is not None and isinstance(node.value, dict) else wall
+    return (*wall, "points") if node is not None and node.keys else wall
 
 
 def name_of_wall(file: Sound, wall: Path) -> str | None:
     """What a wall is called; None where its name is wrong."""
     node = file.root.at(wall)
-    if node is not None and isinstance(node.value, dict):
+    if node is not None and node.keys:
         name: str | None = file.value(*wall, "name")
         return name
     return wall_name(int(wall[-1]))
