@@ -15,8 +15,9 @@ from ekfsim.files.keys.commands import (
 from ekfsim.files.keys.recording import WITH_LANDMARKS, RecordingKeys
 from ekfsim.files.keys.world import WorldKeys
 from ekfsim.files.packaged import packaged, resolve, source_name, world_beside
-from ekfsim.files.scenes.building import scene_of, world_of
-from ekfsim.files.scenes.checking.checks import Sound, kidnap_warnings, perfect_beam_warnings
+from ekfsim.files.scenes.building import world_of
+from ekfsim.files.scenes.checking.checks import Sound
+from ekfsim.files.scenes.checking.doubts import kidnap_warnings, perfect_beam_warnings
 from ekfsim.files.scenes.checking.drive_checks import check_fit
 from ekfsim.files.scenes.checking.filter_checks import (
     check_filter_settings,
@@ -28,6 +29,7 @@ from ekfsim.files.scenes.checking.system_checks import system_warnings
 from ekfsim.files.scenes.logged import CLASSROOM, brought, with_log, world_of_log
 from ekfsim.files.scenes.one_file import File, Loaded, in_order_of_place, read
 from ekfsim.files.scenes.overruling import idle_on_log, is_about, of_log, refusal
+from ekfsim.files.scenes.playing import scene_of
 from ekfsim.files.scenes.settings import OF_LOGS, Setting, kind_of
 from ekfsim.files.source import bytes_of
 from ekfsim.files.yaml.telling import nearest

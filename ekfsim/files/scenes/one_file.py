@@ -13,7 +13,8 @@ from ekfsim.files.given.given import Given
 from ekfsim.files.keys.commands import WAYS
 from ekfsim.files.keys.fields import aliases
 from ekfsim.files.keys.world import WorldKeys
-from ekfsim.files.scenes.checking.checks import Sound, angle_warnings, check_commands, check_world
+from ekfsim.files.scenes.checking.checks import Sound, check_commands, check_world
+from ekfsim.files.scenes.checking.doubts import angle_warnings
 from ekfsim.files.scenes.checking.drive_checks import check_ways
 from ekfsim.files.scenes.checking.system_checks import check_system
 from ekfsim.files.scenes.overruling import overruled, pinned, remark

@@ -10,8 +10,8 @@ from ekfsim.errors import Mistake
 from ekfsim.files.keys.commands import WAYS, CommandsKeys
 from ekfsim.files.keys.fields import aliases
 from ekfsim.files.keys.recording import OF_ANY_ROBOT, OWN_KEYS, misfit
-from ekfsim.files.scenes.building import drive_of
 from ekfsim.files.scenes.checking.checks import Sound
+from ekfsim.files.scenes.playing import drive_of
 from ekfsim.files.yaml.telling import meant
 from ekfsim.systems.drive import Drive
 from ekfsim.world import World
