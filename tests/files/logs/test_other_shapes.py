@@ -196,3 +196,25 @@ def test_rows_without_names_may_have_decimal_commas_and_turn_rates_degrees(tmp_p
         columns = "columns: {t: 1, v: 2, omega: 3}"
         steps, _, _ = played(log, f"  motion: {{{columns}{key}}}\n")
         assert max(step.correction.nis for step in steps if step.correction) < 1e-20
+
+
+@pytest.mark.parametrize("columns", ["v,omega", "distance,turn", "left,right"])
+def test_a_truth_without_headings_looks_ahead_where_the_robot_drives_in_reverse(columns, tmp_path):
+    """A circle backwards, whose truth tells positions alone: the heading is half a turn from the
+    course, which is that of the chord: half a step's turn, 0.025 rad, beside the robot's own.
+    """
+    poses = arc(v=-0.5)
+    d, T = chords(poses).T
+    way = {
+        "v,omega": np.vstack([np.column_stack([-d, T]) / 0.25, [-1, 0]]),
+        "distance,turn": np.vstack([[0, 0], np.column_stack([-d, T])]),
+        "left,right": np.vstack([[0, 0], np.column_stack([-d - T * 0.2, -d + T * 0.2]) / 0.25]),
+    }[columns]
+    motion = table(f"t,{columns}", np.column_stack([poses[:, 0], way]).tolist())
+    truth = table("t,x,y", poses[:, :3].tolist())
+    files = {"readings.csv": perfect(poses), "landmarks.csv": CORNERS}
+    lay(tmp_path / "log", **{"motion.csv": motion, "truth.csv": truth}, **files)
+    width = "  motion: {wheels: speeds, width: 0.4}\n"
+    steps, scene, told = played(tmp_path, width if columns == "left,right" else "")
+    assert np.abs(errors(steps, scene.world.layout)[:, 2]).max() < 0.06
+    assert any("half a turn from it where the robot drives in reverse" in one for one in told)

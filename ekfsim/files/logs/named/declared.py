@@ -146,7 +146,7 @@ id,x,y
             files=TRUTH,
             columns=(TIME, X, Y, HEADING.but(name="theta", also=())),
             told="Or a TUM file: t x y z qx qy qz qw without names. Without `theta` the heading is "
-            "the course, and told.",
+            "the course, half a turn from it in reverse, and told.",
             example=GROUNDTRUTH.example.replace("heading", "theta"),
         ),
     ),

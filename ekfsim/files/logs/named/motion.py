@@ -12,6 +12,7 @@ from ekfsim.files.logs.ordering import apart, step_of, tell_gaps
 from ekfsim.files.logs.table import Rows, some
 from ekfsim.files.logs.timeline import Motions
 from ekfsim.files.logs.truth import Truth
+from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.angles import wrap
 
 ADDABLE = ("speeds", "wheels", "way")  # 0 is standstill in each column
@@ -42,6 +43,25 @@ def rows_of(table: Table, asked: Asked) -> Rows:
     names = (*COLUMNS[form], *gyro, *before)
     rows = table.rows(("t", *names), asked, maybe=frozenset(names))
     return some(_with_motion(rows, asked.warnings), "what the robot did")
+
+
+def in_reverse(table: Table, rows: Rows, t: Array) -> Booleans:
+    """Whether the robot drives backwards at some instants t : (n,), by what a table tells of its
+    motion; where it stands, as it drove before.
+    """
+    match form_of(table):
+        case "speeds" | "way":
+            ahead = rows.values[:, 1]
+        case "wheels":
+            ahead = rows.values[:, 1] + rows.values[:, 2]
+        case _:
+            return np.zeros(len(t), bool)
+    order = np.argsort(rows.t, kind="stable")
+    order = order[ahead[order] != 0]
+    if not len(order):
+        return np.zeros(len(t), bool)
+    row = np.searchsorted(rows.t[order], t, side="right") - 1
+    return np.asarray(ahead[order][np.maximum(row, 0)] < 0)
 
 
 def _with_motion(rows: Rows, warnings: list[str]) -> Rows:

@@ -9,12 +9,14 @@ import numpy as np
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.named.files import Sources
+from ekfsim.files.logs.named.motion import in_reverse
 from ekfsim.files.logs.named.opening.opened import opened
 from ekfsim.files.logs.named.opening.ordered import after
 from ekfsim.files.logs.named.tables import Source, Table
 from ekfsim.files.logs.table import Rows, Wanted, bare_table, is_number
 from ekfsim.files.logs.truth import Truth, truth_of
 from ekfsim.geometry import Array
+from ekfsim.geometry.angles import wrap
 from ekfsim.systems.instrument import Landmark
 
 TUM = Wanted(("t", "x", "y", "qx", "qy", "qz", "qw"), (0, 1, 2, 4, 5, 6, 7), range(8, 9))
@@ -97,9 +99,14 @@ def _poses(source: Source, tables: list[Table], asked: Asked, motion: Table, bes
     if table.has("theta"):
         return table.rows(POSE, asked, beside)
     rows = table.rows(POSE[:3], asked, beside)
-    told = "it tells no heading (theta): taken from the course, so errors of it are not to be taken"
-    asked.warnings.append(f"{table.file}: {told} for the robot's own where it slides or backs up")
-    return replace(rows, values=np.column_stack([rows.values, course_of(rows.values[:, 1:3])]))
+    course = course_of(rows.values[:, 1:3])
+    back = in_reverse(motion, beside, rows.t)
+    backs = ", half a turn from it where the robot drives in reverse" if back.any() else ""
+    told = (
+        f"it tells no heading (theta): taken from the course{backs}, so errors of it are not to be"
+    )
+    asked.warnings.append(f"{table.file}: {told} taken for the robot's own where it slides")
+    return replace(rows, values=np.column_stack([rows.values, wrap(course + np.pi * back)]))
 
 
 def course_of(places: Array) -> Array:
