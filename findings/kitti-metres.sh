@@ -12,7 +12,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
-"$folder/venv/bin/pip" install -q pykitti==0.3.1 pymap3d==3.2.0 pyproj==3.7.2 opencv-python-headless==5.0.0.93 numpy==2.4.6 \
+"$folder/venv/bin/pip" install -q pykitti==0.3.1 pymap3d==3.2.0 pyproj==3.7.2 \
+  opencv-python-headless==5.0.0.93 numpy==2.4.6 \
   2> "$folder/pip.log" || { cat "$folder/pip.log"; exit 1; }
 cd "$folder"
 MPLBACKEND=Agg "$folder/venv/bin/python" -W ignore - <<'PYTHON'
