@@ -15,14 +15,15 @@ NO_ROW = re.compile(r"[\[\]{}|]|:\s|:$")  # what stands in texts, in no row of a
 FEWEST = 2  # numbers in a row
 METADATA = re.compile(r"rosbag2_bagfile_information:\s")
 BAG_FILES = ("metadata.yaml", "*.db3", "*.mcap", "*.bag")
-LOGS = (  # a format, the files by which it is known, and the commands that read it
-    ("gnss", ("wheelspeeds*.csv",), "gnss_log"),
-    ("mower", ("*poselog.txt",), "mower_log"),
-    ("mrclam", ("*Odometry.dat",), "mrclam_log"),
+# a format, the files without which its reader tells what is missing, and the commands that read it
+LOGS = (
+    ("gnss", ("wheelspeeds*.csv", "gnss*.csv"), "gnss_log"),
+    ("mower", ("*poselog.txt", "*angles.txt", "*map.txt"), "mower_log"),
+    ("mrclam", ("*Odometry.dat", "*Measurement.dat"), "mrclam_log"),
     ("ranges", ("odometry*.csv", "ranges*.csv", "nodes*.csv"), "ranges_log"),
     ("pioneer", ("odometry*.csv", "ultrasonic*.csv"), "pioneer_log"),
     ("classroom", ("entries.csv",), "tour"),
-    ("log", ("motion*.csv",), "log"),
+    ("log", ("motion*.csv", "readings*.csv"), "log"),
     ("log", ("odometry*.csv", "readings*.csv"), "log"),
 )
 SEPARATORS = re.compile(r"[,;\t ]+")
