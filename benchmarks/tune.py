@@ -11,6 +11,7 @@ trial asks for waits until all have asked.
 import sys
 import time
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from queue import SimpleQueue
 from threading import Thread
@@ -22,7 +23,8 @@ from ekfsim.fitting import abreast
 from ekfsim.fitting.estimate import Fit, fit
 from ekfsim.fitting.likelihood import Likelihood
 from ekfsim.fitting.noises import NoiseNumber, Retold, noises_of
-from ekfsim.geometry import Array, Integers
+from ekfsim.fitting.trial import OUTLIERS
+from ekfsim.geometry import Array
 from ekfsim.localization import entries_of, first_belief
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.scene import Scene
@@ -43,7 +45,6 @@ def landmarks() -> Scene:
 
 
 SCENES = {"classroom": classroom, "landmarks": landmarks}
-Asked = tuple[int, Array | None]  # a trial, and the numbers that it wants tried; None at its end
 
 
 class Logs:
@@ -51,88 +52,110 @@ class Logs:
 
     def __init__(self, scene: Scene, trials: int) -> None:
         self.entries = tuple(entries_of(scene, np.arange(trials)))
-        entries = tuple(_of_one(entry) for entry in self.entries)
+        entries = tuple(_of_one(entry, 0) for entry in self.entries)
         told = replace(scene, log=Log(entries, first_belief(scene)))
         self.truth = noises_of(told)
         self.scene = Retold(told, self.truth).with_([2 * one.value for one in self.truth])
         self.retold = Retold(self.scene, noises_of(self.scene))
 
-    def costs(self, values: Array, which: Integers) -> Array:
-        """−ln p of the log of trial which (m), under numbers (m, n) : (m)"""
-        found = []
-        for part in np.array_split(np.arange(len(which)), len(which) // ROWS + 1):
-            scene = abreast.side_by_side(self.retold, values[part])
-            assert scene.log is not None
-            entries = tuple(
-                _of_trials(one, given, which[part])
-                for one, given in zip(scene.log.entries, self.entries, strict=True)
-            )
-            scene = replace(scene, log=replace(scene.log, entries=entries))
-            found.append(Likelihood().of_runs(scene, len(part)))
-        return np.concatenate(found)
+    def of(self, trial: int) -> Scene:
+        """One of them alone."""
+        entries = tuple(_of_one(entry, trial) for entry in self.entries)
+        return replace(self.scene, log=Log(entries, first_belief(self.scene)))
+
+    def costs(self, values: Array, whose: "list[Waiting]") -> Array:
+        """−ln p of the log of trial whose[i], under numbers (m, n) : (m)"""
+        found = np.empty(len(values))
+        for gate in {one.gate for one in whose}:
+            rows = np.flatnonzero([one.gate == gate for one in whose])
+            for part in np.array_split(rows, len(rows) // ROWS + 1):
+                mine = [whose[row] for row in part]
+                scene = abreast.side_by_side(self.retold, values[part])
+                assert scene.log is not None
+                entries = tuple(
+                    _of_trials(one, given, mine)
+                    for one, given in zip(scene.log.entries, self.entries, strict=True)
+                )
+                scene = replace(scene, log=replace(scene.log, entries=entries))
+                found[part] = Likelihood(gate=gate).of_runs(scene, len(part))
+        return found
 
 
-def _of_one(entry: Entry) -> Entry:
-    """What the first trial was given."""
+def _of_one(entry: Entry, trial: int) -> Entry:
+    """What one trial was given."""
     match entry.given:
         case Control(motion, u):
-            return Entry(entry.index, Control(motion, u[0]), t=entry.t)
+            return Entry(entry.index, Control(motion, u[trial]), t=entry.t)
         case Reading(sensor, z, name):
-            return Entry(entry.index, Reading(sensor, z[0], name), t=entry.t)
+            return Entry(entry.index, Reading(sensor, z[trial], name), t=entry.t)
     return Entry(entry.index, None, t=entry.t)
 
 
-def _of_trials(entry: Entry, all_of_it: Entry, which: Integers) -> Entry:
-    """The models of an entry, with what each of some trials was given."""
+def _of_trials(entry: Entry, all_of_it: Entry, whose: "list[Waiting]") -> Entry:
+    """The models of an entry, with what each of some trials was given; nan is left out."""
+    which = [one.trial for one in whose]
     match entry.given, all_of_it.given:
         case Control(motion), Control(_, u):
             return replace(entry, given=Control(motion, u[which]))
         case Reading(sensor), Reading(_, z, name):
-            return replace(entry, given=Reading(sensor, z[which], name))
+            out = np.array([entry.index in one.out for one in whose])
+            return replace(
+                entry, given=Reading(sensor, np.where(out[:, None], np.nan, z[which]), name)
+            )
     return entry
 
 
 @dataclass(frozen=True)
 class Waiting(Likelihood):
-    """The likelihood of one trial's log, which others work out."""
+    """The likelihood of one trial's log, which is worked out beside the others'."""
 
     trial: int = 0
+    logs: Logs | None = None
     asked: "SimpleQueue[Asked]" = field(default_factory=SimpleQueue)
     answered: "SimpleQueue[Array]" = field(default_factory=SimpleQueue)
 
     def of_all(self, retold: Retold, values: Array, until: int) -> Array:
         """Under each of N sets of numbers : (N, n) → (N)"""
-        self.asked.put((self.trial, values))
+        self.asked.put((self, values))
         return self.answered.get()
+
+    def refused(
+        self, gate: float, retold: Retold, values: Sequence[float], until: int
+    ) -> frozenset[int]:
+        """The indices of the entries that a gate refuses."""
+        assert self.logs is not None
+        own = Retold(self.logs.of(self.trial), retold.numbers)
+        return super().refused(gate, own, values, until)
+
+
+Asked = tuple[Waiting, Array | None]  # who asks, and the numbers to be tried; None at the end
 
 
 def fits(logs: Logs, trials: int) -> list[Fit]:
     """What is found in each log."""
     asked: SimpleQueue[Asked] = SimpleQueue()
-    waiting = [Waiting(trial=trial, asked=asked, answered=SimpleQueue()) for trial in range(trials)]
     found: dict[int, Fit] = {}
 
     def one(mine: Waiting) -> None:
         try:
-            found[mine.trial] = fit(logs.retold, len(logs.entries), None, likelihood=mine)
+            found[mine.trial] = fit(logs.retold, len(logs.entries), OUTLIERS, likelihood=mine)
         finally:
-            asked.put((mine.trial, None))
+            asked.put((mine, None))
 
-    for mine in waiting:
+    for trial in range(trials):
+        mine = Waiting(trial=trial, logs=logs, asked=asked)
         Thread(target=one, args=(mine,), daemon=True).start()
     still = trials
     while still:
         turn = [asked.get() for _ in range(still)]
-        wanted = [(trial, values) for trial, values in turn if values is not None]
+        wanted = [(mine, values) for mine, values in turn if values is not None]
         still = len(wanted)
         if wanted:
             sizes = [len(values) for _, values in wanted]
-            which = np.repeat([trial for trial, _ in wanted], sizes)
-            costs = logs.costs(np.concatenate([values for _, values in wanted]), which)
-            for (trial, _), part in zip(
-                wanted, np.split(costs, np.cumsum(sizes)[:-1]), strict=True
-            ):
-                waiting[trial].answered.put(part)
+            whose = [mine for mine, values in wanted for _ in values]
+            costs = logs.costs(np.concatenate([values for _, values in wanted]), whose)
+            for (mine, _), part in zip(wanted, np.split(costs, np.cumsum(sizes)[:-1]), strict=True):
+                mine.answered.put(part)
     return [found[trial] for trial in range(trials)]
 
 

@@ -2,15 +2,14 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ekfsim.fitting.likelihood import Likelihood, refused_by
+from ekfsim.fitting.likelihood import Likelihood
 from ekfsim.fitting.noises import NoiseNumber, Retold
 from ekfsim.fitting.search import Bowl, Costs, ends, lowest
 from ekfsim.geometry import Array, Integers
-from ekfsim.scene import Scene
 
 FAR = math.log(1e3)  # from where it begins a number is looked for up to so many times as far
 NOTHING = math.log(50.0)  # a number so many times less than the best is as good as 0
@@ -71,10 +70,10 @@ def fit(
     best = lowest(costs, start[kept], FAR)
     for _ in range(ROUNDS if gate is not None else 0):
         assert gate is not None
-        out = refused_by(gate, trials.scene(within(start, kept, best.at)))
+        out = trials.refused(gate, within(start, kept, best.at))
         if out == trials.likelihood.out:
             break
-        trials.likelihood = Likelihood(out, gate if out else None)
+        trials.likelihood = replace(trials.likelihood, out=out, gate=gate if out else None)
         best = lowest(costs, best.at, FAR)
     numbers = [asked[i] for i in kept]
     found = tuple(intervals(numbers, costs, best))
@@ -90,9 +89,9 @@ class Trials:
         self.retold, self.until, self.heard = retold, until, heard
         self.likelihood, self.count = likelihood, 0
 
-    def scene(self, logs: Array) -> Scene:
-        """The part of the log that is looked at, under numbers of these logarithms."""
-        return self.retold.with_(np.exp(logs).tolist(), self.until)
+    def refused(self, gate: float, logs: Array) -> frozenset[int]:
+        """The indices of the entries that a gate refuses under numbers of these logarithms."""
+        return self.likelihood.refused(gate, self.retold, np.exp(logs).tolist(), self.until)
 
     def costs(self, logs: Array) -> Array:
         """−ln p under each of m sets of numbers, by their logarithms (m, n) : (m)"""

@@ -2,7 +2,7 @@
 Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 5.4).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -61,6 +61,12 @@ class Likelihood:
             if c is not None:
                 total += np.where(c.refused == Refused.NOT, self._of(c), 0.0)
         return np.where(np.isfinite(total), total, IMPOSSIBLE)
+
+    def refused(
+        self, gate: float, retold: Retold, values: Sequence[float], until: int
+    ) -> frozenset[int]:
+        """The indices of the entries that a gate refuses under a set of numbers."""
+        return refused_by(gate, retold.with_(values, until))
 
     def _of(self, c: Correction) -> Array:
         """½ (νᵀ S⁻¹ ν + ln det S) : (…), 0 of a reading of which the filter was certain"""

@@ -15,6 +15,7 @@ from ekfsim.records import Log, Reading
 from ekfsim.scene import Scene
 
 LEAST = 40  # readings of a log
+OUTLIERS = 0.999  # the gate of a fit where the file has none: an outlier is no noise
 CLEARLY = 5.0  # of −ln p: what was told right may well do better than what is fitted, by less
 
 
@@ -104,7 +105,7 @@ def tried(
         raise UsageError(f"{scene.commands_source}: {len(read)} readings tell no noise; "
                          f"at least {LEAST} are wanted")  # fmt: skip
     until = read[len(read) // 2]
-    fitted = fit(Retold(whole, numbers), until, whole.gate, heard)
+    fitted = fit(Retold(whole, numbers), until, whole.gate or OUTLIERS, heard)
     names, values = [one.number for one in fitted.found], fitted.values
     tuned = Retold(whole, tuple(names)).with_(values)
     index = whole.log.entries[until].index

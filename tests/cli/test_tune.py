@@ -15,6 +15,7 @@ from ekfsim.fitting.noises import Retold, noises_of
 from ekfsim.fitting.trial import recorded, tried
 from ekfsim.fitting.written import UNLIKE, WORSE
 from ekfsim.localization import play
+from ekfsim.records import Reading
 from ekfsim.views.fitting.words import conclude
 
 KEYS = [f"noise.{name}SigmaRatio" for name in ("odometryDst", "odometryAng", "range")]
@@ -56,6 +57,20 @@ def test_a_gate_does_not_fool_it():
     found = fit(Retold(off, noises_of(off)[2:]), len(off.log.entries), 0.99)
     assert found.found[0].low <= beam[0].value <= found.found[0].high
     assert len(found.left_out) < 5
+
+
+def test_an_outlier_tells_no_noise_though_the_file_has_no_gate():
+    scene = recorded(laps(1))
+    assert scene.gate is None
+    entries = list(scene.log.entries)
+    at = next(n for n, one in enumerate(entries) if n > 20 and isinstance(one.given, Reading))
+    far = replace(entries[at].given, z=entries[at].given.z + 1.0)
+    entries[at] = replace(entries[at], given=far)
+    with_it = replace(scene, log=replace(scene.log, entries=tuple(entries)))
+    trial, clean = tried(with_it, KEYS[2:]), tried(scene, KEYS[2:])
+    assert trial.fit.left_out == clean.fit.left_out | {entries[at].index}
+    assert trial.fit.values == pytest.approx(clean.fit.values, rel=0.1)
+    assert "1 reading beyond a gate of 0.999 told nothing" in conclude(trial)
 
 
 def test_what_a_gate_leaves_has_a_smaller_variance():

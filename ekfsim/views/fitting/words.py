@@ -6,7 +6,7 @@ from ekfsim.diagnostics.verdict import BAND
 from ekfsim.filters.arithmetic.chi_square import band
 from ekfsim.fitting.estimate import Estimate
 from ekfsim.fitting.noises import told_by_readings
-from ekfsim.fitting.trial import Judged, Trial
+from ekfsim.fitting.trial import OUTLIERS, Judged, Trial
 from ekfsim.fitting.written import doubts
 from ekfsim.printable import in_a_line
 from ekfsim.views.words.text_table import aligned, folded
@@ -34,8 +34,9 @@ def conclude(trial: Trial, width: int | None = None) -> str:
                         width)  # fmt: skip
     if fitted.left_out:
         n = len(fitted.left_out)
-        lines += folded(f"{n} reading{'s' if n > 1 else ''} that the gate refuses "
-                        "told nothing", width)  # fmt: skip
+        gate = trial.scene.gate
+        whose = "that the gate refuses" if gate else f"beyond a gate of {OUTLIERS}"
+        lines += folded(f"{n} reading{'s' if n > 1 else ''} {whose} told nothing", width)
     lines += ["", *folded("On the second half, which was held back:", width)]
     for name, half in (("as it was told", trial.before), ("as fitted", trial.after)):
         lines += folded(f"  {name}: {nis(half)}; innovations are {sentence(half.found)}", width)
