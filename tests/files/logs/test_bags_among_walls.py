@@ -112,7 +112,7 @@ def test_each_reading_is_what_shapely_casts_along_its_beam(tmp_path):
     for entry in readings(loaded(path, room(sensor(mount=FRONT)))):
         x = np.array(entry.truth)
         r, h = entry.given.z[0], entry.given.sensor.h(x)[0]
-        bearing = float(entry.given.name.removeprefix("ultrasonic at ").removesuffix("°"))
+        bearing = float(entry.given.name.removeprefix("ultrasonic ").removesuffix("°"))
         assert abs(math.remainder(bearing, 60)) <= 1.01  # of a scanner with a beam each 2°
         expected = cast(x, FRONT, math.radians(bearing))
         expected = expected if expected < 4 else math.nan

@@ -100,7 +100,7 @@ def test_beams_among_walls_point_anywhere_and_may_meet_none(tmp_path):
     assert (len(steps), len(used)) == (7, 5)
     assert max(step.correction.nis for step in used) < 1e-20
     assert [step.entry.given.sensor.bearing for step in used][-1] == pytest.approx(math.pi / 6)
-    assert steps[0].entry.given.name == "ultrasonic at 0°"
+    assert steps[0].entry.given.name == "ultrasonic 0°"
 
 
 def test_rows_of_several_sensors_stand_in_one_table(tmp_path):

@@ -52,7 +52,7 @@ class Fitting:
         if math.isnan(bearing):
             return None
         some = next(iter(self.targets.values()))
-        name = f"{self.instrument.called} at {math.degrees(bearing):.6g}°"
+        name = f"{self.instrument.called} {math.degrees(bearing):.6g}°"
         return some._replace(name=name, sensor=turned_to(some.sensor, bearing))
 
     def z(self, numbers: Array) -> Array:
