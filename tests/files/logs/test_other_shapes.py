@@ -218,3 +218,24 @@ def test_a_truth_without_headings_looks_ahead_where_the_robot_drives_in_reverse(
     steps, scene, told = played(tmp_path, width if columns == "left,right" else "")
     assert np.abs(errors(steps, scene.world.layout)[:, 2]).max() < 0.06
     assert any("half a turn from it where the robot drives in reverse" in one for one in told)
+
+
+def test_tables_that_rostopic_writes_need_no_map(tmp_path):
+    """`rostopic echo -p`: a comment of names with dots, stamps in ns, quaternions."""
+    poses = arc()
+    names = [f"position.{one}" for one in "xyz"] + [f"orientation.{one}" for one in "xyzw"]
+    rows = []
+    for t, x, y, θ in poses.tolist():
+        stamp = 1_600_000_000_000_000_000 + round(t * 1e9)
+        q = f"0.0,0.0,{math.sin(θ / 2)!r},{math.cos(θ / 2)!r}"
+        rows.append(f"{stamp},{stamp},odom,{x!r},{y!r},0.0,{q}")
+    files = {}
+    for name, part in (("motion.csv", "field.pose.pose."), ("truth.csv", "field.pose.")):
+        head = ["%time", "field.header.stamp", "field.header.frame_id", *(part + n for n in names)]
+        files[name] = "\n".join([",".join(head), *rows, ""])
+    seen_at = perfect(poses + np.array([1.6e9, 0, 0, 0]))
+    lay(tmp_path / "log", **files, **{"readings.csv": seen_at, "landmarks.csv": CORNERS})
+    steps, scene, _ = played(tmp_path, "")
+    assert np.abs(errors(steps, scene.world.layout)).max() < 1e-9
+    assert sum(step.correction is not None for step in steps) == 20
+    assert max(step.correction.nis for step in steps if step.correction) < 1e-9

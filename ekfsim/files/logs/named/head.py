@@ -6,12 +6,10 @@ from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.keys.columns import COLUMNS
 from ekfsim.files.logs.header import separator_of
 from ekfsim.files.logs.table import is_number
-from ekfsim.files.logs.tables.names import OTHERS, named
+from ekfsim.files.logs.tables.names import OF_A_POSE, OTHERS, named
 from ekfsim.files.logs.text import first_line
 from ekfsim.files.yaml.telling import quoted
 
-# what stands before the name of a field in a table of ROS messages
-OF_A_POSE = ("pose_", "pose_pose_", "field_pose_", "field_pose_pose_")
 ALSO = {  # how else a first line may call a column, which is not told
     "t": ("time", "timestamp", "stamp"),
     "v": ("speed",),
@@ -23,7 +21,7 @@ ALSO = {  # how else a first line may call a column, which is not told
     "latitude": ("lat", "gps_lat", "field_latitude"),
     "longitude": ("lon", "lng", "long", "gps_lon", "field_longitude"),
     **{
-        f"q{one}": (f"orientation_{one}", *(f"{of}orientation_{one}" for of in OF_A_POSE))
+        f"q{one}": tuple(f"{of}orientation_{one}" for of in ("", "pose_", *OF_A_POSE))
         for one in "xyzw"
     },
     "id": ("name", "landmark", "node", "marker", "subject"),

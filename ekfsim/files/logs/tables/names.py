@@ -3,24 +3,33 @@
 import re
 from typing import NamedTuple
 
+# what stands before the name of a field in a table of ROS messages
+OF_A_POSE = ("pose_pose_", "field_pose_", "field_pose_pose_")
+OF_A_TWIST = ("twist_", "twist_twist_", "field_", "field_twist_", "field_twist_twist_")
 # names that leave no doubt, in small letters with _ for what stands between words
 OTHERS = {
     "t": (
         "times", "timestamp", "stamp", "time_stamp", "header_stamp", "secs", "seconds", "sec",
         "epoch", "unix", "unix_time", "utc",
     ),
-    "x": ("easting", "east", "pos_x", "x_pos", "position_x", "px", "east_m", "pose_x"),
-    "y": ("northing", "north", "pos_y", "y_pos", "position_y", "py", "north_m", "pose_y"),
+    "x": ("easting", "east", "pos_x", "x_pos", "position_x", "px", "east_m", "pose_x",
+        *(f"{of}position_x" for of in OF_A_POSE),
+    ),
+    "y": ("northing", "north", "pos_y", "y_pos", "position_y", "py", "north_m", "pose_y",
+        *(f"{of}position_y" for of in OF_A_POSE),
+    ),
     "heading": ("yaw", "orientation", "psi", "th", "theta_z", "pose_theta", "azimuth"),
     "yaw": ("heading", "theta", "psi", "orientation"),
     "vl": ("left", "v_left", "vleft", "left_speed", "speed_left", "left_velocity", "v_l"),
     "vr": ("right", "v_right", "vright", "right_speed", "speed_right", "right_velocity", "v_r"),
     "left": ("dl", "d_left", "left_distance", "distance_left", "delta_left"),
     "right": ("dr", "d_right", "right_distance", "distance_right", "delta_right"),
-    "speed": ("v", "velocity", "forward_velocity", "linear", "linear_velocity", "linear_x", "vx"),
+    "speed": ("v", "velocity", "forward_velocity", "linear", "linear_velocity", "linear_x", "vx",
+        *(f"{of}linear_x" for of in OF_A_TWIST),
+    ),
     "turn rate": (
         "omega", "w", "angular", "angular_velocity", "angular_z", "yaw_rate", "yawrate", "wz",
-        "turn_rate",
+        "turn_rate", *(f"{of}angular_z" for of in OF_A_TWIST),
     ),
     "distance": ("d", "dist", "ds", "delta_distance", "delta_d"),
     "dheading": (

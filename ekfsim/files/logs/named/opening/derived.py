@@ -30,7 +30,7 @@ def with_derived(table: Table, origin: OriginKeys | None, with_fixes: bool) -> T
         table = _with(table, ("t",), lambda row: [_date(row[place])])
     quaternion = TURNED if table.has(*TURNED) else UPRIGHT
     if table.has(*quaternion) and _place(table, "theta") is None:
-        places = [table.places[name] for name in quaternion]
+        places = [table.places[table.known_as(name) or ""] for name in quaternion]
         table = _with(table, ("theta",), lambda row: [_heading([_number(row[p]) for p in places])])
     if with_fixes and table.has(*EARTH) and not table.has(*PLANE):
         table = _on_plane(table, origin)
