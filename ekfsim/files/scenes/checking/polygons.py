@@ -107,8 +107,8 @@ class FloorPlan:
         self._told += [f"on the wall {quoted(name)}" for name, _ in walls]
         self._tree = shapely.STRtree(
             [
-                *_shapes([np.asarray(points, dtype=float) for _, points in areas]),
-                *(shapely.LineString(points) for _, points in walls),
+                *_areas([np.asarray(points, dtype=float) for _, points in areas]),
+                *_lines([np.asarray(points, dtype=float) for _, points in walls]),
             ]
         )
 
@@ -136,12 +136,16 @@ class FloorPlan:
                 yield f"{where} inside the obstacle {quoted(name)} or on its wall"
 
 
-def _shapes(outlines: list[Array]) -> list[Any]:
-    """The polygons of Shapely, made all at once:
+def _areas(outlines: list[Array]) -> list[Any]:
+    """The polygons of Shapely."""
+    return list(shapely.polygons(_lines(outlines, shapely.linearrings))) if outlines else []
+
+
+def _lines(corners: list[Array], made: Any = shapely.linestrings) -> Any:
+    """The lines of Shapely, made all at once:
     one by one they take the longest of all that a file is asked.
     """
-    if not outlines:
+    if not corners:
         return []
-    owners = np.repeat(np.arange(len(outlines)), [len(corners) for corners in outlines])
-    made: Any = shapely.polygons(shapely.linearrings(np.concatenate(outlines), indices=owners))
-    return list(made)
+    owners = np.repeat(np.arange(len(corners)), [len(each) for each in corners])
+    return made(np.concatenate(corners), indices=owners)
