@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from fnmatch import fnmatchcase
 from typing import NamedTuple, get_args
 
-from ekfsim.files.keys.recording import LogFormat
+from ekfsim.files.keys.recorded.recording import LogFormat
 
 ENOUGH = 4096  # bytes from the beginning, by which a file is recognised
 NUMBERS = re.compile(r"[-+\d.eEnaif]+")

@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 
 from ekfsim.files.given.given import Given
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.scenes.overruling import of_log, overruled
 from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.source import as_written

@@ -19,7 +19,7 @@ from ekfsim.files.keys.fields import (
     Strict,
     Text,
 )
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.filters.tuning import MOST_PARTICLES, CrossCovariances, RangeVariance, Tuning
 
 if TYPE_CHECKING:

@@ -104,7 +104,8 @@ class Late:
         return no_info_plain_validator_function(lambda value: self.reader.validate_python(value))
 
 
-WITH_LATE = ("ekfsim.files.keys.recording",)  # whose models, parts of others, have late parts
+# whose models, parts of others, have late parts
+WITH_LATE = ("ekfsim.files.keys.recorded.recording",)
 
 
 def whole(model: type[BaseModel]) -> type[BaseModel]:

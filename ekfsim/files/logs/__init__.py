@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.recording import BAG, SYSTEM_OF, RecordingKeys, misfit
+from ekfsim.files.keys.recorded.recording import BAG, SYSTEM_OF, RecordingKeys, misfit
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.bags.bag import read_bag
 from ekfsim.files.logs.bags.declared import BAGS

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.systems.document import DocumentReading
 from ekfsim.world import World
 

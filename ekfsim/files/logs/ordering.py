@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ekfsim.files.keys.recording import SameTime
+from ekfsim.files.keys.recorded.recording import SameTime
 from ekfsim.files.logs.table import Rows
 from ekfsim.geometry import Array, Booleans, Integers
 

@@ -12,7 +12,7 @@ from ekfsim.files.keys.commands import (
     WAYS,
     CommandsKeys,
 )
-from ekfsim.files.keys.recording import WITH_LANDMARKS, RecordingKeys
+from ekfsim.files.keys.recorded.recording import WITH_LANDMARKS, RecordingKeys
 from ekfsim.files.keys.world import WorldKeys
 from ekfsim.files.packaged import packaged, resolve, source_name, world_beside
 from ekfsim.files.scenes.building import world_of

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from ekfsim.errors import InputError, UsageError
 from ekfsim.files.given.given import Given
-from ekfsim.files.keys.recording import ANY, BAG, OF_ANY_ROBOT, LogFormat, RecordingKeys
+from ekfsim.files.keys.recorded.recording import ANY, BAG, OF_ANY_ROBOT, LogFormat, RecordingKeys
 from ekfsim.files.looking import is_folder, read_from
 from ekfsim.files.packaged import source_name
 from ekfsim.files.scenes.checking.checks import Sound

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scenes import SILENT
 
-from ekfsim.files.keys.recording import SYSTEM_OF, RecordingKeys
+from ekfsim.files.keys.recorded.recording import SYSTEM_OF, RecordingKeys
 from ekfsim.files.logs import read_log
 from ekfsim.filters.belief import posed
 from ekfsim.geometry.angles import wrap

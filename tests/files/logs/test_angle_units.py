@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from log_worlds import errors, lay, shared, steps_of, world
 
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.logs import read_log
 from ekfsim.files.logs.tables.angles import are_degrees_of_course
 from ekfsim.records import Reading

@@ -7,7 +7,7 @@ import pytest
 from bags import KINDS, LAT, LON, Messages, namespace, written
 
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.topics import TopicsKeys
+from ekfsim.files.keys.recorded.topics import TopicsKeys
 from ekfsim.files.logs.bags.fixes import fixes_of
 from ekfsim.files.logs.bags.marks import marks_in
 from ekfsim.files.logs.bags.scans import beams_of

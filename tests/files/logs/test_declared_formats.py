@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from log_worlds import CLOSET, MARKS, PYLON, lay, world
 
 from ekfsim.cli import ekfsim
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.logs import DECLARED, FORMATS, read_log
 from ekfsim.files.logs.tables.telling import page
 from ekfsim.files.packaged import packaged

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from log_worlds import lay, read, shared, steps_of, table, world
 
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.logs import read_log, write_log
 from ekfsim.files.logs.start.course import ALL_ROUND, APART, FILTERS, course_of
 from ekfsim.files.packaged import resolve

@@ -8,7 +8,7 @@ from log_worlds import SHARED, lay, read, steps_of, world
 from log_worlds import rmse as rmse_of
 
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.logs import read_log
 from ekfsim.files.packaged import resolve
 from ekfsim.files.scenes.load import read_scene

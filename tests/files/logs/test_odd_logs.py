@@ -10,7 +10,7 @@ import pytest
 from log_worlds import MARKS, lay, read, table, world
 
 from ekfsim.errors import InputError, UsageError
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.logs import read_log
 from ekfsim.files.packaged import resolve
 from ekfsim.files.scenes.load import read_scene

@@ -8,7 +8,7 @@ import pytest
 from log_worlds import CLOSET, MARKS, PYLON, read, world
 
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.logs import read_log, write_log
 from ekfsim.localization import play
 from ekfsim.records import Control

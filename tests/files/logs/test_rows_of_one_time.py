@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from log_worlds import SHARED, lay, read, rmse, shared, steps_of, table, world
 
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.logs import read_log
 from ekfsim.files.logs.ordering import apart
 from ekfsim.files.logs.table import Rows

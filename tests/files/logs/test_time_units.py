@@ -7,7 +7,7 @@ import pytest
 from log_worlds import lay, world
 
 from ekfsim.errors import LogRemark
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.logs import read_log
 from ekfsim.files.logs.tables.stamps import to_seconds, unit_beside, unit_of_motion
 from ekfsim.files.scenes.load import load_scene

@@ -20,7 +20,7 @@ from ekfsim.files.keys import system as system_file
 from ekfsim.files.keys import world as world_file
 from ekfsim.files.keys.faults import FaultySensorsKeys
 from ekfsim.files.keys.fields import SystemName, aliases, whole
-from ekfsim.files.keys.recording import OF_ANY_ROBOT, SYSTEM_OF, LogFormat
+from ekfsim.files.keys.recorded.recording import OF_ANY_ROBOT, SYSTEM_OF, LogFormat
 from ekfsim.files.keys.sensors import SENSORS, SensorKeys
 from ekfsim.files.keys.system import RobotKeys, fields_of, robot_fields
 from ekfsim.files.keys.told import ToldSensorsKeys

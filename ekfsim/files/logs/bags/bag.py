@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.columns import MotionKeys, ReadingsKeys, TableKeys
-from ekfsim.files.keys.recording import RecordingKeys
-from ekfsim.files.keys.topics import TopicsKeys
+from ekfsim.files.keys.recorded.columns import MotionKeys, ReadingsKeys, TableKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
+from ekfsim.files.keys.recorded.topics import TopicsKeys
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.bags.fixes import first_place
 from ekfsim.files.logs.bags.opening import opened

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from ekfsim.files.given.given import Given
-from ekfsim.files.keys.recording import RecordingKeys
-from ekfsim.files.keys.topics import TopicsKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
+from ekfsim.files.keys.recorded.topics import TopicsKeys
 from ekfsim.files.logs.bags.opening import opened
 from ekfsim.files.logs.bags.topics import topics_of
 

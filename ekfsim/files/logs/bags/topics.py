@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.topics import SensorTopicKeys, TopicsKeys
+from ekfsim.files.keys.recorded.topics import SensorTopicKeys, TopicsKeys
 from ekfsim.files.yaml.telling import nearest, quoted
 
 ODOMETRY = "nav_msgs/msg/Odometry"

@@ -17,7 +17,7 @@ import numpy as np
 from ekfsim.commands import Sense, Untold
 from ekfsim.errors import InputError, Mistake, Place
 from ekfsim.files.keys.fields import FAR, FARTHEST
-from ekfsim.files.keys.recording import AngleUnit
+from ekfsim.files.keys.recorded.recording import AngleUnit
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.degrees import radians
 from ekfsim.files.logs.folder import find, find_any, folder_of

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ekfsim.files.keys.recording import TurnTruth
+from ekfsim.files.keys.recorded.recording import TurnTruth
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.folder import find, folder_of
 from ekfsim.files.logs.formats.groundtruth import GROUNDTRUTH, TIME, X, Y, read_truth

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.columns import MotionKeys, ReadingsKeys, TableKeys
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.columns import MotionKeys, ReadingsKeys, TableKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.logs.folder import find, find_any
 from ekfsim.files.logs.named.opening.opened import first_place
 from ekfsim.files.logs.named.tables import Source

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ekfsim.errors import InputError, Mistake, Place
-from ekfsim.files.keys.columns import COLUMNS
+from ekfsim.files.keys.recorded.columns import COLUMNS
 from ekfsim.files.logs.header import separator_of
 from ekfsim.files.logs.table import is_number
 from ekfsim.files.logs.tables.names import OF_A_POSE, OTHERS, named

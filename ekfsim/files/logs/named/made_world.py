@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from ekfsim.files.given.given import Given
-from ekfsim.files.keys.columns import ReadingsKeys
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.columns import ReadingsKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.logs.folder import find_any
 from ekfsim.files.logs.named.files import files_of
 from ekfsim.files.logs.named.inputs import WANTED, Form

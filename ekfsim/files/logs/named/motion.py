@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ekfsim.files.keys.columns import MotionKeys
+from ekfsim.files.keys.recorded.columns import MotionKeys
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.named.inputs import COLUMNS, WANTED, Form, Held, amounts_of, inputs_of
 from ekfsim.files.logs.named.tables import Table

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ekfsim.errors import InputError, Mistake, Place
-from ekfsim.files.keys.columns import ReadingsKeys
+from ekfsim.files.keys.recorded.columns import ReadingsKeys
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.named.sigmas import as_sure, columns_of_sigmas, sigmas_of
 from ekfsim.files.logs.named.tables import Table

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ekfsim.errors import InputError, Mistake, Place
-from ekfsim.files.keys.columns import UNITS, TableKeys
-from ekfsim.files.keys.recording import RecordingKeys
+from ekfsim.files.keys.recorded.columns import UNITS, TableKeys
+from ekfsim.files.keys.recorded.recording import RecordingKeys
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.named.head import ALSO, meant
 from ekfsim.files.logs.table import Rows, Wanted

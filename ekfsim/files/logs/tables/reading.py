@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ekfsim.files.keys.columns import UNITS
+from ekfsim.files.keys.recorded.columns import UNITS
 from ekfsim.files.logs.asked import Asked
 from ekfsim.files.logs.table import Rows, sane, values_of, whole
 from ekfsim.files.logs.tables.angles import ANGLES, DEGREE, are_degrees, are_degrees_of_course

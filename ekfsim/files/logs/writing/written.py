@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.recording import ANY
+from ekfsim.files.keys.recorded.recording import ANY
 from ekfsim.files.logs.writing import named
 from ekfsim.files.logs.writing.handed_out import hand_out
 from ekfsim.files.logs.writing.own import WRITERS

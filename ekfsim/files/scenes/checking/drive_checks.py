@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from ekfsim.errors import Mistake
 from ekfsim.files.keys.commands import WAYS, CommandsKeys
 from ekfsim.files.keys.fields import aliases
-from ekfsim.files.keys.recording import OF_ANY_ROBOT, OWN_KEYS, misfit
+from ekfsim.files.keys.recorded.recording import OF_ANY_ROBOT, OWN_KEYS, misfit
 from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.scenes.playing import drive_of
 from ekfsim.files.yaml.telling import meant

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from ekfsim.files.keys.topics import OriginKeys
+from ekfsim.files.keys.recorded.topics import OriginKeys
 from ekfsim.files.logs.named.tables import Table
 from ekfsim.files.maps.drawn.earth import on_plane
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from ekfsim.errors import InputError, Mistake, Place
-from ekfsim.files.keys.columns import MotionKeys, ReadingsKeys
-from ekfsim.files.keys.topics import OriginKeys
+from ekfsim.files.keys.recorded.columns import MotionKeys, ReadingsKeys
+from ekfsim.files.keys.recorded.topics import OriginKeys
 from ekfsim.files.logs.header import separator_of
 from ekfsim.files.logs.named.head import ALSO, absent, fields_of, names_in, place_of, placed
 from ekfsim.files.logs.named.opening.derived import EARTH, place_of_first, with_derived

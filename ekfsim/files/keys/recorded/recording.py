@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field
 
 from ekfsim.files.keys.fields import Late, Name, Strict, SystemName
-from ekfsim.files.keys.topics import OriginKeys, TopicsKeys
+from ekfsim.files.keys.recorded.topics import OriginKeys, TopicsKeys
 
 if TYPE_CHECKING:
-    from ekfsim.files.keys.columns import (
+    from ekfsim.files.keys.recorded.columns import (
         ColumnsKeys,
         MotionKeys,
         ReadingsKeys,
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
         UnitsKeys,
     )
 else:
-    HOME = "ekfsim.files.keys.columns"
+    HOME = "ekfsim.files.keys.recorded.columns"
     ColumnsKeys = Annotated[Any, Late(f"{HOME}:ColumnsKeys")]
     UnitsKeys = Annotated[Any, Late(f"{HOME}:UnitsKeys")]
     MotionKeys = Annotated[Any, Late(f"{HOME}:MotionKeys")]
