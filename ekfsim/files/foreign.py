@@ -22,7 +22,7 @@ LOGS = (
     ("mrclam", ("*Odometry.dat", "*Measurement.dat"), "mrclam_log"),
     ("ranges", ("odometry*.csv", "ranges*.csv", "nodes*.csv"), "ranges_log"),
     ("pioneer", ("odometry*.csv", "ultrasonic*.csv"), "pioneer_log"),
-    ("classroom", ("entries.csv",), "tour"),
+    ("classroom", ("entries.csv", "world.yaml"), "tour"),
     ("log", ("motion*.csv", "readings*.csv"), "log"),
     ("log", ("odometry*.csv", "readings*.csv"), "log"),
 )

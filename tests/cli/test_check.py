@@ -117,7 +117,7 @@ def test_list_tells_what_each_of_a_group_is_for():
     told = {name: description_of(path) for name, path in packaged("commands").items()}
     assert listed("--all") == told == {name: line for part in parts for name, line in part.items()}
     assert sum(map(len, parts)) == len(told)
-    assert all(name.endswith("log") == (name in parts[-1]) for name in told)
+    assert all((name.endswith("log") or name == "bag") == (name in parts[-1]) for name in told)
     assert listed("--worlds").keys() == packaged("worlds").keys()
     more = ekfsim("list").out.partition("ekfsim list GROUP (")[2].partition(")")[0]
     assert more.split(", ") == groups[1:]

@@ -250,3 +250,20 @@ def test_speeds_are_in_what_their_name_says(head, factor, tmp_path):
     scene = scene_of(tmp_path, BY_LANDMARKS, RECORDING)
     np.testing.assert_allclose(inputs_of(scene)[:, 0], 0.3, rtol=1e-12)
     assert [e.t for e in scene.log.entries][-1] == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize("point", [".", ","])
+def test_tabs_part_names_and_words_that_hold_blanks(point, tmp_path):
+    """The same numbers as with commas between the columns, whatever is the decimal point."""
+    poses = arc()
+    motion = table("t,x,y,theta", poses.tolist())
+    readings = perfect(poses)
+    laid(tmp_path, motion, readings)
+    plain = readings_of(scene_of(tmp_path, BY_LANDMARKS, RECORDING))
+    head, *rows = readings.replace(",", "\t").splitlines()
+    named = head.replace("range", "range [m]")
+    tabs = "\n".join([named, *(row.replace(".", point) for row in rows)]) + "\n"
+    laid(tmp_path, motion, tabs)
+    read = readings_of(scene_of(tmp_path, BY_LANDMARKS, RECORDING))
+    assert len(read) == len(plain) > 0
+    np.testing.assert_array_equal([one.z for one in read], [one.z for one in plain])

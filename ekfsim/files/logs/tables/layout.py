@@ -17,7 +17,11 @@ from ekfsim.files.yaml.telling import quoted
 
 SAMPLE = 20  # rows by which a file is judged
 # what stands between columns (None: white space), and whether numbers have decimal commas
-WAYS = ((",", False), (";", False), (None, False), (";", True), ("\t", True), (None, True))
+TAB = "\t"
+WAYS = (
+    *((",", False), (";", False), (None, False), (TAB, False)),
+    *((";", True), (TAB, True), (None, True)),
+)
 BLANK = str.maketrans(",", " ")
 POINT = str.maketrans(",", ".")
 

@@ -12,7 +12,7 @@ from ekfsim.files.logs.named.opening.derived import EARTH, place_of_first, with_
 from ekfsim.files.logs.named.opening.ragged import in_groups, levelled
 from ekfsim.files.logs.named.tables import Source, Table
 from ekfsim.files.logs.table import is_number
-from ekfsim.files.logs.tables.layout import unquoted
+from ekfsim.files.logs.tables.layout import SAMPLE, TAB, unquoted
 from ekfsim.files.logs.tables.names import named
 from ekfsim.files.logs.text import Lines, first_line, lines_of
 from ekfsim.files.yaml.telling import quoted
@@ -45,7 +45,7 @@ def opened(source: Source, wanted: str) -> Table:
     if not len(lines):
         right = f"it begins with the line {wanted}"
         raise InputError([Mistake(Place(lines.file, 1, 1), "", "the file is empty", right)])
-    separator = separator_of(lines.texts[0])
+    separator = separator_of(lines.texts[0]) or _tab_of(lines)
     fields = fields_of(lines.texts[0], separator)
     head = None if source.keys.rows else names_in(source.path, fields)
     body = lines
@@ -118,6 +118,15 @@ def _kinds_in(lines: Lines) -> list[str]:
     firsts = (text.split(separator_of(text), 1)[0].strip() for text in lines.texts)
     kinds = list(dict.fromkeys(firsts))
     return kinds[:MANY] + ["…"] * (len(kinds) > MANY)
+
+
+def _tab_of(lines: Lines) -> str | None:
+    """A tab where all of the first rows have as many between their columns: names and words may
+    then hold blanks, and fields be empty.
+    """
+    counts = {text.count(TAB) for text in lines.texts[:SAMPLE]}
+    is_one_each = "" not in lines.texts[0].strip().split(TAB)
+    return TAB if len(counts) == 1 and 0 not in counts and is_one_each else None
 
 
 def _ended(lines: Lines, separator: str | None, width: int) -> Lines:
