@@ -44,8 +44,8 @@ def with_log(
         return loaded
     source = os.path.normpath(log if log is not None else path.parent / (recording.path or ""))
     warnings = list(loaded.warnings)
-    recording = recognised(recording, source, warnings)
     try:
+        recording = recognised(recording, source, warnings)
         scene = read_into(scene, recording, source, warnings)
     except InputError as error:
         return replace(loaded, mistakes=list(error.mistakes), warnings=warnings)
