@@ -10,6 +10,7 @@ from ekfsim.fitting.likelihood import Likelihood
 from ekfsim.fitting.noises import NoiseNumber, Retold
 from ekfsim.fitting.search import Bowl, Costs, ends, lowest
 from ekfsim.geometry import Array, Integers
+from ekfsim.records import Reading
 
 FAR = math.log(1e3)  # from where it begins a number is looked for up to so many times as far
 NOTHING = math.log(50.0)  # a number so many times less than the best is as good as 0
@@ -19,7 +20,7 @@ ROUNDS = 4  # of gate and fit in turn, and of intervals where a lower cost is me
 LOWER = 0.05  # of −ln p
 ABREAST = 64  # sets of numbers that are tried in one run
 AS_IT_IS = Likelihood()  # with all readings
-HALF_BELOW = 1.92  # of −ln p: half of the 95 % quantile of χ² of one freedom
+LEVEL = 0.95  # of an interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +77,7 @@ def fit(
         trials.likelihood = replace(trials.likelihood, out=out, gate=gate if out else None)
         best = lowest(costs, best.at, FAR)
     numbers = [asked[i] for i in kept]
-    found = tuple(intervals(numbers, costs, best))
+    found = tuple(intervals(numbers, costs, best, risen(read(trials), len(kept))))
     return Fit(found, idle, zero, trials.likelihood.out, trials.count)
 
 
@@ -126,12 +127,36 @@ def within(logs: Array, kept: Integers, part: Array) -> Array:
     return whole
 
 
-def intervals(numbers: list[NoiseNumber], costs: Costs, best: Bowl) -> Iterator[Estimate]:
+def read(trials: Trials) -> int:
+    """How many numbers were read and not left out."""
+    assert trials.retold.scene.log is not None
+    return sum(
+        one.given.z.size
+        for one in trials.retold.scene.log.entries[: trials.until]
+        if isinstance(one.given, Reading) and one.index not in trials.likelihood.out
+    )
+
+
+def risen(read: int, fitted: int) -> float:
+    """By how much −ln p has risen at the end of an interval: half of the quantile of F of one
+    freedom and of as many as numbers were read beyond those fitted; with many, of χ².
+
+    >>> round(risen(10_000, 2), 2), round(risen(20, 3), 2)
+    (1.92, 2.23)
+    """
+    from scipy.stats import f
+
+    return float(f.ppf(LEVEL, 1, max(read - fitted, 1))) / 2
+
+
+def intervals(
+    numbers: list[NoiseNumber], costs: Costs, best: Bowl, rise: float
+) -> Iterator[Estimate]:
     """The numbers with their intervals, by the profile of the likelihood: the curvature alone would
     not do, for where a number may as well be 0 the cost is far from a parabola.
     """
     for _ in range(ROUNDS):
-        found, lower = ends(costs, best, HALF_BELOW, (NOTHING, FAR))
+        found, lower = ends(costs, best, rise, (NOTHING, FAR))
         if lower.cost > best.cost - LOWER:
             break
         best = lowest(costs, lower.at, FAR)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize
 
+from ekfsim.fitting.estimate import risen
 from ekfsim.fitting.search import ends, lowest
 
 RISE = 1.92
@@ -61,3 +62,9 @@ def test_where_a_number_may_be_nothing_its_lower_end_is_open():
     for end in (a_down, a_up, b_up):
         assert not end.open
         assert profile(end.at[end.i], end.i, alike) - best.cost == pytest.approx(RISE, abs=0.03)
+
+
+def test_the_fewer_were_read_the_farther_out_an_interval_ends():
+    """Half of the square of Student's t: 12.706, 2.228 and 1.972 in any table."""
+    for read, t in ((2, 12.706), (11, 2.228), (201, 1.972)):
+        assert risen(read, 1) == pytest.approx(t * t / 2, rel=1e-3)
