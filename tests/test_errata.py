@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from documents import as_written, equation
 
-from ekfsim.cli.options import DOCUMENTS
+from ekfsim.cli.program.options import DOCUMENTS
 from ekfsim.filters.arithmetic.square_root import square_root
 from ekfsim.filters.arithmetic.unscented import sigma_points, unscented_transform, weights
 from ekfsim.geometry.ellipse import ellipse, radius_factor

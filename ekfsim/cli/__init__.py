@@ -8,7 +8,7 @@ from typing import NoReturn, cast
 
 import click
 
-from ekfsim.cli import process
+from ekfsim.cli.program import process
 from ekfsim.late import Table
 from ekfsim.version import VERSION
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ekfsim.cli.asked import scene_of
-from ekfsim.cli.kinds import Source, Whole
-from ekfsim.cli.options import GATE, GUARD, MOST_RUNS, PLAIN, PLAYED, SET, with_options
-from ekfsim.cli.process import heed, warn
+from ekfsim.cli.program.asked import scene_of
+from ekfsim.cli.program.kinds import Source, Whole
+from ekfsim.cli.program.options import GATE, GUARD, MOST_RUNS, PLAIN, PLAYED, SET, with_options
+from ekfsim.cli.program.process import heed, warn
 from ekfsim.errors import RunError, UsageError
 from ekfsim.printable import shown
 

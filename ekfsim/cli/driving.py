@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ekfsim.cli.asked import scene_of
-from ekfsim.cli.kinds import Result, Word
-from ekfsim.cli.options import EXPLAIN, drive_options
+from ekfsim.cli.program.asked import scene_of
+from ekfsim.cli.program.kinds import Result, Word
+from ekfsim.cli.program.options import EXPLAIN, drive_options
 from ekfsim.errors import UsageError
 from ekfsim.views.terminal.driving.help import HELP
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ekfsim.cli.asked import scene_of
-from ekfsim.cli.kinds import Result, Seed, Source, Word
-from ekfsim.cli.options import DOCUMENTS, FORCE, PLAIN, READING
-from ekfsim.cli.process import say, shown, warn, width
+from ekfsim.cli.program.asked import scene_of
+from ekfsim.cli.program.kinds import Result, Seed, Source, Word
+from ekfsim.cli.program.options import DOCUMENTS, FORCE, PLAIN, READING
+from ekfsim.cli.program.process import say, shown, warn, width
 from ekfsim.errors import MOST_TOLD, EkfsimError, Mistake, UsageError, told
 from ekfsim.printable import in_a_line
 

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import click
 
-from ekfsim.cli.asked import engine_of
-from ekfsim.cli.kinds import Result, Whole
-from ekfsim.cli.options import FORCE
-from ekfsim.cli.process import part_with, shown
-from ekfsim.cli.progress import blocks_bar
+from ekfsim.cli.program.asked import engine_of
+from ekfsim.cli.program.kinds import Result, Whole
+from ekfsim.cli.program.options import FORCE
+from ekfsim.cli.program.process import part_with, shown
+from ekfsim.cli.program.progress import blocks_bar
 from ekfsim.printable import in_a_line
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import click
 
-from ekfsim.cli.kinds import Result, Source, Whole
-from ekfsim.cli.options import FORCE
-from ekfsim.cli.process import part_with, warn
-from ekfsim.cli.progress import submissions_bar
+from ekfsim.cli.program.kinds import Result, Source, Whole
+from ekfsim.cli.program.options import FORCE
+from ekfsim.cli.program.process import part_with, warn
+from ekfsim.cli.program.progress import submissions_bar
 from ekfsim.errors import RunError, UsageError
 from ekfsim.printable import in_a_line
 

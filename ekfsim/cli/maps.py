@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ekfsim.cli.kinds import Result, Source, Word
-from ekfsim.cli.options import FORCE
-from ekfsim.cli.process import warn
+from ekfsim.cli.program.kinds import Result, Source, Word
+from ekfsim.cli.program.options import FORCE
+from ekfsim.cli.program.process import warn
 from ekfsim.errors import UsageError
 from ekfsim.printable import in_a_line
 

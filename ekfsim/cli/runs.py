@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ekfsim.cli.asked import files_of, scene_of
-from ekfsim.cli.kinds import Area, Pace, Result, StepNumber, Whole, Word
-from ekfsim.cli.options import DPI, EXPLAIN, FORCE, SIZE, scene_options
-from ekfsim.cli.process import heed, say, warn
+from ekfsim.cli.program.asked import files_of, scene_of
+from ekfsim.cli.program.kinds import Area, Pace, Result, StepNumber, Whole, Word
+from ekfsim.cli.program.options import DPI, EXPLAIN, FORCE, SIZE, scene_options
+from ekfsim.cli.program.process import heed, say, warn
 from ekfsim.errors import UsageError
 from ekfsim.printable import in_a_line
 from ekfsim.views.terminal.keys.help import HELP

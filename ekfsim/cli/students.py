@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ekfsim.cli.asked import scene_of
-from ekfsim.cli.kinds import Result, Seed, Share, Whole
-from ekfsim.cli.options import EXPLAIN, FORCE, MOST, MOST_RUNS, scene_options
-from ekfsim.cli.process import heed, width
+from ekfsim.cli.program.asked import scene_of
+from ekfsim.cli.program.kinds import Result, Seed, Share, Whole
+from ekfsim.cli.program.options import EXPLAIN, FORCE, MOST, MOST_RUNS, scene_options
+from ekfsim.cli.program.process import heed, width
 from ekfsim.errors import RunError, UsageError
 from ekfsim.printable import in_a_line, shown
 

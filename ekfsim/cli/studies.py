@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ekfsim.cli.asked import engine_of
-from ekfsim.cli.options import compare_options, study_options
-from ekfsim.cli.process import part_with, say, shown, warn, width
-from ekfsim.cli.progress import blocks_bar, study_into
+from ekfsim.cli.program.asked import engine_of
+from ekfsim.cli.program.options import compare_options, study_options
+from ekfsim.cli.program.process import part_with, say, shown, warn, width
+from ekfsim.cli.program.progress import blocks_bar, study_into
 from ekfsim.errors import RunError, UsageError
 
 if TYPE_CHECKING:

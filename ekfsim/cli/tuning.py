@@ -6,10 +6,10 @@ from typing import Any
 
 import click
 
-from ekfsim.cli.asked import scene_of
-from ekfsim.cli.kinds import Result
-from ekfsim.cli.options import FORCE, scene_options
-from ekfsim.cli.process import heed, shown, width
+from ekfsim.cli.program.asked import scene_of
+from ekfsim.cli.program.kinds import Result
+from ekfsim.cli.program.options import FORCE, scene_options
+from ekfsim.cli.program.process import heed, shown, width
 from ekfsim.errors import UsageError
 from ekfsim.printable import in_a_line
 

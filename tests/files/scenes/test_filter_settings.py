@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ekfsim.cli.asked import scene_of
+from ekfsim.cli.program.asked import scene_of
 from ekfsim.errors import UsageError
 from ekfsim.files.packaged import resolve
 from ekfsim.files.scenes.load import check, read_scene

@@ -10,7 +10,7 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from ekfsim.cli import options
+from ekfsim.cli.program import options
 from ekfsim.errors import InputError, UsageError
 from ekfsim.files.keys import commands as commands_file
 from ekfsim.files.keys import drive as drive_file

@@ -8,7 +8,7 @@ import pytest
 from around import CLASS
 
 from ekfsim import load_scene
-from ekfsim.cli.asked import scene_of
+from ekfsim.cli.program.asked import scene_of
 from ekfsim.files.packaged import packaged
 from ekfsim.filters.belief import Gaussian
 from ekfsim.localization import filter_of

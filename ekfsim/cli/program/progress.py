@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ekfsim.cli.process import heed, part_with, say
+from ekfsim.cli.program.process import heed, part_with, say
 from ekfsim.errors import EkfsimError, StepError
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from ekfsim.cli.process import say, warn
+from ekfsim.cli.program.process import say, warn
 from ekfsim.errors import UsageError
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from ekfsim.cli.kinds import Gate, Probability, Result, Seed, Source, Whole, Word
+from ekfsim.cli.program.kinds import Gate, Probability, Result, Seed, Source, Whole, Word
 from ekfsim.errors import UsageError
 from ekfsim.twins import taking
 

@@ -1,0 +1,1 @@
+"""How the program begins and ends, and what its commands share: options, kinds of values."""
