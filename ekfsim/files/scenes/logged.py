@@ -110,7 +110,8 @@ def world_of_log(
     neither, or no log is named.
     """
     format, named = sound.value("recording", "format"), sound.value("recording", "path")
-    if format in OF_ANY_ROBOT and log is None and named is None:
+    unread = recording is None  # for there are mistakes in its keys, which are told
+    if format in OF_ANY_ROBOT and (unread or (log is None and named is None)):
         from ekfsim.files.logs.bags import made_world as of_bags
         from ekfsim.files.logs.named import made_world as of_logs
 

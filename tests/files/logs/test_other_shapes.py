@@ -239,3 +239,11 @@ def test_tables_that_rostopic_writes_need_no_map(tmp_path):
     assert np.abs(errors(steps, scene.world.layout)).max() < 1e-9
     assert sum(step.correction is not None for step in steps) == 20
     assert max(step.correction.nis for step in steps if step.correction) < 1e-9
+
+
+def test_a_mistake_in_the_recording_is_told_and_not_what_would_follow_from_it(tmp_path):
+    lay(tmp_path / "log", **{"run.csv": "t,v,omega\n0,1,0\n1,1,0\n"})
+    keys = "path: log, motion: {file: run.csv}, readings: [{file: run.csv, every: 0}]"
+    (tmp_path / "c.yaml").write_text(f"recording: {{format: log, {keys}}}\n")
+    with pytest.raises(UsageError, match=r"readings.*every"):
+        load_scene(tmp_path / "c.yaml")
