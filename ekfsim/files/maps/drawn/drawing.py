@@ -68,8 +68,9 @@ class Drawing:
         outlines = self.outlines
         told = [*self.told]
         for why, names in self.left_out.items():
-            more = "" if len(names) == 1 else f", and so do {len(names) - 1} more"
-            more = more.replace("so do", "so are") if why.startswith("is ") else more
+            verb = {"is": ("is", "are"), "has": ("has", "have")}.get(why.split()[0], ("does", "do"))
+            others = len(names) - 1
+            more = f", and so {verb[others > 1]} {others} more" if others else ""
             told.append(f"{names[0]!r} {why}{more}: left out")
         lines = list(self.lines)
         if asked.outlines == "walls":

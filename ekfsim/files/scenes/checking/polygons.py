@@ -107,7 +107,7 @@ class FloorPlan:
         self._told += [f"on the wall {quoted(name)}" for name, _ in walls]
         self._tree = shapely.STRtree(
             [
-                *_areas([np.asarray(points, dtype=float) for _, points in areas]),
+                *_shapes([np.asarray(points, dtype=float) for _, points in areas]),
                 *_lines([np.asarray(points, dtype=float) for _, points in walls]),
             ]
         )
@@ -136,7 +136,7 @@ class FloorPlan:
                 yield f"{where} inside the obstacle {quoted(name)} or on its wall"
 
 
-def _areas(outlines: list[Array]) -> list[Any]:
+def _shapes(outlines: list[Array]) -> list[Any]:
     """The polygons of Shapely."""
     return list(shapely.polygons(_lines(outlines, shapely.linearrings))) if outlines else []
 
