@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from ekfsim.files.keys.fields import PartKeys, aliases, keys_of_kind
 from ekfsim.models.motions.move_turn import MoveTurn
@@ -12,6 +12,7 @@ from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.mounted import Mounted
 from ekfsim.records import Control, Entry, Log, Reading
 from ekfsim.scene import Scene
+from ekfsim.systems.estimating import Estimating
 from ekfsim.world import World
 
 WORDS = ("sigma", "density", "ratio", "floor")  # by which a number of noise is known
@@ -83,7 +84,8 @@ def _noises(world: World, read: set[str]) -> Iterator[NoiseNumber]:
     from ekfsim.files.keys.system import ToldRobotKeys
     from ekfsim.files.keys.told import ToldSensorsKeys
 
-    yield from _of_part(robot, ToldRobotKeys, "robot", "robot")
+    own = robot.robot if isinstance(robot, Estimating) else robot
+    yield from _of_part(own, ToldRobotKeys, "robot", "robot")
     names = {id(one): set[str]() for one in world.told_instruments}
     for instrument, target in world.targets("corrected"):
         names[id(instrument)].add(target.name)
@@ -113,7 +115,11 @@ def told(world: World, numbers: Sequence[NoiseNumber], values: Sequence[float]) 
         believed = replace(believed, noise=replace(believed.noise, **noise))
     if robot := mine.pop("robot", None):
         anew: Any = world.told_robot
-        believed = replace(believed, robot=replace(anew, **robot))
+        if isinstance(anew, Estimating):
+            anew = replace(anew, robot=replace(cast(Any, anew.robot), **robot))
+        else:
+            anew = replace(anew, **robot)
+        believed = replace(believed, robot=anew)
     if mine:
         parts: list[Any] = [
             replace(one, **mine[one.called])  # type: ignore[type-var]  # all are dataclasses

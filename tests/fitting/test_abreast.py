@@ -57,3 +57,15 @@ def test_the_likelihood_is_that_of_the_normal_distribution():
             numbers += c.innovation.size
     assert numbers > 40
     assert Likelihood().of(scene) + numbers * np.log(2 * np.pi) / 2 == pytest.approx(density)
+
+
+def test_a_robot_whose_errors_are_found_has_its_noises_still():
+    """Those of the robot itself: told twice as large, its motion's noise is four times as large."""
+    scene = load_scene("landmarks").with_("robot.estimate.wheelScale.sigma", 0.05)
+    scene = replace(scene, log=Log(tuple(islice(entries_of(scene), 5)), first_belief(scene)))
+    density = next(one for one in noises_of(scene) if one.key == "robot.headingDensity")
+    entry = Retold(scene, (density,)).with_([2 * density.value]).log.entries[2]
+    before = scene.log.entries[2].given
+    M, M_before = entry.given.motion.M(before.u), before.motion.M(before.u)
+    assert M[1, 1] == pytest.approx(4 * M_before[1, 1])
+    assert M[0, 0] == M_before[0, 0]
