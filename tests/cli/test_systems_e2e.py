@@ -235,7 +235,7 @@ def test_pictures_of_a_run(place, name):
         ),
         (
             ["pylon_log.yaml", "--log", "gnss-log/gnss.csv"],
-            "gnss-log/gnss.csv:1:1: 3 columns stand in this row; ",
+            "gnss-log/gnss.csv:2:1: 3 columns stand in this row; ",
         ),
         (
             ["gnss.yaml", "--log", "gnss-log"],

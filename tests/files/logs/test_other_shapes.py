@@ -148,6 +148,14 @@ def test_places_on_the_earth_dates_and_quaternions(tmp_path):
     assert not told
     _, _, told = played(tmp_path, "", sensors="gnss: {}")
     assert "x is m east and y m to true north of its first place, latitude 49.0000" in told[0]
+    nowhere = [f"{dates[7]},0,0", f"{dates[9]},,", f"{dates[11]},91,8.4"]
+    lay(
+        tmp_path / "log",
+        **{"readings.csv": "\n".join(["t,lat,lon", *earth[1:6], *nowhere, *earth[12:], ""])},
+    )
+    steps, _, told = played(tmp_path, origin, sensors="gnss: {}")
+    assert sum(step.correction is not None for step in steps) == 34
+    assert "3 of 37 rows tell no place on the earth" in told[0]
 
 
 def test_a_motion_whose_columns_are_named_is_taken(tmp_path):

@@ -79,6 +79,7 @@ class Table:
     units: Mapping[str, str | float]  # of the columns that tell theirs
     shared: frozenset[str] = frozenset()  # names that were told for all tables, and found here
     told: frozenset[str] = frozenset()  # names whose places the commands file tells for this table
+    remarks: tuple[str, ...] = ()  # what is to be said when its rows are read
 
     @property
     def file(self) -> str:
@@ -123,6 +124,7 @@ class Table:
         ]
         if taken:
             asked.warnings.append(f"{self.file}: {', '.join(taken)}")
+        asked.warnings.extend(self.remarks)
         places = tuple(self.places[name] for name in known if name is not None)
         return self._read(names, places, asked, motion, maybe, ranges)
 

@@ -61,7 +61,8 @@ def at_fix(
             if found is not None:
                 heading, sigma = found.heading, min(WIDER * found.sigma, ANY)
                 hardly = "hardly told" if found.sigma > UNSURE else "told"
-                told = f"its heading {hardly} by the course of {found.fixes} fixes"
+                fixes = f"{found.fixes} fixes" if found.fixes > 1 else "1 fix"
+                told = f"its heading {hardly} by the course of {fixes}"
     first = _around(world, reading, fix, np.array(heading), sigma)
     at = entries[0].t
     assert at is not None

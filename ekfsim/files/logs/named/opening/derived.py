@@ -70,6 +70,10 @@ def _on_plane(table: Table, origin: OriginKeys | None) -> Table:
     if origin is None:
         return table
     degrees = _on_earth(table)
+    if lost := int(np.isnan(degrees[:, 0]).sum()):
+        count = f"{lost} of {len(degrees)} rows"
+        why = "tell no place on the earth (nothing, 0°, 0°, or no such degrees): left out"
+        table = replace(table, remarks=(*table.remarks, f"{table.file}: {count} {why}"))
     xy = on_plane(degrees[:, ::-1], (origin.longitude, origin.latitude))
     rows = iter(xy.tolist())
     return _with(table, PLANE, lambda row: [f"{one:.9f}" for one in next(rows)])
