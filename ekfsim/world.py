@@ -315,7 +315,13 @@ class World:
     def sigma_said(self) -> Axes:
         """Of which of x, y, θ of the first belief somebody says how sure they are."""
         told = self.told
-        return (bool(told.sigma.any()),) * 3 if told.sigma_said is None else told.sigma_said
+        if told.sigma_said is None:
+            return (bool(told.sigma.any()),) * 3
+        # what `replace` has made of a belief is said, too
+        x, y, theta = (
+            said or bool(σ) for said, σ in zip(told.sigma_said, told.sigma.tolist(), strict=True)
+        )
+        return x, y, theta
 
     def targets(self, reading: DocumentReading) -> list[tuple[Instrument, Target]]:
         """Everything that the instruments may read, with the sensors as the filter is told."""

@@ -94,7 +94,7 @@ def truncation(gate: float | None, numbers: int) -> float:
     """The mean of NIS per number of what lies below a gate, where all is right: 1 without one.
 
     >>> round(truncation(0.99, 1), 3), truncation(None, 2)
-    (0.923, 1.0)
+    (0.925, 1.0)
     """
     if gate is None:
         return 1.0

@@ -364,6 +364,9 @@ class ByHand(Narrative):
         assert told == pytest.approx(
             [*of(np.degrees(here[:, 2])), *of(np.degrees(reckoned[:, 2]))], rel=2e-5
         )
+        p, readings = self.take(r"Innovations: white around zero \(p (.*); (\d+) of laser\)")
+        assert readings == self.readings
+        assert 0.05 < p <= 1
         readings, total, each, low, high, last, bound, dof = self.take(
             r"Verdict: consistent: the NIS of (\d+) readings sums to (.*) \((.*) per number "
             r"read\), "

@@ -142,7 +142,7 @@ compared.
 """)
     assert ended.err == (
         "mine.py:8: step 2 (sense 0°): sensor has no 'J'; "
-        "it has H, R, bearing, h, range_ratio, residual, walls\n"
+        "it has H, R, bearing, circles, h, range_ratio, residual, walls\n"
     )
 
 

@@ -138,7 +138,7 @@ def test_every_output_of_a_run(place, name):
 @pytest.mark.parametrize("filter", FILTERS)
 @pytest.mark.parametrize("name", ["mower", "pioneer_log", "pylon_log"])
 def test_every_filter_and_a_gate(name, filter):
-    if filter == "kf-nominal" and name.endswith("log"):
+    if filter == "kf-nominal" and name.endswith(("log", "bag")):
         told = ekfsim("run", f"{name}.yaml", "--filter", filter)
         assert (told.status, told.out) == (2, "")
         wrong = (

@@ -23,7 +23,9 @@ from ekfsim.twins import taking
 
 WRITTEN = "commands", "seed", "filter", "tuning", "gate", "guard", "description", "world_source"
 MADE = [
-    name for name in packaged("commands") if not name.endswith("log") and load_scene(name).commanded
+    name
+    for name in packaged("commands")
+    if not name.endswith(("log", "bag")) and load_scene(name).commanded
 ]
 
 

@@ -84,7 +84,7 @@ STEPS = 35  # of each scene; the first are those with the most singular beliefs
 SCENES = {
     name: scene
     for name in packaged("commands")
-    if not name.endswith("log")
+    if not name.endswith(("log", "bag"))
     for scene in [replace(load_scene(name), filter="ekf", beside=())]
 }
 
