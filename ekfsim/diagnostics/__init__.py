@@ -5,6 +5,7 @@ coverage.py   whether the truth is inside the ellipse and the cone
 ambiguity.py  whether a beam may meet another wall than the one predicted
 innovations.py  the innovations of a run, by sensor and target, in units of their own σ
 whiteness.py  whether those of one sensor are white around zero
+chances.py    of χ², of Beta variables and of coins
 verdict.py    what one run says: ΣNIS against its band, lost or not
 summary.py    what is left of one run: errors, NIS, dead reckoning, the verdict
 """

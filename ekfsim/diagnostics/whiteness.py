@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ekfsim.diagnostics.chances import at_most_heads, below_beta, beyond_chi_square
 from ekfsim.geometry import Array, Booleans, Integers
 
 LAGS = 5
@@ -116,21 +117,17 @@ def closed_up(w: Array) -> Array:
 
 def beyond(dof: Integers, value: Array) -> Array:
     """The chance of a larger value of χ² : (…), nan for no freedom"""
-    from scipy.special import chdtrc  # takes a fifth of a second to import
-
-    return np.where(dof > 0, chdtrc(np.maximum(dof, 1), value), np.nan)
+    return np.where(dof > 0, beyond_chi_square(np.maximum(dof, 1), value), np.nan)
 
 
 def p_of_means(sums: Array, counted: Integers, square: Array, enough: Booleans) -> Array:
     """The p of all means together. sums, counted : (…, T, k) → (…)"""
-    from scipy.special import betainc
-
     shares = np.divide(sums**2, counted, out=np.zeros(sums.shape), where=counted > 0)
     K = np.count_nonzero(counted, axis=(-2, -1))
     rest = counted.sum(axis=(-2, -1)) - K
     asked = enough & (K > 0) & (rest > 0)
     off = 1 - shares.sum(axis=(-2, -1)) / np.where(asked, square, 1.0)
-    p = betainc(np.maximum(rest, 1) / 2, np.maximum(K, 1) / 2, np.clip(off, 0.0, 1.0))
+    p = below_beta(np.maximum(rest, 1) / 2, np.maximum(K, 1) / 2, np.clip(off, 0.0, 1.0))
     return np.where(asked, p, np.nan)
 
 
@@ -140,12 +137,10 @@ def changes_of_sign(w: Array, enough: Booleans) -> tuple[Integers, Array]:
     Around zero each change is a fair coin's toss; the usual runs test takes the number of either
     sign as given, and so takes the mean away.
     """
-    from scipy.special import bdtr
-
     w = closed_up(w)
     product = w[..., 1:, :] * w[..., :-1, :]
     tossed = np.count_nonzero(~np.isnan(product), axis=(-2, -1))
     changes = np.count_nonzero(product < 0, axis=(-2, -1))
     rare = np.minimum(changes, tossed - changes)
-    p = np.minimum(2 * bdtr(np.maximum(rare, 0).astype(float), np.maximum(tossed, 1), 0.5), 1.0)
+    p = np.minimum(2 * at_most_heads(np.maximum(rare, 0), np.maximum(tossed, 1)), 1.0)
     return changes, np.where(enough & (tossed > 0), p, np.nan)
