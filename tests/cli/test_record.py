@@ -141,7 +141,8 @@ def test_a_log_that_is_wrong_is_told_with_its_place(place):
     ended = ekfsim("run", "logged.yaml", "--log", "log")
     assert (ended.status, ended.out) == (2, "")
     assert (
-        ended.err == "ekfsim: log: no file 'gnss*.csv' in it; it would hold the satellite fixes\n"
+        ended.err == "ekfsim: log: no file 'gnss*.csv' in it; it would hold the satellite fixes; "
+        "found about.txt, groundtruth.csv, wheelspeeds.csv\n"
     )
 
 

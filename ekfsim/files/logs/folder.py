@@ -8,6 +8,8 @@ from ekfsim.errors import UsageError
 from ekfsim.files.foreign import ENOUGH, of_bytes, of_folder
 from ekfsim.files.looking import contents, exists, is_file, is_folder, read_from
 
+LISTED = 6  # files of a folder that are named where the one that is wanted is not there
+
 
 def folder_of(path: Path, holds: str) -> Path:
     """The folder of a log. Raises UsageError, saying what it `holds`, where there is none."""
@@ -27,19 +29,27 @@ def refuse_foreign(path: Path) -> None:
         raise UsageError(f"{path}: this is {foreign.what}, no text; {foreign.cure}")
 
 
-def find(folder: Path, what: str, *patterns: str) -> Path:
+def find(folder: Path, what: str, *patterns: str, cure: str = "") -> Path:
     """The one file in a folder whose name fits, the first pattern that fits any.
+    cure : what else can be done where none does
 
     Raises UsageError where there is none, or more than one.
     """
     found = find_any(folder, what, *patterns)
     if found is None:
-        with read_from(folder):
-            other = of_folder(os.listdir(folder), str(folder))
-        here = f"; here is {other.what}: {other.cure}" if other else ""
-        wrong = f"no file {_either(patterns)} in it; it would hold {what}"
-        raise UsageError(f"{folder}: {wrong}{here}")
+        raise missing(folder, what, *patterns, cure=cure)
     return found
+
+
+def missing(folder: Path, what: str, *patterns: str, cure: str = "") -> UsageError:
+    """What is told of a folder without the file that is wanted: what there is in its place."""
+    with read_from(folder):
+        names = sorted(name for name in os.listdir(folder) if not name.startswith("."))
+    wrong = f"{folder}: no file {_either(patterns)} in it; it would hold {what}"
+    if other := of_folder(names, str(folder)):
+        return UsageError(f"{wrong}; here is {other.what}: {other.cure}")
+    some = ", ".join([*names[:LISTED], *(["…"] if len(names) > LISTED else [])])
+    return UsageError(f"{wrong}; found {some or 'nothing'}{f'; {cure}' if cure else ''}")
 
 
 def find_any(folder: Path, what: str, *patterns: str) -> Path | None:

@@ -77,7 +77,7 @@ def _cause(summaries: Sequence[Summary]) -> list[str]:
     mean = figure(evidence.first_sum / evidence.first_dof)
     few = _count(min(evidence.nis_readings, FIRST), "reading")
     return [
-        f"Likely cause: the start, of which no truth tells: NIS is {mean} per number read in the "
+        f"Likely cause: the start, which no truth bears out: NIS is {mean} per number read in the "
         f"first {few}; say where it is with --set start.x=… (y, theta), and how surely with "
         "--set belief.sigma.x=… (y, theta)"
     ]

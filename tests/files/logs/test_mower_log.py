@@ -380,7 +380,7 @@ def test_files_of_other_numbers_are_found_and_a_missing_one_is_told(tmp_path):
         read("mower", folder)
     assert str(refused.value) == (
         f"{folder}: no file 'marker-001-map.txt' or '*map.txt' in it; it would hold the map of "
-        f"the markers"
+        "the markers; found day2-003-angles.txt, day2-poselog.txt"
     )
 
 

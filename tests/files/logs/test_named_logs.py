@@ -125,7 +125,9 @@ def test_what_is_missing_is_told(tmp_path):
         "t,distance,turn or t,x,y,theta or t,ax,ay,yaw; found 't', 'v'"
     )
     lay(log, **{"motion.csv": "t,v,omega\n0,1,0\n1,1,0\n"})
-    assert told_of(log) == ": no file 'readings*.csv' in it; it would hold the readings"
+    cure = "found motion.csv; one by another name is told by recording: {readings: [{file: …}]}"
+    told = f": no file 'readings*.csv' in it; it would hold the readings; {cure}"
+    assert told_of(log) == told
     lay(log, **{"readings.csv": "t,x,y\n0,1,1\n", "landmarks.csv": CORNERS})
     assert told_of(log) == (
         "readings.csv:1:1: no column is named as the readings of this world's sensors are; write "

@@ -394,7 +394,8 @@ def test_missing_files_and_folders_are_told(log, tmp_path):
     folder = log()
     (folder / "gnss-1.csv").rename(folder / "fixes.csv")
     for path, told in (
-        (LOG, "log: no file 'gnss*.csv' in it; it would hold the satellite fixes"),
+        (LOG, "log: no file 'gnss*.csv' in it; it would hold the satellite fixes; found fixes.csv, "
+         "groundtruth-1.csv, wheelspeeds-1.csv"),
         (LOG / "fixes.csv", "log/fixes.csv: is a file; name the folder that holds "
                             "wheelspeeds*.csv and gnss*.csv and, "
                             "where there are any, groundtruth*.csv"),

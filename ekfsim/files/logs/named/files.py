@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 from ekfsim.errors import UsageError
 from ekfsim.files.keys.recorded.columns import MotionKeys, ReadingsKeys, TableKeys
 from ekfsim.files.keys.recorded.recording import RecordingKeys
-from ekfsim.files.logs.folder import find, find_any
+from ekfsim.files.logs.folder import find, find_any, missing
 from ekfsim.files.logs.named.opening.opened import first_place
 from ekfsim.files.logs.named.tables import Source
 from ekfsim.files.looking import exists, is_folder, read_from
@@ -16,6 +16,7 @@ HOLDS = (
     "motion.csv, readings.csv and, where they are known, landmarks.csv, truth.csv and world.yaml"
 )
 MOTION = ("motion*.csv", "odometry*.csv")
+NAMED = "one by another name is told by recording: {{{}}}"
 READINGS = "readings"  # how the names of its tables begin
 LANDMARKS = ("landmarks*.csv",)
 TRUTH = ("truth*.csv", "truth*.tum")
@@ -61,7 +62,13 @@ class Files(NamedTuple):
     def motion(self) -> tuple[Source, MotionKeys]:
         """What the robot did. Raises UsageError where no file holds it, or several may."""
         keys = self.recording.motion or MotionKeys()
-        file = self._told(keys) or self.alone or find(self.folder, "what the robot did", *MOTION)
+        file = (
+            self._told(keys)
+            or self.alone
+            or find(
+                self.folder, "what the robot did", *MOTION, cure=NAMED.format("motion: {file: …}")
+            )
+        )
         return Source(file, keys, self.recording), keys
 
     def readings(self) -> list[tuple[Source, ReadingsKeys]]:
@@ -120,8 +127,8 @@ class Files(NamedTuple):
             names = sorted(name for name in os.listdir(self.folder) if name.endswith(".csv"))
         found = [self.folder / name for name in names if name.startswith(READINGS)]
         if not found:
-            wrong = f"no file '{READINGS}*.csv' in it"
-            raise UsageError(f"{self.folder}: {wrong}; it would hold the readings")
+            cure = NAMED.format("readings: [{file: …}]")
+            raise missing(self.folder, "the readings", f"{READINGS}*.csv", cure=cure)
         return found
 
 
