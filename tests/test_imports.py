@@ -35,6 +35,7 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"fitting"},
     {"study"},
     {"fast"},
+    {"why"},
     {"student"},
     {"views"},
     {"figures"},
