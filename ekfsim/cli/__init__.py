@@ -20,6 +20,7 @@ MODULES = {
     "studies": ("study", "compare"),
     "gallery": ("gallery",),
     "comparing": ("diff",),
+    "explaining": ("why",),
     "students": ("mutants", "worksheet"),
     "grading": ("grade", "autograder"),
     "tuning": ("tune",),

@@ -1,0 +1,10 @@
+"""What is seen of an explanation: why a run was lost, and what cures it.
+
+answer.py     all that is printed: the cause by its name, one sentence with its evidence, the table
+mechanisms.py how each mechanism is told of a run
+met.py        which wall a beam was predicted to meet, and which it met
+changes.py    what a change puts right, in words
+tried.py      the table of what was tried, for a person and as CSV
+picture.py    lost run and cured run over each other from where they part, NEES of both below
+traces.py     what is drawn of each of the two on the map
+"""

@@ -1,0 +1,68 @@
+"""What a change puts right, in words."""
+
+from collections.abc import Sequence
+
+from ekfsim.why.records import Change, Kind, Tried
+
+PLURALS: dict[Kind, str] = {
+    "noise": "told noises, each made true",
+    "start": "told starts, each made true",
+    "sigma": "told sigmas of the start, each made true",
+    "map": "things of the told map, each put right",
+    "fault": "faults, each taken out",
+    "beams": "classes of beams, each left out",
+    "wall": "rules of the wall that is met",
+    "linear": "ways not to make it linear",
+    "reading": "readings, each left out",
+    "move": "moves, each made exact",
+}
+
+
+def put_right(change: Change) -> str:
+    """What a change makes of a run, after "with" or "without".
+
+    >>> put_right(Change("reading", "the beam of step 13", step=13))
+    'without the beam of step 13'
+    >>> put_right(Change("noise", "the told rangeSigmaRatio", "0.01 told, 0.02 true"))
+    'with the told rangeSigmaRatio made true'
+    """
+    name = change.name
+    match change.kind:
+        case "noise" | "start" | "sigma":
+            return f"with {name} made true"
+        case "map":
+            return f"with {name} put right"
+        case "fault" | "reading":
+            return f"without {name}"
+        case "beams":
+            return f"with {name}" if ends_in_a_deed(name) else f"with {name} left out"
+        case "move":
+            return f"with {name} made exact"
+    return f"with {name}"
+
+
+def ends_in_a_deed(name: str) -> bool:
+    """Whether the name of a class says itself what becomes of it: "such beams left out"."""
+    return name.endswith((" out", " true", " exact", " right"))
+
+
+def all_of(changes: Sequence[Change]) -> str:
+    """Several changes, as one that is made: "with a made true, b put right and without c"."""
+    return joined([put_right(one) for one in changes])
+
+
+def joined(words: Sequence[str]) -> str:
+    """Words in a row.
+
+    >>> joined(["a", "b", "c"])
+    'a, b and c'
+    """
+    *first, last = words
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def ends(tried: Tried) -> str:
+    """How a run ends."""
+    if tried.outcome == "lost":
+        return "lost" if tried.lost_from is None else f"lost since {tried.lost_from}"
+    return tried.outcome
