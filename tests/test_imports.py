@@ -37,6 +37,7 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"fast"},
     {"why"},
     {"student"},
+    {"hunting"},
     {"views"},
     {"figures"},
     {"cli", "ekfsim"},

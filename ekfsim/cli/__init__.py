@@ -18,6 +18,7 @@ MODULES = {
     "files": ("check", "schema", "list_packaged", "show", "new", "figures"),
     "maps": ("world",),
     "studies": ("study", "compare"),
+    "hunting": ("hunt",),
     "gallery": ("gallery",),
     "comparing": ("diff",),
     "explaining": ("why",),

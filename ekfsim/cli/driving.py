@@ -5,10 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ekfsim.cli.program.asked import scene_of
+from ekfsim.cli.program.asked import scene_of_place
 from ekfsim.cli.program.kinds import Result, Word
 from ekfsim.cli.program.options import EXPLAIN, drive_options
-from ekfsim.errors import UsageError
 from ekfsim.views.terminal.driving.help import HELP
 
 if TYPE_CHECKING:
@@ -63,10 +62,8 @@ def drive(
 
 
 def _scene_to_drive(place: str, out: Path, world: str | None, **chosen: Any) -> "Scene":
-    """The scene of a commands file, or that of a world in which nothing has been done yet."""
-    from ekfsim.files.given.given import Given
+    """The scene that is driven on from. Raises UsageError where it was recorded."""
     from ekfsim.files.packaged import packaged, resolve
-    from ekfsim.files.scenes.one_file import kind_of_tree
     from ekfsim.files.source import as_written
     from ekfsim.files.yaml.parsing import parse
     from ekfsim.views.driving.course import RECORDED, refusal
@@ -75,9 +72,4 @@ def _scene_to_drive(place: str, out: Path, world: str | None, **chosen: Any) -> 
     root, _ = parse(as_written(path, str(path)), str(path))
     if root.at(("recording",)) is not None:  # even where it names no log
         raise refusal(place, RECORDED)
-    if kind_of_tree(root) != "world":
-        return scene_of(str(path), world, **chosen)
-    if world is not None:
-        raise UsageError(f"--world: {place} is a world itself; leave this out")
-    nothing_yet = Given.values({"commands": []}, str(out))
-    return scene_of(nothing_yet, str(path), **chosen)
+    return scene_of_place(place, out, world, **chosen)

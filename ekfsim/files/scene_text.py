@@ -69,6 +69,11 @@ def replay(scene: Scene, path: Path, options: Sequence[str] = ()) -> str:
 def _lines(scene: Scene, path: Path, options: Sequence[str]) -> Iterator[str]:
     yield f"# Driven by hand with ekfsim {VERSION}; this shows the same run:"
     yield f"#   {re.sub(UNPRINTABLE, '?', replay(scene, Path(path.name), options))}"
+    yield from body(scene, path)
+
+
+def body(scene: Scene, path: Path) -> Iterator[str]:
+    """The lines of the file, without those that tell where it comes from."""
     yield f"world: {_text(_world(scene, path))}"
     yield f"seed: {scene.seed}"
     yield f"filter: {_text(_filter(scene.filter, path))}"

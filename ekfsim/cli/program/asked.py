@@ -47,6 +47,27 @@ def scene_of(
     return replace(scene, **{name: value for name, value in chosen.items() if value is not None})
 
 
+def scene_of_place(place: str, out: Path, world: str | None, **chosen: Any) -> "Scene":
+    """The scene of a commands file, or that of a world in which nothing has been done yet.
+
+    out : how messages name the commands that are still to be made
+    """
+    from ekfsim.files.given.given import Given
+    from ekfsim.files.packaged import packaged, resolve
+    from ekfsim.files.scenes.one_file import kind_of_tree
+    from ekfsim.files.source import as_written
+    from ekfsim.files.yaml.parsing import parse
+
+    path = resolve(place, "commands" if place in packaged("commands") else "worlds")
+    root, _ = parse(as_written(path, str(path)), str(path))
+    if kind_of_tree(root) != "world":
+        return scene_of(str(path), world, **chosen)
+    if world is not None:
+        raise UsageError(f"--world: {place} is a world itself; leave this out")
+    nothing_yet = Given.values({"commands": []}, str(out))
+    return scene_of(nothing_yet, str(path), **chosen)
+
+
 def files_of(commands: str, scene: "Scene") -> "tuple[Path, ...]":
     """The files that people write of which a scene was made: commands, world, filters."""
     from ekfsim.files.packaged import resolve

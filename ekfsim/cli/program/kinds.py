@@ -79,6 +79,13 @@ class Pace(_Number):
         super().__init__(0, 3600, min_open=True)
 
 
+class Metres(_Number):
+    """A distance, or none."""
+
+    def __init__(self) -> None:
+        super().__init__(0, 1e6)
+
+
 class Probability(_Number):
     """A number between 0 and 1, and neither of them."""
 

@@ -132,39 +132,52 @@ def pool(workers: int) -> Engine:
     """An engine of processes on this machine."""
 
     def engine(work: Work[T], tasks: Iterable[Task]) -> Iterator[tuple[Task, T]]:
-        before, threads = set(active_children()), set(threading.enumerate())
         waiting, parcels = iter(tasks), Parcels(work)
-        with one_thread_each():
-            executor = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_begin_worker)
         running: dict[Future[T | Failed], Task] = {}
+        with processes(workers) as submit:
 
-        def hand_out(many: int) -> None:
-            for task in itertools.islice(waiting, many):
-                # processes are made as blocks come
-                with _heeding_signals_later(), one_thread_each():
-                    running[executor.submit(do_packed, *parcels(task))] = task
+            def hand_out(many: int) -> None:
+                for task in itertools.islice(waiting, many):
+                    running[submit(do_packed, *parcels(task))] = task
 
-        try:
             hand_out(AHEAD * workers)
             while running:
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
                     yield running.pop(future), unfailed(future.result())
                     hand_out(1)
-        except BrokenProcessPool:
-            raise RunError(
-                "a worker process died: it was killed, or there is too little memory for so many"
-            ) from None
-        finally:
-            executor.shutdown(wait=False, cancel_futures=True)
-            for child in set(active_children()) - before:
-                child.terminate()
-            for thread in set(threading.enumerate()) - threads:
-                # one that was just made and has not begun cannot be joined
-                with contextlib.suppress(RuntimeError):
-                    # else one of them may still be at work when all else is torn down
-                    thread.join(SECONDS)
 
     return engine
+
+
+@contextlib.contextmanager
+def processes(workers: int) -> Iterator[Callable[..., "Future[Any]"]]:
+    """Processes of this machine, to which a function and its arguments are submitted; none of them
+    is left behind. Raises RunError where one dies.
+    """
+    before, threads = set(active_children()), set(threading.enumerate())
+    with one_thread_each():
+        executor = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_begin_worker)
+
+    def submit(function: Callable[..., Any], *args: Any) -> "Future[Any]":
+        # processes are made as work comes
+        with _heeding_signals_later(), one_thread_each():
+            return executor.submit(function, *args)
+
+    try:
+        yield submit
+    except BrokenProcessPool:
+        raise RunError(
+            "a worker process died: it was killed, or there is too little memory for so many"
+        ) from None
+    finally:
+        executor.shutdown(wait=False, cancel_futures=True)
+        for child in set(active_children()) - before:
+            child.terminate()
+        for thread in set(threading.enumerate()) - threads:
+            # one that was just made and has not begun cannot be joined
+            with contextlib.suppress(RuntimeError):
+                # else one of them may still be at work when all else is torn down
+                thread.join(SECONDS)
 
 
 @contextlib.contextmanager

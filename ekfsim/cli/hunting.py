@@ -1,0 +1,185 @@
+"""The command that looks for an input which brings a filter down: hunt."""
+
+import shlex
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ekfsim.cli.program.asked import scene_of_place
+from ekfsim.cli.program.kinds import Metres, Pace, Result, Share, Whole, Word
+from ekfsim.cli.program.options import (
+    FAST,
+    FORCE,
+    GATE,
+    GUARD,
+    MOST_RUNS,
+    PARTICLES,
+    PLAIN,
+    SEED,
+    SET,
+    WORLD,
+    with_options,
+)  # fmt: skip
+from ekfsim.cli.program.process import heed, part_with, shown, width
+from ekfsim.errors import UsageError
+
+if TYPE_CHECKING:
+    from ekfsim.hunting.hunt import Asked
+    from ekfsim.hunting.search import Search
+
+GOALS = ("lost", "silent", "apart")  # told here again, so that --help need not load them
+MOST_LISTS, MOST_MOVES = 10**8, 100
+OPTIONS = (
+    click.argument("place", metavar="WORLD|COMMANDS"),
+    WORLD,
+    SEED,
+    click.option(
+        "--for", "hunted", metavar="NAME[,NAME]",
+        help="The filter that is hunted, in place of the file's: see play. Of two, an input that "
+        "tells them apart: the first lost, the second not.",
+    ),
+    click.option(
+        "--goal", type=Word(GOALS),
+        help="lost: as many runs as may be; silent: lost, and no NIS that tells it; apart: lost "
+        "under the first of two filters and not under the second.",
+    ),
+    click.option(
+        "--off", type=Metres(), default=0.1, show_default=True, metavar="METRES",
+        help="A run counts as lost where its estimate is farther from the truth, too.",
+    ),
+    click.option(
+        "--moves", type=Whole(1, MOST_MOVES), default=8, show_default=True, metavar="N",
+        help="How many commands at most, moves and senses.",
+    ),
+    click.option(
+        "--lists", type=Whole(1, MOST_LISTS), default=4000, show_default=True, metavar="N",
+        help="How many lists of commands are looked at: the same seed and as many lists find the "
+        "same on any machine.",
+    ),
+    click.option(
+        "--budget", "seconds", type=Pace(), default=60.0, show_default=True, metavar="SECONDS",
+        help="Where the search ends, whatever is left; what was found until then is told.",
+    ),
+    click.option(
+        "--enough", type=Share(), metavar="SHARE",
+        help="Be content with that share of runs, and shrink as far as it holds: 0.5.",
+    ),
+    click.option(
+        "--runs", type=Whole(1, MOST_RUNS), default=1000, show_default=True, metavar="N",
+        help="Runs behind what is told, of a seed that the search has not seen.",
+    ),
+    SET,
+    PARTICLES,
+    GATE,
+    GUARD,
+    click.option(
+        "--workers", type=Whole(1, 1024), default=1, show_default=True, metavar="N",
+        help="Processes on this machine.",
+    ),
+    FAST,
+    PLAIN,
+    click.option(
+        "--out", "-o", type=Result(), default=Path("hunt.yaml"), show_default=True,
+        help="The commands file to write; where the world is another than any file holds, beside "
+        "it hunt-world.yaml.",
+    ),
+    FORCE,
+)  # fmt: skip
+
+
+def hunt_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of a hunt: where, for whom, for what, how long."""
+    return with_options(command, OPTIONS)
+
+
+@click.command(short_help="Look for a short list of commands that brings a filter down.")
+@hunt_options
+def hunt(place: str, out: Path, force: bool, fast: bool, **asked: Any) -> None:
+    """Look for a short list of moves and senses in WORLD, or by changing those of COMMANDS, at
+    which a filter is lost most often, though all that it is told is true; shrink it, measure it
+    with draws that the search has not seen, and write it with what it promises.
+
+    Ctrl-C ends the search, and what was found until then is written.
+    """
+    from ekfsim.hunting.hunt import hunt as hunted_by
+    from ekfsim.hunting.written import refuse_unwritable, write
+    from ekfsim.views.hunting.words import conclude, description, interrupted
+
+    part_with()
+    refuse_unwritable(out, force)
+    task = _asked(place, out, fast, **asked)
+    with _rounds_bar(task.lists) as heard:
+        found = hunted_by(task, heard, heed)
+    repeated = _repeating(found.search.looked_at, task.scene.seed)
+    files = write(found, description(found), repeated, out, force)
+    if found.end == "interrupted":
+        part_with(interrupted(found, out))
+        heed()
+    click.echo(shown(conclude(found, files, repeated, width())), nl=False)
+
+
+def _asked(
+    place: str, out: Path, fast: bool, world: str | None, hunted: str | None, goal: str | None,
+    settings: tuple[str, ...], seed: int | None, particles: int | None, gate: Any,
+    guard: str | None, **numbers: Any,
+) -> "Asked":  # fmt: skip
+    """What is hunted for. Raises UsageError or InputError where that is nothing."""
+    from ekfsim.hunting.hunt import Asked
+    from ekfsim.twins import compiles, taken
+
+    if fast and not compiles():
+        raise UsageError("--fast needs Numba; install it with: pip install 'ekfsim[fast]'")
+    scene = scene_of_place(
+        place, out, world, seed=seed, filter_name=hunted, settings=settings,
+        particles=particles, gate=gate, guard=guard,
+    )  # fmt: skip
+    if not scene.commanded or scene.log is not None:
+        raise UsageError(f"{place}: only the classroom's robot obeys commands; hunt in a room")
+    if len(scene.beside) > 1 or (scene.beside and goal not in (None, "apart")):
+        raise UsageError(f"--for {hunted}: only --goal apart takes two filters; name one")
+    if goal == "apart" and not scene.beside:
+        raise UsageError(f"--goal apart: name two filters, e.g. --for {scene.filter},iekf")
+    against = scene.beside[0] if scene.beside else None
+    chosen: Any = goal or ("apart" if against else "lost")
+    way = "compiled" if fast else taken()
+    return Asked(replace(scene, beside=()), chosen, against, way=way, **numbers)
+
+
+def _repeating(lists: int, seed: int) -> str:
+    """The command line that finds the same again: a count of lists, and no clock."""
+    ctx = click.get_current_context()
+    words, elsewhere = list[str](), ("lists", "seed", "seconds", "workers", "out", "force", "fast")
+    for one in ctx.command.params:
+        value = ctx.params.get(str(one.name))
+        if one.name in elsewhere or value in (None, (), False) or not one.opts[0].startswith("-"):
+            continue
+        if value != one.get_default(ctx):
+            for each in value if isinstance(value, tuple) else (value,):
+                words += [one.opts[0], str(each)]
+    found = ["ekfsim", "hunt", ctx.params["place"], "--seed", str(seed), "--lists", str(lists)]
+    return shlex.join([*found, *words])
+
+
+@contextmanager
+def _rounds_bar(total: int) -> "Iterator[Callable[[Search], None]]":
+    """A bar of the lists that were looked at, with the share of runs of the best so far."""
+    with click.progressbar(
+        length=total, label="lists", file=sys.stderr, hidden=not sys.stderr.isatty(),
+        item_show_func=lambda told: told,
+    ) as bar:  # fmt: skip
+        before = 0
+
+        def heard(search: "Search") -> None:
+            nonlocal before
+            best = search.best[0]
+            told = f"best {100 * best.count.share:.3g} % by {len(best.listed)} commands"
+            bar.update(search.looked_at - before, told)
+            before = search.looked_at
+            heed()
+
+        yield heard

@@ -1,0 +1,160 @@
+"""What is asked → what was found: searched and shrunk on the draws of one seed, measured on those
+of another, so that no luck of the search is told as a share.
+"""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from ekfsim.errors import UsageError
+from ekfsim.hunting import goals
+from ekfsim.hunting.crew import crew
+from ekfsim.hunting.goals import Count, Goal
+from ekfsim.hunting.lists import Space
+from ekfsim.hunting.search import Search, searched
+from ekfsim.hunting.shrinking import Shrunk, shrunk
+from ekfsim.hunting.worlds import without
+from ekfsim.scene import Expect, Scene
+from ekfsim.seeds import MOST_SEED
+from ekfsim.study.block import run_blocks
+from ekfsim.study.expectation import NEES, NIS
+from ekfsim.study.results import Result, Share
+from ekfsim.twins import Way, taking
+
+SEARCHING = 0.75  # of the seconds; the rest is for shrinking
+End = Literal["lists", "best", "seconds", "interrupted"]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is hunted for, where, and how long."""
+
+    scene: Scene  # with the commands that are begun with, if any; watched by the hunted filter
+    goal: goals.Name = "lost"
+    against: str | None = None  # the filter that keeps its way, where two are told apart
+    off: float = 0.1  # m from the truth, within which no run counts as lost
+    moves: int = 8  # commands at most
+    lists: int = 4000
+    seconds: float = 60.0
+    enough: float | None = None  # the share of runs that will do
+    runs: int = 1000  # behind what is measured
+    workers: int = 1
+    way: Way = "quick"
+
+    def counting(self) -> Goal:
+        """The goal that counts runs. Raises UsageError where it lacks a filter."""
+        match self.goal:
+            case "lost":
+                return goals.Lost(self.off)
+            case "silent":
+                return goals.Silent(self.off)
+            case "apart":
+                if self.against is None:
+                    raise UsageError("--goal apart: name two filters: --for ekf,iekf")
+                return goals.Apart(self.against, self.off)
+
+
+@dataclass(frozen=True)
+class Hunted:
+    """What was found."""
+
+    asked: Asked
+    scene: Scene  # ready to be written: its seed is the fresh one, and it promises what it does
+    search: Search
+    end: End  # why the search ended
+    is_shrunk: bool  # whether there was time to leave out all that may be
+    count: Count  # of runs that do what is wanted, on the draws of the search
+    fresh: Count  # and on fresh ones
+    result: Result  # on fresh draws
+    against: Result | None  # the same of the other filter
+
+    @property
+    def is_barer(self) -> bool:
+        """Whether its world is another than the one that was asked of."""
+        return self.scene.world is not self.asked.scene.world
+
+
+def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]) -> Hunted:
+    """The best that can be found. What `heed` raises ends the search with the best so far, or
+    leaves where nothing was found yet.
+
+    heard : hears of the search after each round
+    """
+    space = Space(asked.scene.world, asked.moves)
+    state, shorter = Search(), None
+    end: End = "lists"
+    began = time.monotonic()
+
+    def left(share: float) -> bool:
+        return time.monotonic() - began < share * asked.seconds
+
+    try:
+        with crew(asked.workers, asked.counting(), asked.way, heed) as judge:
+            begin = [space.from_file(asked.scene.commands)] if asked.scene.commands else []
+            for state in searched(asked.scene, space, judge, asked.lists, begin):
+                heard(state)
+                if _is_best(state, asked.enough):
+                    end = "best"
+                    break
+                if state.looked_at < asked.lists and not left(SEARCHING):
+                    end = "seconds"
+                    break
+            shorter = shrunk(
+                asked.scene, space, state.best[0].listed, judge, asked.enough, without,
+                lambda: left(1),
+            )  # fmt: skip
+    except (KeyboardInterrupt, SystemExit):
+        if not state.best:
+            raise
+        end = "interrupted"
+    return _measured(asked, state, end, shorter)
+
+
+def _is_best(state: Search, enough: float | None) -> bool:
+    """Whether more lists would make nothing better."""
+    count = state.best[0].count
+    return count.share == 1 or (enough is not None and Share(*count).low >= enough)
+
+
+def _measured(asked: Asked, state: Search, end: End, shorter: Shrunk | None) -> Hunted:
+    """What was found, on draws that the search has not seen."""
+    best = state.best[0]
+    found = shorter or Shrunk(asked.scene, best.listed, best.count, False)
+    seed = asked.scene.seed
+    scene = replace(
+        found.scene, commands=found.listed, seed=seed + 1 if seed < MOST_SEED else seed - 1,
+        run=0, beside=(), expect=None,
+    )  # fmt: skip
+    with taking(asked.way):
+        result = Result.alone(scene, run_blocks(scene, asked.runs))
+        fresh = goals.counted(asked.counting(), scene, asked.runs)
+        against = None
+        if asked.against is not None:
+            other = replace(scene, filter=asked.against)
+            against = Result.alone(other, run_blocks(other, asked.runs))
+    scene = replace(scene, expect=promise(result))
+    return Hunted(asked, scene, state, end, found.whole, found.count, fresh, result, against)
+
+
+def promise(result: Result) -> Expect:
+    """What a study of as many runs finds again: the interval of the share lost, and of NIS and NEES
+    what is clear.
+    """
+    lost, of, runs = result.last.lost, result.tally.of, result.tally.runs
+    nis = Share(of.nis_above + of.nis_below, runs)
+    nees = Share(of.nees_above + of.nees_below, runs)
+    return Expect(
+        lost=(_down(lost.low), -_down(-lost.high)),
+        nis="silent" if nis.high < NIS else "high" if Share(of.nis_above, runs).low > NIS
+        else "low" if Share(of.nis_below, runs).low > NIS else None,
+        nees="silent" if nees.high < NEES else "high" if Share(of.nees_above, runs).low > NEES
+        else None,
+        runs=runs,
+    )  # fmt: skip
+
+
+def _down(share: float) -> float:
+    """Three decimals, none above."""
+    return math.floor(1000 * share) / 1000

@@ -1,0 +1,1 @@
+"""What a hunt found, in words."""

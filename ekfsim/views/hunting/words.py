@@ -1,0 +1,157 @@
+"""What a hunt found → sentences: the input, how often it does what is wanted, and how it was
+found.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from ekfsim.commands import Command, Move, Sense
+from ekfsim.filters.place import label
+from ekfsim.hunting.goals import Name
+from ekfsim.hunting.hunt import Hunted
+from ekfsim.printable import in_a_line
+from ekfsim.study.results import Result, Share
+from ekfsim.views.words.text_table import folded
+from ekfsim.world import Faults, World
+
+GOALS: Mapping[Name, str] = {  # what is counted, of an estimate that is off by more than `off`
+    "lost": "Lost and well off",
+    "silent": "Lost and well off, with a ΣNIS inside its band",
+    "apart": "Lost and well off more often than under the other filter, on the same draws",
+}
+
+
+def conclude(hunted: Hunted, files: Sequence[Path], repeated: str, width: int | None) -> str:
+    """All that is said of a hunt.
+
+    files : that were written; repeated : the command line that finds the same again
+    """
+    lines = [
+        *folded(in_a_line(_headline(hunted)), width),
+        *(f"  {told(command)}" for command in hunted.scene.commands),
+        *(line for sentence in _sentences(hunted, repeated) for line in folded(sentence, width)),
+        *folded(in_a_line(_written(files)), width),
+    ]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def interrupted(hunted: Hunted, file: Path) -> str:
+    """What is kept of a hunt that was interrupted, in a line."""
+    lost = _share(hunted.result.last.lost)
+    return (
+        f"the best of {hunted.search.looked_at} lists is kept in {file}: "
+        f"{label(hunted.scene.filter)} is lost in {lost}"
+    )
+
+
+def description(hunted: Hunted) -> str:
+    """What the file says of itself."""
+    name = label(hunted.scene.filter)
+    return f"Found by a hunt: {name}, {_share(hunted.result.last.lost)} lost at the end.\n" + (
+        "\n".join([*_truth(hunted.scene.world), *_beside(hunted)])
+    )
+
+
+def told(command: Command) -> str:
+    """A command as its file has it, on a line.
+
+    >>> told(Move(1.5, math.radians(90))), told(Sense(math.radians(-45)))
+    ('move 1.5 m, turn 90°', 'sense at -45°')
+    """
+    match command:
+        case Move(d, a):
+            return f"move {d:g} m, turn {math.degrees(a):.6g}°"
+        case Sense(a):
+            return f"sense at {math.degrees(a):.6g}°"
+    return str(command)
+
+
+def _headline(hunted: Hunted) -> str:
+    n, lost = len(hunted.scene.commands), hunted.result.last.lost
+    what = f"{n} command{'' if n == 1 else 's'} in {hunted.scene.world.name}"
+    return f"{what}: {label(hunted.scene.filter)} is lost in {_share(lost)}"
+
+
+def _sentences(hunted: Hunted, repeated: str) -> Iterator[str]:
+    yield from _truth(hunted.scene.world)
+    yield from _beside(hunted)
+    yield (
+        f"{GOALS[hunted.asked.goal]}: {_share(Share(*hunted.fresh))}, measured with seed "
+        f"{hunted.scene.seed}, which the search has not seen; on its own draws, seed "
+        f"{hunted.asked.scene.seed}, {_percent(hunted.count.share)}."
+    )
+    yield _looked(hunted)
+    if not hunted.is_shrunk:
+        yield "Not shrunk to the end: there may be fewer commands and rounder numbers in it."
+    if hunted.end in ("seconds", "interrupted"):
+        yield in_a_line(f"The clock ended it, not a count: {repeated} repeats it on any machine.")
+
+
+def _truth(world: World) -> Iterator[str]:
+    """Whether what the filter is told is true."""
+    if wrong := list(_untrue(world)):
+        yield f"Not all is as the filter is told: {', '.join(wrong)}."
+    else:
+        yield "Every number that the filter is told is true."
+
+
+def _untrue(world: World) -> Iterator[str]:
+    told = world.told
+    if told.noise != world.noise:
+        yield "its noise"
+    if (told.start != world.start).any() or (told.sigma != world.start_sigma).any():
+        yield "its start"
+    if told.map is not world.map and list(map(str, told.map.outlines())) != list(
+        map(str, world.map.outlines())
+    ):
+        yield "its map"
+    if world.faults != Faults():
+        yield "faults of the robot"
+
+
+def _beside(hunted: Hunted) -> Iterator[str]:
+    if hunted.against is not None:
+        name, lost = label(hunted.against.case.scene.filter), hunted.against.last.lost
+        yield f"On the same draws {name} is lost in {_share(lost)}."
+    if (nis := _silence(hunted.result)) is not None:
+        yield nis
+
+
+def _silence(result: Result) -> str | None:
+    """Whether the readings would tell."""
+    of, runs = result.tally.of, result.tally.runs
+    if not of.nis_readings:
+        return "There is no reading in it: no NIS can tell."
+    outside = Share(of.nis_above + of.nis_below, runs)
+    return f"ΣNIS, which alone could tell, lies outside its 95 % band in {_share(outside)}."
+
+
+def _looked(hunted: Hunted) -> str:
+    search, asked = hunted.search, hunted.asked
+    why = {
+        "lists": "",
+        "best": "; no list could be better",
+        "seconds": f"; there were {asked.seconds:g} s",
+        "interrupted": "; then it was interrupted",
+    }[hunted.end]
+    if hunted.end == "best" and asked.enough is not None:
+        why = f"; {_percent(asked.enough)} were enough"
+    return f"Looked at {search.looked_at} lists in {search.runs} runs{why}."
+
+
+def _written(files: Sequence[Path]) -> str:
+    first, *rest = files
+    beside = f", with {rest[0]}" if rest else ""
+    return (
+        f"{first}{beside}: ekfsim play {first} shows a run, ekfsim study {first} --expect holds it "
+        "to its word"
+    )
+
+
+def _share(share: Share) -> str:
+    return f"{_percent(share.value)} of runs ({100 * share.low:.3g} to {100 * share.high:.3g})"
+
+
+def _percent(value: float) -> str:
+    return f"{100 * value:.3g} %"
