@@ -96,13 +96,16 @@ def play(
 @click.option(
     "--strip", is_flag=True, help="Draw the curves of `plot` beneath each picture, with a cursor."
 )
+@click.option(
+    "--why", "explained", is_flag=True, help="On a page, tell why the run was lost, too (key w)."
+)
 @SIZE
 @DPI
 @FORCE
 def render(
     out: Path, every: int, conditional: bool, step: tuple[int, bool] | None, follow: bool,
     zoom: tuple[float, float, float, float] | None, size: tuple[int, int] | None, dpi: int,
-    strip: bool, force: bool, confidence: float, **chosen: Any,
+    strip: bool, explained: bool, force: bool, confidence: float, **chosen: Any,
 ) -> None:  # fmt: skip
     """Draw every step of COMMANDS into files, or one step."""
     from ekfsim.views.picture.look import Look, Paper, get_ready
@@ -112,7 +115,10 @@ def render(
     paper.check()
     _refuse_together(out, every, step is not None, follow, zoom is not None, paper != Paper())
     if out.suffix.lower() == ".html":
-        return write_page(scene_of(**chosen), out, Look(confidence, conditional), every, force)
+        look = Look(confidence, conditional)
+        return write_page(scene_of(**chosen), out, look, every, force, explained)
+    if explained:
+        raise UsageError("--why: stands on a page; name an .html, or see `ekfsim why -o why.png`")
     from ekfsim.localization import play as steps_of
     from ekfsim.views.curves.series import Series
     from ekfsim.views.film import animation, one_step
@@ -178,11 +184,23 @@ def _refuse_together(
         )
 
 
-def write_page(scene: "Scene", out: Path, look: "Look", every: int, force: bool) -> None:
-    """Write the page that plays a scene, and tell what it holds."""
+def write_page(
+    scene: "Scene", out: Path, look: "Look", every: int, force: bool, explained: bool = False
+) -> None:
+    """Write the page that plays a scene, and tell what it holds. explained : tell why it was lost,
+    too
+    """
+    from ekfsim.files.results.writing import refuse_existing
     from ekfsim.views.page.writing import write
 
-    made = write(scene, out, look, every, force, heed)
+    refuse_existing(out, force)  # before anything takes long
+    reason = ""
+    if explained:
+        from ekfsim.views.why.answer import answer
+        from ekfsim.why import explain
+
+        reason = answer(explain(scene.alone()[0], heard=lambda done, budget: heed()))
+    made = write(scene, out, look, every, force, heed, reason)
     if made.left_out:
         say(f"{in_a_line(out)}: {made.left_out}")
     click.echo(f"{in_a_line(out)}: {made.held} {'view' if made.held == 1 else 'views'}")

@@ -163,7 +163,7 @@ def test_a_signal_loses_nothing(number, place):
 def test_the_help_tells_the_keys():
     told = ekfsim("drive", "--help").out
     assert "\n  up  f     down  x     forward" in told
-    assert "d  drive the robot yourself from here on" in ekfsim("play", "--help").out
+    assert "d  drive the robot on from here" in ekfsim("play", "--help").out
 
 
 def test_what_the_page_drives_is_lost_as_it_says():

@@ -51,3 +51,17 @@ def test_a_run_that_fails_leaves_no_page(place):
 def test_filters_side_by_side_and_crowds(place, name):
     made = ekfsim("render", "short.yaml", "--filter", name, "-o", "lesson.html")
     assert (made.status, made.out, made.err) == (0, "lesson.html: 5 views\n", "")
+
+
+def test_a_page_tells_why_where_it_is_asked(place):
+    words = ("render", "diverge-02b-laser-overtrusted", "--every", "40", "-o")
+    assert ekfsim(*words, "plain.html").status == 0
+    assert ekfsim(*words, "why.html", "--why").status == 0
+    assert 'id="why"' not in (place / "plain.html").read_text()
+    assert "Lost since step 80." in (place / "why.html").read_text()
+
+
+def test_why_stands_on_a_page_alone(place):
+    refused = ekfsim("render", "short.yaml", "-o", "pictures", "--why")
+    assert (refused.status, refused.out) == (2, "")
+    assert "--why: stands on a page" in refused.err

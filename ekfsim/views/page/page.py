@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterable, Sequence
 from contextlib import redirect_stderr
 from dataclasses import dataclass
+from html import escape
 from io import StringIO
 from typing import Any, Self
 
@@ -51,11 +52,13 @@ class Page:
         runs: Sequence[Iterable[Step]],
         look: Look = STANDARD,
         every: int = 1,
+        reason: str = "",
     ) -> Self:
         """Of a run that one filter watches, or several.
 
         runs : the steps of each filter, the scene's own first; each is read twice
         every : of how many views one is held, at least; of a long drive it is of more
+        reason : why the run was lost, as it is told; empty where that was not asked
         """
         tally, (first, *others) = Tally(), runs
         with redirect_stderr(StringIO()):  # what a filter prints it prints again
@@ -80,7 +83,7 @@ class Page:
         }
         lesson = f'{inert(fixed)[:-1]},"views":[\n' + ",\n".join(views) + "\n]}"
         thinned = left_out(tally.views, len(views))
-        return cls(_filled(scene, lesson, thinned), tally.views, len(views))
+        return cls(_filled(scene, lesson, thinned, reason), tally.views, len(views))
 
     @property
     def left_out(self) -> str:
@@ -117,7 +120,7 @@ def inert(value: Any) -> str:
     return told.translate(INERT)
 
 
-def _filled(scene: Scene, lesson: str, thinned: str) -> str:
+def _filled(scene: Scene, lesson: str, thinned: str, reason: str) -> str:
     """The page's text with everything in its place."""
     style = inks() + text_of("page.css")
     script = "(() => {\n" + "".join(map(text_of, SCRIPTS)) + "})();\n"
@@ -130,4 +133,17 @@ def _filled(scene: Scene, lesson: str, thinned: str) -> str:
         "thinned": thinned,
         "source": in_a_line(told_in_a_line(scene)),
     }
-    return filled(text_of("page.html"), facts, {"style": style, "script": script, "lesson": lesson})
+    markup = {"style": style, "script": script, "lesson": lesson, "why": panel(reason)}
+    return filled(text_of("page.html"), facts, markup)
+
+
+def panel(reason: str) -> str:
+    """The panel that tells why the run ended as it did; none where that was not asked.
+
+    >>> print(panel("a < b"), end="")
+    <details id="why"><summary>Why, and what cures it</summary><pre>a &lt; b</pre></details>
+    """
+    if not reason:
+        return ""
+    summary = "<summary>Why, and what cures it</summary>"
+    return f'<details id="why">{summary}<pre>{escape(reason.rstrip())}</pre></details>\n'

@@ -32,14 +32,15 @@ def write(
     every: int = 1,
     force: bool = False,
     heed: Callable[[], object] = lambda: None,
+    reason: str = "",
 ) -> Page:
     """Play a scene and write its page; what comes back tells how many views it holds.
 
-    heed : called at each step, to end it all
+    heed : called at each step, to end it all; reason : why the run was lost, as it is told
     Raises UsageError where the file exists (without `force`).
     """
     refuse_existing(target, force)
-    made = Page.of(scene, [Played(one, heed) for one in scene.alone()], look, every)
+    made = Page.of(scene, [Played(one, heed) for one in scene.alone()], look, every, reason)
     with whole_text(target, force) as file:
         file.write(made.text)
     return made

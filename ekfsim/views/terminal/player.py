@@ -21,6 +21,7 @@ from ekfsim.views.terminal.keys.bindings import Action, Counted
 from ekfsim.views.terminal.keys.help import HELP
 from ekfsim.views.terminal.keys.interrupts import unnoticed
 from ekfsim.views.terminal.pace import Pace
+from ekfsim.views.terminal.reason import Reason
 from ekfsim.views.terminal.screens.moment import HINTS, Moment, Screen
 from ekfsim.views.words.closing import conclude_all
 from ekfsim.views.words.long_form import WORDS
@@ -60,6 +61,8 @@ class Player:
     _summaries: list[Summary] = field(init=False)
     _length: Length | None = field(init=False)
     _page: str = ""  # what is read in place of the run
+    _page_name: str = ""  # what that is called, where it is not the help
+    _reason: Reason | None = None  # why it was lost, once that was asked
     _stayed: tuple[str, int] = ("", 0)  # why the view stayed at the last key, and which
     _counted: Counted = field(default_factory=Counted)
 
@@ -131,15 +134,27 @@ class Player:
                 self._show(note=f"The narrative in its {form} form, from this view on:")
             case Action.PANES | Action.UP | Action.DOWN:
                 page = "" if action is Action.PANES else self._page
-                self._show(note=self.screen.arrange(action, count), page=page)
+                told = self.screen.arrange(action, count)
+                self._show(note=told, page=page, named=self._page_name)
             case Action.SAVE:
                 self._show(note=self.save(self._view(self.number)))
+            case Action.WHY:
+                self._tell_why()
             case Action.DRIVE:
                 self._drive_on()
             case Action.HELP:
                 self._show(page=f"{HELP}\n\n{WORDS}")
             case _:
                 self._show(note="That key does nothing here; ? shows those that do")
+
+    def _tell_why(self) -> None:
+        """Why the run was lost, calculated when it is first asked; Ctrl-C stops that."""
+        if self._reason is None:
+            self._reason = Reason.of(self.scene, self.screen.wait, self.interruptible)
+        if self._reason is None:
+            self._show(note="Stopped on the way; Ctrl-C again ends the program")
+        else:
+            self._show(page=self._reason.page(), named=self._reason.name)
 
     def _drive_on(self) -> None:
         from ekfsim.views.driving.course import refuse_what_is_not_driven
@@ -257,7 +272,9 @@ class Player:
         moved, self.number = number != self.number, number
         self._show(note, passed=f"<=={whither} {self._place}\n\n" if moved else "")
 
-    def _show(self, note: str = "", page: str = "", passed: str = "", typed: int = 0) -> None:
+    def _show(
+        self, note: str = "", page: str = "", passed: str = "", typed: int = 0, named: str = ""
+    ) -> None:
         self._stayed = ("", 0)
         view = self._view(self.number)
         revised = self.number > 0 and not view.beam and self._view(self.number - 1).beam
@@ -266,11 +283,11 @@ class Player:
         last = self.playback.over and self.number == len(self.playback) - 1
         if last and not note and self.playback.failure is not None and not self.screen.keeps:
             note = self._over()  # the picture alone does not say so
-        self._page = page
+        self._page, self._page_name = page, named if page else ""
         pace = "" if self.pace.seconds is None else f" · every {self.pace.seconds:g} s"
         moment = Moment(
             view, told, self._place + pace + self.remark, self.explain, before, passed, note, page,
-            typed, self.hints,
+            self._page_name, typed, self.hints,
         )  # fmt: skip
         self.screen.show(moment)
 

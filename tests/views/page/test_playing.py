@@ -5,6 +5,9 @@ import re
 
 import pytest
 
+from ekfsim.files.scenes.load import load_scene
+from ekfsim.views.page.writing import write
+
 
 def title(page):
     return page.locator("#title").inner_text()
@@ -190,3 +193,19 @@ def test_a_hidden_filter_leaves_no_curve(opened, pages):
         page.get_by_role("checkbox", name="ekf").uncheck()
         assert page.locator(".strip .value").count() == 0
         assert page.locator(".strip .second").count() == 2
+
+
+def test_w_opens_why_it_was_lost_where_the_page_tells_it(opened, pages, tmp_path):
+    write(load_scene("square"), tmp_path / "why.html", reason="Cause: a < b.\n")
+    with opened(tmp_path / "why.html") as page:
+        told = page.locator("#why pre")
+        assert not told.is_visible()
+        page.keyboard.press("w")
+        assert told.inner_text() == "Cause: a < b."
+        assert "w why" in page.locator("#keys").inner_text()
+        page.keyboard.press("w")
+        assert not told.is_visible()
+    with opened(pages("square")) as page:
+        page.keyboard.press("w")
+        assert page.locator("#why").count() == 0
+        assert "w why" not in page.locator("#keys").inner_text()

@@ -342,3 +342,36 @@ def test_where_a_run_fails_its_last_view_says_so_without_a_key_more():
         player.play(lambda timeout: next(waiting))
     assert [moment.note[:15] for moment in screen.moments] == ["", "The run failed "]
     assert "The run failed: too far" in screen.moments[-1].narrative
+
+
+def test_w_tells_why_in_place_of_the_run_until_the_next_key():
+    place = load_scene("diverge-02b-laser-overtrusted")
+    waited = []
+    screen = Screen()
+    screen.wait = waited.append
+    keys = iter("wjn" + QUIT)
+    player = Player(place, play(place), screen, lambda view: "", 0.954)
+    player.play(lambda timeout: next(keys))
+    _, why, scrolled, gone_on = screen.moments
+    assert "Lost since step 80" in why.page
+    assert why.page_name.startswith("why: ")
+    assert (scrolled.page, scrolled.page_name) == (why.page, why.page_name)
+    assert (gone_on.page, gone_on.view.number) == ("", 1)
+    assert waited[0].startswith("calculating why")
+
+
+def test_ctrl_c_stops_asking_why_and_not_the_program():
+    @contextmanager
+    def pressed():
+        yield lambda: True
+
+    place = load_scene("diverge-02b-laser-overtrusted")
+    screen, keys = Screen(), iter("wn" + QUIT)
+    screen.wait = lambda note: None
+    player = Player(
+        place, play(place), screen, lambda view: "", 0.954, interruptible=pressed
+    )  # fmt: skip
+    player.play(lambda timeout: next(keys))
+    assert not screen.moments[1].page
+    assert "Stopped" in screen.moments[1].note
+    assert screen.moments[2].view.number == 1

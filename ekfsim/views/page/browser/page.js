@@ -209,6 +209,14 @@ function play(on) {
   clock = setTimeout(tick, pause());
 }
 
+// Why the run was lost, where the page was asked to tell.
+function why() {
+  const reason = at("why");
+  if (!reason) return;
+  reason.open = !reason.open;
+  if (reason.open) reason.scrollIntoView({ block: "nearest" });
+}
+
 // Who wants little motion gets as much time as it takes to read.
 function pause() {
   const tempo = lesson.driven ? TEMPO.driven : views[current].beam ? TEMPO.beam : TEMPO.other;
@@ -223,6 +231,7 @@ const KEYS = {
   Home: () => go(0),
   End: () => go(views.length - 1),
   " ": () => play(!clock),
+  w: why,
 };
 
 addEventListener("keydown", event => {
@@ -268,6 +277,7 @@ for (const svg of [at("map"), at("close")]) {
   });
 }
 
+if (at("why")) at("keys").append(" · w why");
 legend(at("legend"));
 toggles(at("filters"));
 current = linked();

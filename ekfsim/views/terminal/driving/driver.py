@@ -56,6 +56,7 @@ class Driver(Player):
             return True
         number, order = self._typed.end(), KEYS.get(name)
         action = Action.UNKNOWN if order is not None else action_of(name)
+        action = Action.UNKNOWN if action is Action.WHY else action  # w writes here
         if action is Action.QUIT:
             return self._stays(name)
         self._warned = False

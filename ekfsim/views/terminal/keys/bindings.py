@@ -22,6 +22,7 @@ class Action(Enum):
     DOWN = "scroll down"
     UP = "scroll up"
     SAVE = "save"
+    WHY = "why it was lost"
     DRIVE = "drive on from here"
     HELP = "help"
     QUIT = "quit"
@@ -43,6 +44,7 @@ KEYS: dict[str, Action] = {
     "j": Action.DOWN,
     "k": Action.UP,
     "s": Action.SAVE,
+    "w": Action.WHY,
     "d": Action.DRIVE,
     **dict.fromkeys(("?", "h", "f1"), Action.HELP),
     **dict.fromkeys(("q", "ctrl+d", NO_MORE), Action.QUIT),

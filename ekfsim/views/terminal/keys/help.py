@@ -8,6 +8,6 @@ a  to the next ambiguous beam            l  to where the filter was lost
 +  -  go on by itself, faster or slower; space waits, + goes on again
 e  the narrative in its long form: every equation; e again for the short one
 v  Tab  picture, numbers, or both        j  k  scroll the numbers
-d  drive the robot yourself from here on
+w  why it was lost, and what cures it    d  drive the robot on from here
 s  save the picture       ?  h  F1  this help       q  Ctrl-D  quit
 A step is one command; a reading has two views: the beam, then its outcome."""

@@ -226,7 +226,8 @@ class Layout:
         note = " ".join(notes)
         hints = [*moment.hints[:2], self._other(panes), *moment.hints[2:]]
         if moment.page:
-            place, hints = "the keys", ["n goes on", "any other key: back to the run"]
+            place = moment.page_name or "the keys"
+            hints = ["n goes on", "any other key: back to the run"]
         if len(notes) > 1:
             lines = self._cut([place, *notes])
         elif note:

@@ -23,6 +23,7 @@ class Moment:
     passed: str = ""
     note: str = ""  # what there is to say of the key
     page: str = ""  # what was asked for in place of the run, until the next key: the help
+    page_name: str = ""  # what that is called, where it is not the help
     typed: int = 0  # the number that is being typed, 0 where none is
     hints: tuple[str, ...] = HINTS  # the keys to know, those most needed first
 

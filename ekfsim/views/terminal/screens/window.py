@@ -112,7 +112,7 @@ class Window:
             return
         self._shown = moment.view
         self._picture.show(moment.view)
-        self._say((moment.note or moment.place).split("\n")[0])
+        self._say((moment.note or moment.page_name or moment.place).split("\n")[0])
         self._canvas.draw_idle()
         self._canvas.flush_events()
 
