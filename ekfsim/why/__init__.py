@@ -1,9 +1,10 @@
 """Why a run was lost: one thing put right at a time, and the very same draws played again.
 
-records.py      Change, Tried, Mechanism, Shares, Explanation: what is asked and what was found
-replaying.py    a scene with changes → its Steps, and what they say
-changes.py      every change of a scene, each alone
-explaining.py   explain: the changes tried, the smallest set that cures, and its name
+records.py     Change, Tried, Mechanism, Shares, Explanation: what is asked and what was found
+explaining.py  explain: the changes tried, the smallest set that cures, and its name
+changes/       what can be put right, each alone; suspects: which mechanism each takes away
+trying/        a scene with changes → its Steps; one run within a budget, many runs side by side;
+               which suspects it was, by both; the smallest set that cures
 """
 
 from ekfsim.why.explaining import explain

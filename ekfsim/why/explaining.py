@@ -1,47 +1,119 @@
 """explain: what was wrong with one run, by what cures it."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
 
+import numpy as np
+
+from ekfsim.errors import UsageError
+from ekfsim.records import Step
 from ekfsim.scene import Scene
-from ekfsim.why.changes import changes_of
-from ekfsim.why.records import Explanation, Tried
-from ekfsim.why.replaying import cures, ending, replayed
+from ekfsim.why.changes.beams import AMBIGUOUS
+from ekfsim.why.changes.singles import singles
+from ekfsim.why.changes.suspects import FEW, Suspect, suspects_of
+from ekfsim.why.changes.told import ratios, starts
+from ekfsim.why.records import Change, Explanation, Mechanism, Tried
+from ekfsim.why.trying.crowd import Crowd
+from ekfsim.why.trying.minimal import SpentError, minimal
+from ekfsim.why.trying.naming import named
+from ekfsim.why.trying.seeing import unseen
+from ekfsim.why.trying.trials import Heard, Trials
 
 BUDGET = 400  # replays of one run
+PARTED = 1e-6  # m, rad; two estimates that differ by more have parted
+PARTICLE_STEPS = 4_000_000  # of many runs' exact filter, in all
+FEWEST = 100  # runs that it is tried in all the same
 
 
 def explain(
-    scene: Scene,
-    runs: int = 1000,
-    budget: int = BUDGET,
-    heard: Callable[[int, int], None] | None = None,
+    scene: Scene, runs: int = 1000, budget: int = BUDGET, heard: Heard | None = None
 ) -> Explanation:
     """Why the scene's run ended as it did.
 
     runs : how many stand behind the shares; budget : how many times one run is played again at
     most; heard : is told how many of these are done, and the budget
     """
-    as_it_stands = tuple(replayed(scene, ()))
-    was = ending(as_it_stands)
+    if not scene.commanded or scene.log is not None:
+        raise UsageError(f"{scene.commands_source}: why explains runs of commands; this is none")
+    steps = tuple(Trials.first(scene))
+    trials = Trials(scene, steps, budget, heard)
+    was = trials.was
     if was.outcome == "consistent":
-        return Explanation(scene, was.outcome, None, lost_steps=as_it_stands, budget=budget)
-    tried = []
-    for change in changes_of(scene):
-        now = ending(replayed(scene, (change,)))
-        tried.append(Tried(change, cures(was, now), now.nees, now.lost_from, now.outcome))
-        if heard is not None:
-            heard(len(tried), budget)
-    curing = [one.change for one in tried if one.cures]
-    cured = tuple(replayed(scene, curing[:1])) if curing else ()
+        seen = Mechanism.NO_DIRECTION_SEEN if unseen(scene, steps) else None
+        return Explanation(
+            scene, was.outcome, None, mechanism=seen, budget=budget, lost_steps=steps
+        )
+    suspects = suspects_of(scene, steps)
+    _try_all(scene, suspects, trials)
+    few = max(min(runs, FEWEST), min(runs, PARTICLE_STEPS // (FEW * len(steps))))
+    guilty, shares = named(
+        suspects, trials, Crowd(scene, runs, was.outcome), Crowd(scene, few, was.outcome)
+    )
+    cure = _cure(guilty, trials)
+    cured = tuple(trials.again(cure)) if cure else ()
     return Explanation(
         scene,
         was.outcome,
         was.lost_from,
-        tuple(tried),
-        tuple(curing[:1]),
-        tuple(curing[1:]),
-        replays=len(tried),
-        budget=budget,
-        lost_steps=as_it_stands,
-        cured_steps=cured,
+        tuple(trials.tried),
+        cure,
+        tuple(one.change for one in trials.tried if one.cures and one.change not in cure),
+        parted(steps, cured),
+        guilty[0].mechanism if len(guilty) == 1 else None,
+        tuple(one.mechanism for one in guilty) if len(guilty) > 1 else (),
+        trials.replays,
+        budget,
+        shares,
+        steps,
+        cured,
     )
+
+
+def parted(lost: Sequence[Step], cured: Sequence[Step]) -> int | None:
+    """The index of the first step after which two runs believe to be elsewhere."""
+    for one, other in zip(lost, cured, strict=False):
+        if not np.allclose(one.posterior.mean, other.posterior.mean, rtol=0, atol=PARTED):
+            return one.entry.index
+    return None
+
+
+def _try_all(scene: Scene, suspects: Sequence[Suspect], trials: Trials) -> None:
+    """Every change by itself, as far as the budget goes."""
+    classes = [
+        one
+        for suspect in suspects
+        for one in (suspect.change, *suspect.members)
+        if one.kind != "reading"
+    ]
+    others = [*ratios(scene.world), *starts(scene.world), AMBIGUOUS]
+    names = {(one.kind, one.name) for one in classes}
+    classes += [one for one in others if (one.kind, one.name) not in names]
+    try:
+        for change in classes:
+            trials.alone(change)
+        trials.each(singles([step.entry for step in trials.steps]))
+    except SpentError:
+        pass
+
+
+def _cure(guilty: Sequence[Suspect], trials: Trials) -> tuple[Change, ...]:
+    """The smallest set that cures: of what is guilty, of all else where nothing is."""
+    if not guilty:
+        return tuple(one.change for one in _first_cures(trials))[:1]
+    if len(guilty) > 1:
+        return minimal(tuple(one.change for one in guilty), trials.together)
+    suspect = guilty[0]
+    found = {_known(one.change): one.change for one in trials.tried if one.cures}
+    for member in suspect.members:
+        if _known(member) in found:
+            return (found[_known(member)],)
+    if len(suspect.members) > 1 and suspect.change.kind in ("noise", "start", "map", "fault"):
+        return minimal(suspect.members, trials.together)
+    return (suspect.change,)
+
+
+def _known(change: Change) -> tuple[str, str, int | None]:
+    return change.kind, change.name, change.step
+
+
+def _first_cures(trials: Trials) -> list[Tried]:
+    return [one for one in trials.tried if one.cures]

@@ -1,5 +1,6 @@
 """What is put right in a run, what came of it, and what that explains."""
 
+import functools
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from enum import Enum
@@ -97,7 +98,7 @@ class Shares:
     low: float  # of lost_with − lost
     high: float
     change: Change  # as a rule of a whole class: "such beams left out"
-    of: Literal["lost", "over-confident", "over-cautious"] = "lost"  # what is counted
+    of: Outcome = "lost"  # what is counted
 
 
 @dataclass(frozen=True, repr=False)
@@ -124,3 +125,18 @@ class Explanation(Shown):
         if self.mechanism is not None:
             named = self.mechanism.value
         return f"Explanation({self.outcome}: {named}, {self.replays} replays)"
+
+
+def together(name: str, changes: tuple[Change, ...]) -> Change:
+    """Several changes as one; one alone is itself."""
+    if len(changes) == 1:
+        return changes[0]
+
+    def of_scene(scene: Scene) -> Scene:
+        return functools.reduce(lambda so_far, one: one.of_scene(so_far), changes, scene)
+
+    def of_entries(entries: Iterable[Entry]) -> Iterable[Entry]:
+        return functools.reduce(lambda so_far, one: one.of_entries(so_far), changes, entries)
+
+    said = "; ".join(f"{one.name}: {one.told}" for one in changes)
+    return Change(changes[0].kind, name, said, None, of_scene, of_entries)

@@ -1,0 +1,6 @@
+"""Changes made, and what comes of them.
+
+replaying.py  a scene with changes → its Steps     trials.py   one run, within a budget of replays
+crowd.py      the same of many runs → shares       naming.py   which suspects it was, by both
+minimal.py    the smallest set that cures (ddmin)  seeing.py   a direction that no beam sees
+"""

@@ -1,0 +1,93 @@
+"""One run, played again with one change after another, within a budget."""
+
+from collections.abc import Callable, Iterable, Sequence
+
+from ekfsim.localization import filter_of, first_belief, localize
+from ekfsim.records import Step
+from ekfsim.scene import Scene
+from ekfsim.study.block import watched_along
+from ekfsim.why.changes.singles import abreast, numbers
+from ekfsim.why.records import Change, Outcome, Tried
+from ekfsim.why.trying.crowd import outcomes
+from ekfsim.why.trying.minimal import SpentError
+from ekfsim.why.trying.replaying import cures, ending, replayed
+
+Heard = Callable[[int, int], None]  # replays that are done, and the budget
+
+
+class Trials:
+    """What came of each change of one run."""
+
+    def __init__(
+        self, scene: Scene, steps: Sequence[Step], budget: int, heard: Heard | None
+    ) -> None:
+        self.scene, self.steps, self.budget, self._heard = scene, steps, budget, heard
+        self.was = ending(steps)
+        self.replays = 0
+        self.tried: list[Tried] = []
+
+    @staticmethod
+    def first(scene: Scene) -> Iterable[Step]:
+        """The run as it stands."""
+        return replayed(scene, ())
+
+    def again(self, changes: Sequence[Change]) -> Iterable[Step]:
+        """The run with changes that are known to cure: no trial."""
+        return replayed(self.scene, changes)
+
+    def alone(self, change: Change) -> bool:
+        """Whether a change alone cures. Raises SpentError where that is not to be known."""
+        for one in self.tried:
+            if one.change is change:
+                return one.cures
+        now = ending(self.played((change,)))
+        found = Tried(change, cures(self.was, now), now.nees, now.lost_from, now.outcome)
+        self.tried.append(found)
+        return found.cures
+
+    def together(self, changes: Sequence[Change]) -> bool:
+        """Whether several changes cure."""
+        if len(changes) == 1:
+            return self.alone(changes[0])
+        return cures(self.was, ending(self.played(changes)))
+
+    def played(self, changes: Sequence[Change]) -> tuple[Step, ...]:
+        """The run with changes."""
+        self._count(1)
+        return tuple(replayed(self.scene, changes))
+
+    def each(self, changes: Sequence[Change]) -> None:
+        """Try single readings and moves side by side: as many as the budget allows, from the step
+        since which the run is lost backwards.
+        """
+        last = self.was.lost_from
+        some = [one for one in changes if last is None or (one.step or 0) <= last]
+        some = some[::-1][: max(self.budget - self.replays, 0)]
+        if not some:
+            return
+        self._count(len(some))
+        scene, runs = self.scene, numbers(self.scene, len(some))
+        entries = abreast([step.entry for step in self.steps], some)
+        steps = localize(
+            entries, filter_of(scene, runs), first_belief(scene, runs.shape), scene.guard,
+            scene.world.layout,
+        )  # fmt: skip
+        watched = watched_along(scene, runs, steps)
+        found = outcomes(watched)
+        for row, change in reversed(list(enumerate(some))):
+            outcome: Outcome = next(word for word in found if found[word][row])
+            since = int(watched.lost_from[row])
+            cured = outcome != "lost" if self.was.outcome == "lost" else outcome == "consistent"
+            self.tried.append(
+                Tried(
+                    change, cured, float(watched.ends.nees.value[row]),
+                    since if since >= 0 else None, outcome,
+                )
+            )  # fmt: skip
+
+    def _count(self, replays: int) -> None:
+        if self.replays + replays > self.budget:
+            raise SpentError
+        self.replays += replays
+        if self._heard is not None:
+            self._heard(self.replays, self.budget)
