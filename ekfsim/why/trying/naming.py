@@ -28,6 +28,9 @@ def named(
     """
     quick = [one for one in suspects if not one.slow]
     curing = [one for one in quick if cured(one, trials)]
+    if not len(crowd.numbers):  # this run alone: only where nothing else cures it
+        curing += [one for one in suspects if one.slow and cured(one, trials)]
+        return (tuple(curing) if len(curing) == 1 else ()), None
     found = [(one, crowd.shares(one.in_many)) for one in curing]
     best = max((taken_away(shares) for _, shares in found), default=0.0)
     if best < 1 - ALL_BUT:
