@@ -8,6 +8,7 @@ watching.py   files that are read again when they are saved
 pace.py       a run that goes on by itself
 drawing.py    a view in text, with readings.py and beliefs.py, on the canvas of braille.py
 wrapping.py   lines of text
+reason.py     why the run was lost, calculated when it is asked
 driving/      a run that is driven by keys
 stage.py      the screens that there are, and their keys
 interactive.py  puts all of it together, to play or to drive

@@ -148,11 +148,11 @@ def shares(found: Shares) -> str:
     low, high = sorted(100 * edge for edge in (found.low, found.high))
     what = found.of
     change = 100 * (found.lost_with - found.lost)
+    numbers = f"{change:+.1f} points, {low:+.1f} to {high:+.1f}".replace("-", "−")
     return (
         f"Of {found.runs} runs {percent(found.lost)} are {what} as they stand, "
-        f"{percent(found.lost_with)} {put_right(found.change)} "
-        f"[{change:+.1f} points, {low:+.1f} to {high:+.1f}]"
-    ).replace("-", "−" if "-" in f"{change:+.1f}" else "-")
+        f"{percent(found.lost_with)} {put_right(found.change)} [{numbers}]"
+    )
 
 
 def percent(share: float) -> str:

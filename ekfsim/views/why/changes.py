@@ -18,6 +18,9 @@ PLURALS: dict[Kind, str] = {
 }
 
 
+DEED = "left out"  # what becomes of a class of beams, where its name does not say it
+
+
 def put_right(change: Change) -> str:
     """What a change makes of a run, after "with" or "without".
 
@@ -26,7 +29,7 @@ def put_right(change: Change) -> str:
     >>> put_right(Change("noise", "the told rangeSigmaRatio", "0.01 told, 0.02 true"))
     'with the told rangeSigmaRatio made true'
     """
-    name = change.name
+    name, deed = change.name, change.told.partition(",")[0]
     match change.kind:
         case "noise" | "start" | "sigma":
             return f"with {name} made true"
@@ -35,15 +38,10 @@ def put_right(change: Change) -> str:
         case "fault" | "reading":
             return f"without {name}"
         case "beams":
-            return f"with {name}" if ends_in_a_deed(name) else f"with {name} left out"
+            return f"with {name}" + (f" {deed}" if deed.startswith(DEED) else "")
         case "move":
             return f"with {name} made exact"
     return f"with {name}"
-
-
-def ends_in_a_deed(name: str) -> bool:
-    """Whether the name of a class says itself what becomes of it: "such beams left out"."""
-    return name.endswith((" out", " true", " exact", " right"))
 
 
 def all_of(changes: Sequence[Change]) -> str:

@@ -1,6 +1,7 @@
 """How each mechanism is told of one run: what the filter was told or saw, and what was so."""
 
 import math
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,6 +15,7 @@ from ekfsim.views.why.changes import joined
 from ekfsim.views.why.met import Met, called, met, told
 from ekfsim.views.words.numbers import length
 from ekfsim.why.records import Change, Explanation, Mechanism
+from ekfsim.world import BOUNDARY
 
 LASER = (Mechanism.LASER_OVERTRUSTED, Mechanism.LASER_DISTRUSTED)
 KEYS = {
@@ -21,6 +23,12 @@ KEYS = {
     "odometry_angle": "odometryAngSigmaRatio",
     "range": "rangeSigmaRatio",
 }
+OF_NO_BEAM = (  # what no single beam has done
+    *(Mechanism.LASER_OVERTRUSTED, Mechanism.LASER_DISTRUSTED),
+    *(Mechanism.ODOMETRY_OVERTRUSTED, Mechanism.ODOMETRY_DISTRUSTED),
+    *(Mechanism.WHEEL_SCALE, Mechanism.TURN_SCALE, Mechanism.SLIP, Mechanism.KIDNAP),
+    *(Mechanism.WRONG_START, Mechanism.HEADING_SPREAD),
+)
 NUMBERS = {2: "twice", 3: "three times", 4: "four times", 5: "five times", 10: "ten times"}
 PARTS = {2: "half", 3: "a third of", 4: "a quarter of", 5: "a fifth of", 10: "a tenth of"}
 NEAR = 0.02  # of a whole number: a ratio that is told as one
@@ -86,7 +94,7 @@ def beam_of(explanation: Explanation) -> Met | None:
     another wall than was predicted and moved the estimate.
     """
     step = culprit(explanation)
-    if step is None:
+    if step is None or explanation.mechanism in OF_NO_BEAM:
         return None
     found = met(step, explanation.scene)
     if found is not None:
@@ -204,7 +212,8 @@ def _map(explanation: Explanation, mechanism: Mechanism) -> str:
 
 
 def _with_what(change: Change) -> str:
-    name = change.name.removesuffix(" of the map")
+    name = change.name.removesuffix(" in the map").removesuffix(" of the map")
+    name = re.sub(rf"\b{BOUNDARY}\b", "the room's wall", name)
     return f"{name} ({change.told})" if change.told else name
 
 
@@ -256,5 +265,6 @@ def longest(steps: Sequence[Step]) -> int:
 def _close(explanation: Explanation) -> str:
     beams = (met(step, explanation.scene) for step in explanation.lost_steps)
     least = min((b.predicted for b in beams if b is not None and b.predicted > 0), default=math.nan)
-    near = "" if math.isnan(least) else f": at {length(least)} it is next to nothing"
-    return f"The laser's noise is told as a share of the range{near}"
+    σ = explanation.scene.world.told.noise.range * least
+    near = "" if math.isnan(least) else f": at {length(least)} σ is {length(σ)}"
+    return f"The laser's noise is told as a share of the predicted range{near}"

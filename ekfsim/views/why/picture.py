@@ -7,10 +7,12 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from ekfsim.diagnostics.verdict import LOST as LOST_QUANTILE
 from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import posed
+from ekfsim.geometry import Array
 from ekfsim.provenance import told_in_a_line
 from ekfsim.records import Step
 from ekfsim.views.film.still import save
@@ -38,6 +40,12 @@ from ekfsim.why.records import Explanation
 
 WIDTH, LEGEND, HEADS = 9.0, 2.6, 0.9  # in: the figure, its legend, title and foot
 LEAST_MAP, MOST_MAP, CURVE = 1.6, 6.2, 2.1  # in: the map's height, from and to, and the curve's
+AROUND = 0.25  # of the longer side of what is drawn: what is shown around it
+LEAST = 0.05  # of the world's longer side: what is drawn counts as at least so long
+CLOSE = 0.6  # of the same: what is smaller is shown without the rest of the world
+WIDEST = 2.5  # one side by the other, of a part of the world
+EDGE = 0.03  # of the longer side, around what reaches out of the world
+REACH = 2.5  # standard deviations, to the end of an ellipse
 BEYOND = 0.8  # of the longer side: how far what leaves the world is followed
 FINE = "#DDDDDD"
 NAMED = (  # what the legend explains, in the order of drawing
@@ -132,17 +140,32 @@ def mark_step(axes: Axes, found: Explanation, beam: Met | None) -> None:
 def shown(
     found: Explanation, lost: Sequence[Step], cured: Sequence[Step], beam: Met | None
 ) -> Limits:
-    """The world, both runs and the beam; of what goes far astray as much as leaves the world
-    readable.
+    """The world, both runs and the beam, or as much of the world as these are in; of what goes far
+    astray as much as leaves the world readable.
     """
-    runs = [steps for steps in (lost, cured) if steps]
-    scope = scopes.of_all(found.scene, runs)
-    far = scope.base.grown(BEYOND * scope.base.size)
-    whole = scope.whole.cut(far)
-    if beam is not None:
-        ends = Limits.around(reached(beam)).grown(0.03 * scope.base.size)
-        whole = whole.joined(ends.cut(far)) if ends.meets(far) else whole
-    return whole
+    base = scopes.of(found.scene, lost or found.lost_steps).base
+    far = base.grown(BEYOND * base.size)
+    drawn = [places(steps) for steps in (lost, cured) if steps]
+    drawn += [] if beam is None else [reached(beam)]
+    needed = Limits.around(np.vstack(drawn)) if drawn else base
+    needed = needed.cut(far) if needed.meets(far) else base
+    close = needed.grown(AROUND * max(needed.size, LEAST * base.size))
+    if close.size < CLOSE * base.size:
+        return close.shaped(min(max(close.shape, 1 / WIDEST), WIDEST))
+    return base.joined(needed.grown(EDGE * base.size))
+
+
+def places(steps: Sequence[Step]) -> Array:
+    """All that is drawn of steps: true and estimated positions, and the ends of ellipses : (n, 2)
+    m
+    """
+    made: list[Array] = []
+    for step in steps:
+        x, P = posed(step.posterior, step.layout)
+        half = REACH * np.sqrt(np.diag(P)[:2])
+        made += [x[:2] - half, x[:2] + half]
+        made += [] if step.entry.truth is None else [step.entry.truth[:2]]
+    return np.array(made)
 
 
 def draw_nees(axes: Axes, found: Explanation) -> None:
@@ -174,6 +197,7 @@ def draw_nees(axes: Axes, found: Explanation) -> None:
         axes.set_ylim(LEAST_NEES, 3 * most)
     else:
         axes.set_ylim(0, 1.1 * max(most, float(bounds.max())))
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.grid(True, color=FINE, lw=0.6)
     axes.set_axisbelow(True)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, fontsize=8,

@@ -49,7 +49,8 @@ def aligned_rows(rows: Sequence[tuple[str, str, str, str]], width: int | None) -
 
 
 def _row(one: Tried, mark: str) -> tuple[str, str, str, str]:
-    told = f" ({one.change.told})" if one.change.told else ""
+    obvious = one.change.kind in ("reading", "move")  # what becomes of them is always the same
+    told = f" ({one.change.told})" if one.change.told and not obvious else ""
     return mark, in_a_line(f"{one.change.name}{told}"), nees(one.nees_end), ends(one)
 
 
