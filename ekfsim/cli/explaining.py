@@ -18,13 +18,14 @@ if TYPE_CHECKING:
     from ekfsim.why.records import Explanation
 
 MOST_REPLAYS = 10**6
+FEWEST_RUNS = 100  # of fewer no share tells one cause from another
 
 
 @click.command(short_help="Say why the run of COMMANDS was lost, and what cures it.")
 @scene_options
 @click.option(
-    "--runs", type=Whole(0, MOST_RUNS), default=1000, show_default=True, metavar="N",
-    help="How many runs of the seed stand behind the shares; 0 for none.",
+    "--runs", type=Whole(FEWEST_RUNS, MOST_RUNS), default=1000, show_default=True, metavar="N",
+    help="How many runs of the seed stand behind the name and the shares.",
 )  # fmt: skip
 @click.option(
     "--budget", type=Whole(1, MOST_REPLAYS), metavar="N",

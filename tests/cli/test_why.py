@@ -12,14 +12,14 @@ def place(tmp_path, monkeypatch):
 
 
 def test_a_consistent_run_has_nothing_to_explain():
-    said = ekfsim("why", "square", "--runs", "0")
+    said = ekfsim("why", "square", "--runs", "100")
     assert said.status == 0
     assert "Cause: nothing to explain" in said.out
 
 
 def test_what_was_tried_is_written(tmp_path):
     said = ekfsim(
-        *("why", "diverge-02c-laser-distrusted", "--runs", "0", "--csv", "tried.csv"),
+        *("why", "diverge-02c-laser-distrusted", "--runs", "100", "--csv", "tried.csv"),
         *("-o", "why.png"),
     )
     assert said.status == 0, said.err

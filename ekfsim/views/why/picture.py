@@ -31,7 +31,7 @@ from ekfsim.views.why.traces import (
     Trace,
     draw_beam,
     draw_estimate,
-    draw_truth,
+    draw_truths,
     from_where_they_part,
     reached,
 )
@@ -49,7 +49,7 @@ REACH = 2.5  # standard deviations, to the end of an ellipse
 BEYOND = 0.8  # of the longer side: how far what leaves the world is followed
 FINE = "#DDDDDD"
 NAMED = (  # what the legend explains, in the order of drawing
-    *("true-way", "cured-way", "cured-ellipse-0", "lost-way", "lost-ellipse-0"),
+    *("true-way", "cured-true-way", "cured-way", "cured-ellipse-0", "lost-way", "lost-ellipse-0"),
     *("beam-measured", "predicted-end", "true-wall"),
 )
 LEAST_NEES = 1e-2  # what is less lies at the lower edge
@@ -83,7 +83,7 @@ def draw_map(
 ) -> None:  # fmt: skip
     """World, truth, both estimates and the beam that did it."""
     world = WorldArtists(axes, found.scene.world)
-    draw_truth(axes, lost, limits.size)
+    draw_truths(axes, lost, cured, limits.size)
     for trace, steps in ((CURED, cured), (LOST, lost)):
         if steps:
             draw_estimate(axes, trace, steps, probability, limits.size)
@@ -92,7 +92,7 @@ def draw_map(
     mark_step(axes, found, beam)
     axes.set(
         xlim=(limits.left, limits.right), ylim=(limits.bottom, limits.top), aspect="equal",
-        title=headline(found, limits),
+        title=headline(found, lost, limits),
     )  # fmt: skip
     axes.title.set_fontsize(10)
     in_metres(axes)
@@ -104,14 +104,14 @@ def draw_map(
     )  # fmt: skip
 
 
-def headline(found: Explanation, limits: Limits) -> str:
+def headline(found: Explanation, lost: Sequence[Step], limits: Limits) -> str:
     """From where on the two are drawn, and whether an estimate leaves the picture."""
     told = "the whole run"
     if found.cured_steps and found.parts_at is not None:
         told = f"from step {found.parts_at}, where the two runs part"
-    places = [posed(step.posterior, step.layout).mean[:2] for step in found.lost_steps]
-    if places and not limits.hold(np.array(places)):
-        far = max(astray(step) for step in found.lost_steps)
+    way = [posed(step.posterior, step.layout).mean[:2] for step in lost]
+    if way and not limits.hold(np.array(way)):
+        far = max(map(astray, lost))
         told += f"; the estimate leaves the picture, up to {length(far)} from the truth"
     return told
 
@@ -197,7 +197,7 @@ def draw_nees(axes: Axes, found: Explanation) -> None:
         axes.set_ylim(LEAST_NEES, 3 * most)
     else:
         axes.set_ylim(0, 1.1 * max(most, float(bounds.max())))
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True, steps=(1, 2, 5, 10)))
     axes.grid(True, color=FINE, lw=0.6)
     axes.set_axisbelow(True)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, fontsize=8,

@@ -70,16 +70,26 @@ def draw_estimate(
     )  # fmt: skip
 
 
-def draw_truth(axes: Axes, steps: Sequence[Step], size: float) -> None:
-    """Where the robot truly was, and where it ends."""
-    known = [step.entry.truth for step in steps if step.entry.truth is not None]
-    if not known:
+def draw_truths(axes: Axes, lost: Sequence[Step], cured: Sequence[Step], size: float) -> None:
+    """Where the robot truly was, and where it ends; of the cured run as well where that was
+    elsewhere, as without a slip.
+    """
+    way, other = true_way(lost), true_way(cured)
+    if not len(way):
         return
-    way = np.array(known)
+    if len(other) and not np.array_equal(other, way):
+        axes.plot(*other[:, :2].T, color=BLUE, lw=1.2, ls=(0, (1.2, 1.6)), zorder=3.3,
+                  label="true way, cured", gid="cured-true-way")  # fmt: skip
     axes.plot(*way[:, :2].T, color=TRUTH, lw=1.2, ls=(0, (1.2, 1.6)), zorder=3.4,
               label="true way", gid="true-way")  # fmt: skip
     axes.fill(*robot(way[-1], BODY * size).T, facecolor="none", edgecolor=TRUTH, lw=1.2, zorder=4.0,
               gid="true-end")  # fmt: skip
+
+
+def true_way(steps: Sequence[Step]) -> Array:
+    """The true poses : (n, 3), none where the truth is not known"""
+    known = [step.entry.truth for step in steps if step.entry.truth is not None]
+    return np.array(known).reshape(-1, 3)
 
 
 def draw_beam(axes: Axes, beam: Met) -> None:
