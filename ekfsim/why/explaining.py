@@ -11,7 +11,7 @@ from ekfsim.why.changes.beams import AMBIGUOUS
 from ekfsim.why.changes.singles import singles
 from ekfsim.why.changes.suspects import FEW, Suspect, suspects_of
 from ekfsim.why.changes.told import ratios, starts
-from ekfsim.why.records import Change, Explanation, Mechanism, Tried
+from ekfsim.why.records import Change, Explanation, Mechanism
 from ekfsim.why.trying.crowd import Crowd
 from ekfsim.why.trying.minimal import SpentError, minimal
 from ekfsim.why.trying.naming import named
@@ -98,22 +98,18 @@ def _try_all(scene: Scene, suspects: Sequence[Suspect], trials: Trials) -> None:
 def _cure(guilty: Sequence[Suspect], trials: Trials) -> tuple[Change, ...]:
     """The smallest set that cures: of what is guilty, of all else where nothing is."""
     if not guilty:
-        return tuple(one.change for one in _first_cures(trials))[:1]
+        return tuple(one.change for one in trials.tried if one.cures)[:1]
     if len(guilty) > 1:
         return minimal(tuple(one.change for one in guilty), trials.together)
     suspect = guilty[0]
-    found = {_known(one.change): one.change for one in trials.tried if one.cures}
-    for member in suspect.members:
-        if _known(member) in found:
-            return (found[_known(member)],)
-    if len(suspect.members) > 1 and suspect.change.kind in ("noise", "start", "map", "fault"):
-        return minimal(suspect.members, trials.together)
-    return (suspect.change,)
-
-
-def _known(change: Change) -> tuple[str, str, int | None]:
-    return change.kind, change.name, change.step
-
-
-def _first_cures(trials: Trials) -> list[Tried]:
-    return [one for one in trials.tried if one.cures]
+    alone = [one for one in trials.tried if one.cures and one.change in suspect.ways]
+    # rather one that makes it consistent, and rather a part than the whole
+    alone.sort(key=lambda one: (one.outcome != "consistent", suspect.ways.index(one.change)))
+    if suspect.has_parts and any(one.change == suspect.change for one in alone):
+        best = alone[0]
+        if best.change == suspect.change or best.outcome != "consistent":
+            wanted = next(one for one in alone if one.change == suspect.change).outcome
+            return minimal(
+                suspect.members, lambda some: trials.ends(some) in (wanted, "consistent")
+            )
+    return (alone[0].change,)

@@ -101,6 +101,42 @@ class OfItsWall(Sensor):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class OnItsWall(Sensor):
+    """A laser that predicts nothing where the estimate would have it meet another wall line than it
+    truly meets: such a reading is not used.
+    """
+
+    laser: Laser
+    line: Integers  # (…) that it truly meets, −1 where it meets none
+
+    @property
+    def outputs(self) -> tuple[Quantity, ...]:
+        """Those of the laser."""
+        return self.laser.outputs
+
+    def h(self, x: Array) -> Array:
+        """That of the laser, nan where it is another wall's : (…, 1) m"""
+        right = met(self.laser, x).line == _beside(self.line, x)
+        return np.where(right[..., None], self.laser.h(x), math.nan)
+
+    def H(self, x: Array) -> Array:
+        """That of the laser : (…, 1, 3)"""
+        return np.where(np.isnan(self.h(x))[..., None], 0.0, self.laser.H(x))
+
+    def R(self, x: Array) -> Array:
+        """That of the laser : (…, 1, 1)"""
+        return self.laser.R(x)
+
+
+def _beside(of_runs: Array | Integers, x: Array) -> Array:
+    """A number of each run beside states of it, of which there may be more: sigma points,
+    particles.
+    """
+    axes = (1,) * (x.ndim - 1 - of_runs.ndim)
+    return np.asarray(of_runs.reshape((*of_runs.shape, *axes)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class OfItsNoise(Sensor):
     """A laser whose noise is that of the range it truly measures, wherever the estimate stands."""
 
@@ -122,9 +158,8 @@ class OfItsNoise(Sensor):
 
     def R(self, x: Array) -> Array:
         """(ratio · true range)² : (…, 1, 1)"""
-        axes = (1,) * (x.ndim - 1 - self.variance.ndim)
-        R = self.variance.reshape((*self.variance.shape, *axes))
-        return np.broadcast_to(R, x.shape[:-1])[..., None, None]
+        R = np.broadcast_to(_beside(self.variance, x), x.shape[:-1])
+        return R[..., None, None]
 
 
 def sensed(entry: Entry, sensor: Callable[[Laser, Array], Sensor]) -> Entry:
@@ -142,6 +177,11 @@ def of_its_wall(beam: Laser, truth: Array) -> Sensor:
         return beam
     place = truth[..., :2] + found.range[..., None] * found.d
     return OfItsWall(beam.bearing, beam.range_ratio, place, found.n)
+
+
+def on_its_wall(beam: Laser, truth: Array) -> Sensor:
+    """The beam, used only where it is predicted on the wall line that it meets from the truth."""
+    return OnItsWall(beam, np.asarray(met(beam, truth).line))
 
 
 def of_its_noise(beam: Laser, truth: Array) -> Sensor:
@@ -203,6 +243,12 @@ WALL = Change(
     "each beam held to the wall that it truly meets",
     "predicted on that wall's line",
     of_entries=lambda entries: (sensed(entry, of_its_wall) for entry in entries),
+)
+ASTRAY = Change(
+    "beams",
+    "the beams that are predicted on a wrong wall",
+    "left out",
+    of_entries=lambda entries: (sensed(entry, on_its_wall) for entry in entries),
 )
 NOISE_AT_TRUTH = Change(
     "beams",

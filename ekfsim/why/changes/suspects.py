@@ -27,6 +27,16 @@ class Suspect:
     slow: bool = False  # too slow for all of many runs
 
     @property
+    def ways(self) -> tuple[Change, ...]:
+        """Every change that may cure by itself for the mechanism's sake, the whole last."""
+        return (*self.members, self.change)
+
+    @property
+    def has_parts(self) -> bool:
+        """Whether the change is that of all members together."""
+        return len(self.members) > 1 and self.change.kind in ("noise", "start", "map", "fault")
+
+    @property
     def in_many(self) -> Change:
         """The change in many runs."""
         return self.often or self.change
@@ -45,7 +55,7 @@ def suspects_of(scene: Scene, steps: Sequence[Step]) -> list[Suspect]:
     if wrong:
         like = Mechanism.LOOK_ALIKE_WALLS if alike(wrong) else Mechanism.WRONG_WALL
         each = tuple(reading(step.entry.index) for step in wrong)
-        found.append(Suspect(like, beams.WALL, each))
+        found.append(Suspect(like, beams.ASTRAY, (*each, beams.WALL)))
     if any(map(beams.grazes, entries)):
         each = tuple(reading(entry.index) for entry in entries if beams.grazes(entry))
         found.append(Suspect(Mechanism.GRAZING_BEAMS, beams.GRAZING_BEAMS, each))

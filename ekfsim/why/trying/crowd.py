@@ -15,17 +15,26 @@ from ekfsim.why.records import Change, Outcome, Shares
 from ekfsim.why.trying.replaying import replayed
 
 
-def outcomes(watched: Watched) -> dict[Outcome, Booleans]:
-    """How each of N runs ended : (N,) for each word"""
+def badly(watched: Watched, outcome: Outcome) -> Booleans:
+    """Which of N runs ended as badly as one that is lost, over-confident or over-cautious. For a
+    sum of NIS outside its band it does not matter whether the run is lost besides : (N,)
+    """
     nis, dof = watched.readings.nis, watched.readings.dof
-    lost, some = watched.lost_from >= 0, dof > 0
-    high, low = (1 + BAND) / 2, (1 - BAND) / 2
-    above = ~lost & some & (nis > bounds(high, dof))
-    below = ~lost & some & (nis < bounds(low, dof))
+    if outcome == "lost":
+        return watched.lost_from >= 0
+    if outcome == "over-confident":
+        return (dof > 0) & (nis > bounds((1 + BAND) / 2, dof))
+    return (dof > 0) & (nis < bounds((1 - BAND) / 2, dof))
+
+
+def outcomes(watched: Watched) -> dict[Outcome, Booleans]:
+    """How each of N runs ended, by the first word that holds : (N,) for each"""
+    lost = badly(watched, "lost")
+    above, below = badly(watched, "over-confident"), badly(watched, "over-cautious")
     return {
         "lost": lost,
-        "over-confident": above,
-        "over-cautious": below,
+        "over-confident": above & ~lost,
+        "over-cautious": below & ~lost,
         "consistent": ~(lost | above | below),
     }
 
@@ -36,16 +45,14 @@ class Crowd:
     def __init__(self, scene: Scene, runs: int, of: Outcome) -> None:
         self._scene, self._of = scene, of
         self.numbers: Integers = np.arange(runs)
-        self._bad: dict[tuple[int, ...], Booleans] = {}
-        self._kept: list[Change] = []  # a change is known by its place here
+        self._bad: dict[tuple[Change, ...], Booleans] = {}
 
     def bad(self, changes: Sequence[Change] = ()) -> Booleans:
         """Which runs end as badly, with changes : (N,)"""
-        key = tuple(self._place(one) for one in changes)
+        key = tuple(changes)
         if key not in self._bad:
             steps = replayed(self._scene, changes, self.numbers)
-            ended = outcomes(watched_along(self._scene, self.numbers, steps))
-            self._bad[key] = ended[self._of]
+            self._bad[key] = badly(watched_along(self._scene, self.numbers, steps), self._of)
         return self._bad[key]
 
     def shares(self, change: Change, changes: Sequence[Change] = ()) -> Shares:
@@ -53,10 +60,3 @@ class Crowd:
         a, b = self.bad(), self.bad(changes or (change,))
         found = of_shares(Shared.of(a, b))
         return Shares(len(a), found.a, found.b, found.low, found.high, change, self._of)
-
-    def _place(self, change: Change) -> int:
-        for place, one in enumerate(self._kept):
-            if one is change:
-                return place
-        self._kept.append(change)
-        return len(self._kept) - 1

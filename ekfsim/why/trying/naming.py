@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 
 from ekfsim.why.changes.suspects import Suspect
-from ekfsim.why.records import Change, Shares, together
+from ekfsim.why.records import Shares, together
 from ekfsim.why.trying.crowd import Crowd
 from ekfsim.why.trying.minimal import SpentError
 from ekfsim.why.trying.trials import Trials
 
 MUCH = 0.5  # a change that takes away less of what is lost names no cause
 NEARLY = 0.1  # two that differ by less are alike: the one that explains more is named
+OFTEN = 0.03  # a share of bad runs below which a few runs tell nothing
 ALL_BUT = 0.2  # where all changes together take away so much more, there is more than one cause
 
 
@@ -41,6 +42,8 @@ def named(
         return next(
             ((one,), shares) for one, shares in found if taken_away(shares) >= best - NEARLY
         )
+    if crowd.bad().mean() < OFTEN:
+        return (), None
     for one in suspects:
         if one.slow and cured(one, trials):
             shares = few.shares(one.in_many)
@@ -52,17 +55,12 @@ def named(
 def cured(suspect: Suspect, trials: Trials) -> bool:
     """Whether a suspect's change cures the run, or a part of it does."""
     try:
-        alone = [trials.alone(one) for one in dict.fromkeys((suspect.change, *ways(suspect)))]
+        # single readings are tried side by side, and do not tell of a class
+        ways = (one for one in (suspect.change, *suspect.members) if one.kind != "reading")
+        alone = [trials.alone(one) for one in dict.fromkeys(ways)]
     except SpentError:
         return False
     return any(alone)
-
-
-def ways(suspect: Suspect) -> tuple[Change, ...]:
-    """The members that are tried by themselves for a suspect's sake; single readings are tried side
-    by side.
-    """
-    return tuple(one for one in suspect.members if one.kind != "reading")
 
 
 def _several(

@@ -54,8 +54,8 @@ def ending(steps: Iterable[Step]) -> Ending:
     return Ending(OUTCOMES[evidence.verdict], evidence.lost_from, nees)
 
 
-def cures(was: Ending, now: Ending) -> bool:
+def cured(was: Outcome, now: Outcome) -> bool:
     """Whether a run that ended badly does so no more: a lost one is lost no more; another is
     consistent.
     """
-    return now.outcome != "lost" if was.outcome == "lost" else now.outcome == "consistent"
+    return now != "lost" if was == "lost" else now == "consistent"

@@ -10,7 +10,7 @@ from ekfsim.why.changes.singles import abreast, numbers
 from ekfsim.why.records import Change, Outcome, Tried
 from ekfsim.why.trying.crowd import outcomes
 from ekfsim.why.trying.minimal import SpentError
-from ekfsim.why.trying.replaying import cures, ending, replayed
+from ekfsim.why.trying.replaying import cured, ending, replayed
 
 Heard = Callable[[int, int], None]  # replays that are done, and the budget
 
@@ -38,18 +38,25 @@ class Trials:
     def alone(self, change: Change) -> bool:
         """Whether a change alone cures. Raises SpentError where that is not to be known."""
         for one in self.tried:
-            if one.change is change:
+            if one.change == change:
                 return one.cures
         now = ending(self.played((change,)))
-        found = Tried(change, cures(self.was, now), now.nees, now.lost_from, now.outcome)
+        found = Tried(
+            change, cured(self.was.outcome, now.outcome), now.nees, now.lost_from, now.outcome
+        )
         self.tried.append(found)
         return found.cures
 
     def together(self, changes: Sequence[Change]) -> bool:
         """Whether several changes cure."""
+        return cured(self.was.outcome, self.ends(changes))
+
+    def ends(self, changes: Sequence[Change]) -> Outcome:
+        """How the run ends with several changes."""
         if len(changes) == 1:
-            return self.alone(changes[0])
-        return cures(self.was, ending(self.played(changes)))
+            self.alone(changes[0])
+            return next(one.outcome for one in self.tried if one.change == changes[0])
+        return ending(self.played(changes)).outcome
 
     def played(self, changes: Sequence[Change]) -> tuple[Step, ...]:
         """The run with changes."""
@@ -77,10 +84,9 @@ class Trials:
         for row, change in reversed(list(enumerate(some))):
             outcome: Outcome = next(word for word in found if found[word][row])
             since = int(watched.lost_from[row])
-            cured = outcome != "lost" if self.was.outcome == "lost" else outcome == "consistent"
             self.tried.append(
                 Tried(
-                    change, cured, float(watched.ends.nees.value[row]),
+                    change, cured(self.was.outcome, outcome), float(watched.ends.nees.value[row]),
                     since if since >= 0 else None, outcome,
                 )
             )  # fmt: skip
