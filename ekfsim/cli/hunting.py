@@ -26,13 +26,15 @@ from ekfsim.cli.program.options import (
     with_options,
 )  # fmt: skip
 from ekfsim.cli.program.process import heed, part_with, shown, width
-from ekfsim.errors import UsageError
+from ekfsim.errors import RunError, UsageError
+from ekfsim.filters.place import label
 
 if TYPE_CHECKING:
     from ekfsim.hunting.hunt import Asked
     from ekfsim.hunting.search import Search
+    from ekfsim.scene import Scene
 
-GOALS = ("lost", "silent", "apart")  # told here again, so that --help need not load them
+GOALS = ("lost", "silent", "apart", "numbers")  # told here again, so that --help need not load them
 MOST_LISTS, MOST_MOVES = 10**8, 100
 OPTIONS = (
     click.argument("place", metavar="WORLD|COMMANDS"),
@@ -40,13 +42,14 @@ OPTIONS = (
     SEED,
     click.option(
         "--for", "hunted", metavar="NAME[,NAME]",
-        help="The filter that is hunted, in place of the file's: see play. Of two, an input that "
-        "tells them apart: the first lost, the second not.",
+        help="The filter that is hunted, in place of the file's: see play. Of one of your own the "
+        "first wrong number is found; of two, where the first is lost and the second is not.",
     ),
     click.option(
         "--goal", type=Word(GOALS),
         help="lost: as many runs as may be; silent: lost, and no NIS that tells it; apart: lost "
-        "under the first of two filters and not under the second.",
+        "under the first of two filters and not under the second; numbers: the shortest input at "
+        "which it has other numbers than a second filter, or ekf, on the same belief.",
     ),
     click.option(
         "--off", type=Metres(), default=0.1, show_default=True, metavar="METRES",
@@ -107,20 +110,44 @@ def hunt(place: str, out: Path, force: bool, fast: bool, **asked: Any) -> None:
     Ctrl-C ends the search, and what was found until then is written.
     """
     from ekfsim.hunting.hunt import hunt as hunted_by
-    from ekfsim.hunting.written import refuse_unwritable, write
+    from ekfsim.hunting.written import Told, refuse_unwritable, write
     from ekfsim.views.hunting.words import conclude, description, interrupted
 
     part_with()
     refuse_unwritable(out, force)
     task = _asked(place, out, fast, **asked)
+    if task.goal == "numbers":
+        return _expose(task, out, force)
     with _rounds_bar(task.lists) as heard:
         found = hunted_by(task, heard, heed)
     repeated = _repeating(found.search.looked_at, task.scene.seed)
-    files = write(found, description(found), repeated, out, force)
+    told = Told(description(found), repeated, f"`ekfsim study {out.name} --expect` confirms it")
+    files = write(found.scene, told, task.scene.world, out, force)
     if found.end == "interrupted":
         part_with(interrupted(found, out))
         heed()
     click.echo(shown(conclude(found, files, repeated, width())), nl=False)
+
+
+def _expose(task: "Asked", out: Path, force: bool) -> None:
+    """The shortest input at which a filter has other numbers than the one that is right."""
+    from ekfsim.hunting.exposing import exposure
+    from ekfsim.hunting.hunt import begun_with, promised
+    from ekfsim.hunting.written import Told, write
+    from ekfsim.views.hunting.exposing import conclude, headline, held
+
+    against = task.against or "ekf"
+    found = exposure(task.scene, against, task.moves, begun_with(task), heed)
+    if found is None:
+        raise RunError(
+            f"{label(task.scene.filter)}: has the numbers of {label(against)} in every list that "
+            f"was tried; --goal apart looks where it is lost more often"
+        )
+    repeated = _repeating(None, task.scene.seed)
+    told = Told(headline(found, against), repeated, held(found, against, Path(out.name)))
+    scene = replace(found.scene, expect=promised(found.scene, task.runs))
+    files = write(scene, told, task.scene.world, out, force)
+    click.echo(shown(conclude(found, against, files, width())), nl=False)
 
 
 def _asked(
@@ -130,6 +157,7 @@ def _asked(
 ) -> "Asked":  # fmt: skip
     """What is hunted for. Raises UsageError or InputError where that is nothing."""
     from ekfsim.hunting.hunt import Asked
+    from ekfsim.student.comparing.sides import comparable
     from ekfsim.twins import compiles, taken
 
     if fast and not compiles():
@@ -140,17 +168,31 @@ def _asked(
     )  # fmt: skip
     if not scene.commanded or scene.log is not None:
         raise UsageError(f"{place}: only the classroom's robot obeys commands; hunt in a room")
-    if len(scene.beside) > 1 or (scene.beside and goal not in (None, "apart")):
-        raise UsageError(f"--for {hunted}: only --goal apart takes two filters; name one")
-    if goal == "apart" and not scene.beside:
-        raise UsageError(f"--goal apart: name two filters, e.g. --for {scene.filter},iekf")
+    if len(scene.beside) > 1 or (scene.beside and goal in ("lost", "silent")):
+        raise UsageError(f"--for {hunted}: --goal apart and numbers take two filters, no other")
     against = scene.beside[0] if scene.beside else None
-    chosen: Any = goal or ("apart" if against else "lost")
+    chosen: Any = goal or _usual(scene)
+    if chosen == "apart" and against is None:
+        against = "ekf" if scene.filter != "ekf" else None
+    if chosen == "apart" and against is None:
+        raise UsageError(f"--goal apart: name two filters, e.g. --for {scene.filter},iekf")
+    if chosen == "numbers":
+        for name in (scene.filter, against or "ekf"):
+            comparable(name, "--for")
     way = "compiled" if fast else taken()
     return Asked(replace(scene, beside=()), chosen, against, way=way, **numbers)
 
 
-def _repeating(lists: int, seed: int) -> str:
+def _usual(scene: "Scene") -> str:
+    """What is looked for where nobody says: of a filter of one's own the first wrong number."""
+    from ekfsim.filters.place import is_place
+
+    if is_place(scene.filter):
+        return "numbers"
+    return "apart" if scene.beside else "lost"
+
+
+def _repeating(lists: int | None, seed: int) -> str:
     """The command line that finds the same again: a count of lists, and no clock."""
     ctx = click.get_current_context()
     words, elsewhere = list[str](), ("lists", "seed", "seconds", "workers", "out", "force", "fast")
@@ -161,7 +203,8 @@ def _repeating(lists: int, seed: int) -> str:
         if value != one.get_default(ctx):
             for each in value if isinstance(value, tuple) else (value,):
                 words += [one.opts[0], str(each)]
-    found = ["ekfsim", "hunt", ctx.params["place"], "--seed", str(seed), "--lists", str(lists)]
+    found = ["ekfsim", "hunt", ctx.params["place"], "--seed", str(seed)]
+    found += [] if lists is None else ["--lists", str(lists)]
     return shlex.join([*found, *words])
 
 

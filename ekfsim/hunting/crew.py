@@ -11,71 +11,69 @@ from dataclasses import dataclass
 from ekfsim.hunting.goals import Count, Goal
 from ekfsim.hunting.variants import Variant
 from ekfsim.scene import Scene
-from ekfsim.study.code import digests, of_same_code
 from ekfsim.study.running.engines import do_packed, processes, unfailed
 from ekfsim.twins import Way, taking
 from ekfsim.version import VERSION
 
-SOME = 16  # variants that are judged in one go, before a signal is heeded
+MOST = 16  # variants that are judged in one go in this process, before a signal is heeded
 
 # how many of the runs first … first + runs − 1 do it, for each of some variants of a scene
 Judge = Callable[[Scene, Sequence[Variant], int, int], list[Count]]
 
 
 @dataclass(frozen=True)
-class Portion:
-    """Some variants, to be judged wherever this is called."""
+class Judging:
+    """Judges variants wherever this is called."""
 
     scene: Scene
     goal: Goal
-    variants: tuple[Variant, ...]
     way: Way
 
-    def __call__(self, first: int, runs: int) -> list[Count]:
+    def __call__(self, first: int, runs: int, variants: Sequence[Variant]) -> list[Count]:
         """The count of each."""
         with taking(self.way):
-            return [self.goal(variant.of(self.scene), first, runs) for variant in self.variants]
+            return [self.goal(variant.of(self.scene), first, runs) for variant in variants]
 
 
 @contextmanager
-def crew(workers: int, goal: Goal, way: Way, heard: Callable[[], None]) -> Iterator[Judge]:
-    """A judge of variants. `heard` is called again and again, to heed what asks us to end."""
+def crew(workers: int, goal: Goal, way: Way, heed: Callable[[], None]) -> Iterator[Judge]:
+    """A judge of variants. `heed` is called again and again: what it raises ends the work."""
     if workers == 1:
 
         def alone(scene: Scene, variants: Sequence[Variant], first: int, runs: int) -> list[Count]:
-            found = list[Count]()
-            for some in portions(variants):
-                heard()
-                found += Portion(scene, goal, some, way)(first, runs)
+            judging, found = Judging(scene, goal, way), list[Count]()
+            for some in portions(variants, MOST):
+                heed()
+                found += judging(first, runs, some)
             return found
 
         yield alone
         return
     with processes(workers) as submit:
+        last: tuple[Scene, bytes] | None = None  # packed once, as long as it is the same
 
         def together(
             scene: Scene, variants: Sequence[Variant], first: int, runs: int
         ) -> list[Count]:
-            codes = digests([scene.filter])
+            nonlocal last
+            if last is None or last[0] is not scene:
+                last = scene, pickle.dumps(Judging(scene, goal, way))
+            parcel, size = last[1], max(-(-len(variants) // workers), 1)
             futures = [
-                submit(
-                    do_packed,
-                    pickle.dumps(of_same_code(Portion(scene, goal, some, way), codes)),
-                    first, runs, VERSION,
-                )
-                for some in portions(variants)
-            ]  # fmt: skip
+                submit(do_packed, parcel, first, runs, VERSION, some)
+                for some in portions(variants, size)
+            ]
             found = list[Count]()
             for future in futures:
-                heard()
+                heed()
                 found += unfailed(future.result())
             return found
 
         yield together
 
 
-def portions(variants: Sequence[Variant]) -> Iterator[tuple[Variant, ...]]:
+def portions(variants: Sequence[Variant], most: int) -> Iterator[tuple[Variant, ...]]:
     """The variants, some at a time."""
     waiting = iter(variants)
-    while some := tuple(itertools.islice(waiting, SOME)):
+    while some := tuple(itertools.islice(waiting, most)):
         yield some

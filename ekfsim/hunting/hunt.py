@@ -8,11 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from ekfsim.errors import UsageError
+from ekfsim.errors import StepError, UsageError
 from ekfsim.hunting import goals
 from ekfsim.hunting.crew import crew
 from ekfsim.hunting.goals import Count, Goal
-from ekfsim.hunting.lists import Space
+from ekfsim.hunting.lists import Listed, Space
 from ekfsim.hunting.search import Search, searched
 from ekfsim.hunting.shrinking import Shrunk, shrunk
 from ekfsim.hunting.worlds import without
@@ -32,7 +32,7 @@ class Asked:
     """What is hunted for, where, and how long."""
 
     scene: Scene  # with the commands that are begun with, if any; watched by the hunted filter
-    goal: goals.Name = "lost"
+    goal: goals.Name | Literal["numbers"] = "lost"
     against: str | None = None  # the filter that keeps its way, where two are told apart
     off: float = 0.1  # m from the truth, within which no run counts as lost
     moves: int = 8  # commands at most
@@ -54,6 +54,8 @@ class Asked:
                 if self.against is None:
                     raise UsageError("--goal apart: name two filters: --for ekf,iekf")
                 return goals.Apart(self.against, self.off)
+            case "numbers":
+                raise ValueError("numbers are compared in one run: exposing.py")
 
 
 @dataclass(frozen=True)
@@ -92,8 +94,7 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
 
     try:
         with crew(asked.workers, asked.counting(), asked.way, heed) as judge:
-            begin = [space.from_file(asked.scene.commands)] if asked.scene.commands else []
-            for state in searched(asked.scene, space, judge, asked.lists, begin):
+            for state in searched(asked.scene, space, judge, asked.lists, begun_with(asked)):
                 heard(state)
                 if _is_best(state, asked.enough):
                     end = "best"
@@ -110,6 +111,12 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
             raise
         end = "interrupted"
     return _measured(asked, state, end, shorter)
+
+
+def begun_with(asked: Asked) -> list[Listed]:
+    """The lists that are looked at first: what the scene does already."""
+    space = Space(asked.scene.world, asked.moves)
+    return [space.from_file(asked.scene.commands)] if asked.scene.commands else []
 
 
 def _is_best(state: Search, enough: float | None) -> bool:
@@ -136,6 +143,14 @@ def _measured(asked: Asked, state: Search, end: End, shorter: Shrunk | None) -> 
             against = Result.alone(other, run_blocks(other, asked.runs))
     scene = replace(scene, expect=promise(result))
     return Hunted(asked, scene, state, end, found.whole, found.count, fresh, result, against)
+
+
+def promised(scene: Scene, runs: int) -> Expect | None:
+    """The promise of a scene that was not chosen by it; None where its filter fails in a run."""
+    try:
+        return promise(Result.alone(scene, run_blocks(scene, runs)))
+    except StepError:
+        return None
 
 
 def promise(result: Result) -> Expect:

@@ -36,7 +36,10 @@ class Space:
 
     def by_chance(self, rng: np.random.Generator) -> Listed:
         """A list of any length."""
-        length = int(rng.integers(1, self.longest + 1))
+        return self.of_length(int(rng.integers(1, self.longest + 1)), rng)
+
+    def of_length(self, length: int, rng: np.random.Generator) -> Listed:
+        """A list of so many commands; of fewer where a wall lets one do nothing."""
         return self.mended(_command(rng) for _ in range(length))
 
     def changed(self, listed: Listed, rng: np.random.Generator) -> Listed:

@@ -1,7 +1,7 @@
 """Fewer commands, fewer obstacles, rounder numbers, while as many runs do what is wanted.
 
-As many: the share of runs stays above what is asked for, or above the low end of the interval that
-it has before anything is left out.
+As many: the share of runs stays surely above what is enough, or where nothing is said of that, or
+less is found, above the low end of the interval that it has before anything is left out.
 """
 
 import math
@@ -21,6 +21,8 @@ METRES = 1.0, 0.5, 0.25, 0.1, 0.05  # that a way may be a multiple of, the round
 DEGREES = 90, 45, 30, 15, 10, 5, 1
 
 Barred = Callable[[Scene, str], Scene | None]  # a scene without an obstacle; None: it is no scene
+# the first of some lists that does it in a scene; None where none does
+Enough = Callable[[Scene, Sequence[Listed]], Listed | None]
 
 
 @dataclass(frozen=True)
@@ -42,30 +44,37 @@ def shrunk(
     least : the share that is enough; without : how an obstacle is taken away; go_on : whether there
     is time for more
     """
-    (count,) = judge(scene, [Commanded(listed)], 0, RUNS)
-    low = Share(*count).low
-    least = low if least is None else min(least, low)
+    (before,) = judge(scene, [Commanded(listed)], 0, RUNS)
+    low = Share(*before).low
+
+    def holds(count: Count) -> bool:
+        if least is not None and least <= low:
+            return Share(*count).low >= least
+        return count.share >= low
 
     def enough(scene: Scene, tried: Sequence[Listed]) -> Listed | None:
         if not tried or not go_on():
             return None
         counts = judge(scene, [Commanded(one) for one in tried], 0, RUNS)
-        kept = (one for one, c in zip(tried, counts, strict=True) if c.share >= least)
-        return next(kept, None)
+        return next((one for one, c in zip(tried, counts, strict=True) if holds(c)), None)
 
-    listed = _fewer(space, scene, listed, enough)
-    for obstacle in scene.world.map.obstacles:
-        barer = without(scene, obstacle.name) if go_on() else None
-        if barer is not None and enough(barer, [listed]):
-            scene = barer
-    space = replace(space, world=scene.world)
-    listed = _fewer(space, scene, _rounder(space, scene, listed, enough), enough)
+    scene, listed = less(scene, space, listed, enough, without)
     whole = go_on()
     (count,) = judge(scene, [Commanded(listed)], 0, RUNS)
     return Shrunk(scene, listed, count, whole)
 
 
-Enough = Callable[[Scene, Sequence[Listed]], Listed | None]
+def less(
+    scene: Scene, space: Space, listed: Listed, enough: Enough, without: Barred
+) -> tuple[Scene, Listed]:
+    """What is left of obstacles and commands, whatever is enough."""
+    listed = _fewer(space, scene, listed, enough)
+    for obstacle in scene.world.map.obstacles:
+        barer = without(scene, obstacle.name)
+        if barer is not None and enough(barer, [listed]):
+            scene = barer
+    space = replace(space, world=scene.world)
+    return scene, _fewer(space, scene, _rounder(space, scene, listed, enough), enough)
 
 
 def _fewer(space: Space, scene: Scene, listed: Listed, enough: Enough) -> Listed:

@@ -4,17 +4,17 @@ another than any file holds.
 
 import json
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ekfsim.errors import UsageError
 from ekfsim.files.results.writing import refuse_existing, whole_text
 from ekfsim.files.scene_text import body
 from ekfsim.files.scenes.settings import kind_of, setting
-from ekfsim.hunting.hunt import Hunted
 from ekfsim.hunting.worlds import plain_of, text_of
-from ekfsim.scene import Expect
+from ekfsim.scene import Expect, Scene
 from ekfsim.version import VERSION
+from ekfsim.world import World
 
 
 def world_beside(path: Path) -> Path:
@@ -30,45 +30,53 @@ def refuse_unwritable(path: Path, force: bool) -> None:
         refuse_existing(file, force)
 
 
-def write(hunted: Hunted, description: str, repeated: str, path: Path, force: bool) -> list[Path]:
+@dataclass(frozen=True)
+class Told:
+    """What stands in a file besides its scene."""
+
+    description: str
+    repeated: str  # the command line that finds it again
+    held: str  # and the one that shows that it is so
+
+
+def write(scene: Scene, told: Told, asked: World, path: Path, force: bool) -> list[Path]:
     """Write what was found; the files that were written.
 
-    repeated : the command line that finds it again
+    asked : the world that was hunted in
     """
-    scene = replace(hunted.scene, description="")
-    if not needs_world(hunted):
+    if not needs_world(scene, asked):
         with whole_text(path, force) as file:
-            file.write(_text(hunted, description, repeated, path))
+            file.write(_text(scene, told, path))
         return [path]
     world = world_beside(path)
     plain = plain_of(scene.world)
     if plain is None:
         raise UsageError(f"{path}: cannot be written: the world {scene.world.name!r} is no file's")
-    own = replace(hunted, scene=replace(scene, world_file=world))
+    own = replace(scene, world_file=world)
     with whole_text(world, force) as of_world, whole_text(path, force) as file:
-        of_world.write(f"# Made by ekfsim {VERSION}: {repeated}\n{text_of(plain)}")
-        file.write(_text(own, description, repeated, path))
+        of_world.write(f"# Made by ekfsim {VERSION}: {told.repeated}\n{text_of(plain)}")
+        file.write(_text(own, told, path))
     return [path, world]
 
 
-def needs_world(hunted: Hunted) -> bool:
+def needs_world(scene: Scene, asked: World) -> bool:
     """Whether no file holds the world as it is."""
-    told = (kind_of(setting(one)) for one in hunted.scene.settings)
-    return hunted.is_barer or "world" in told
+    settings = (kind_of(setting(one)) for one in scene.settings)
+    return scene.world is not asked or "world" in settings
 
 
-def _text(hunted: Hunted, description: str, repeated: str, path: Path) -> str:
-    return "".join(f"{line}\n" for line in _lines(hunted, description, repeated, path))
+def _text(scene: Scene, told: Told, path: Path) -> str:
+    return "".join(f"{line}\n" for line in _lines(scene, told, path))
 
 
-def _lines(hunted: Hunted, description: str, repeated: str, path: Path) -> Iterator[str]:
-    yield f"# Found by ekfsim {VERSION}: {repeated}"
-    yield f"# `ekfsim study {path.name} --expect` holds it to its word"
+def _lines(scene: Scene, told: Told, path: Path) -> Iterator[str]:
+    yield f"# Found by ekfsim {VERSION}: {told.repeated}"
+    yield f"# {told.held}"
     yield "description: |"
-    yield from (f"  {line}" for line in description.splitlines())
-    assert hunted.scene.expect is not None
-    yield f"expect: {expect_text(hunted.scene.expect)}"
-    yield from body(replace(hunted.scene, description="", expect=None), path)
+    yield from (f"  {line}".rstrip() for line in told.description.splitlines())
+    if scene.expect is not None:
+        yield f"expect: {expect_text(scene.expect)}"
+    yield from body(replace(scene, description="", expect=None), path)
 
 
 def expect_text(expect: Expect) -> str:

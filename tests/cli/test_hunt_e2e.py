@@ -25,7 +25,7 @@ def test_mistakes_are_told_in_a_line(tmp_path, monkeypatch):
     for words, told in {
         ("hunt", "mower"): "mower: only the classroom's robot obeys commands; hunt in a room",
         ("hunt", "room", "--goal", "apart"): "name two filters, e.g. --for ekf,iekf",
-        ("hunt", "room", "--for", "ekf,ukf", "--goal", "lost"): "only --goal apart takes two",
+        ("hunt", "room", "--for", "ekf,ukf", "--goal", "lost"): "apart and numbers take two filters",
         ("hunt", "room", "-o", "a.txt"): "a.txt: a commands file is written; name it e.g. hunt",
     }.items():
         made = ekfsim(*words)

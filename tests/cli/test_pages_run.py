@@ -43,6 +43,7 @@ QUICKER = {  # what is typed in addition, so that it is soon done
     "study": ["--runs", "2"],
     "compare": ["--runs", "2"],
     "gallery": ["--only", "square"],
+    "hunt": ["--lists", "128", "--runs", "100", "--force"],
 }
 QUOTED = {  # what a page quotes of what a line prints, for which that is run in full
     "compare theta --seed 1 --runs 3000 --b filter.crossCovariances=dropped": [
@@ -61,6 +62,7 @@ FAILS = {  # the lines that end with status 1, each as it is said to
     "play tour --filter filter.py": "eq. 6 is open",
     "diff tour --filter filter.py": "eq. 6 is open",
     "study diverge-01-wrong-wall --expect --guard skip": "not kept",
+    "hunt furnished-room --for mine.py": "has the numbers of ekf in every list",
 }
 READERS = {  # what a reader has when the page comes to it: a file, or what a line writes
     "mine.yaml": "ekfsim new mine.yaml --from diverge-00-control",

@@ -81,16 +81,18 @@ class Failed(NamedTuple):
     at_a_step: bool = False  # of a run: the code of a filter failed
 
 
-def do_packed(packed: bytes, first: int, runs: int, version: str) -> Any:
+def do_packed(packed: bytes, first: int, runs: int, version: str, *more: Any) -> Any:
     """A block, or how it `Failed`, wherever this is called. Raises RunError where another version
     of ekfsim is installed.
+
+    more : what the block is told besides its runs
     """
     if version != VERSION:
         raise RunError(
             f"a worker has ekfsim {VERSION}, and this is {version}; install the same version there"
         )
     try:
-        return _unpacked(packed)(first, runs)
+        return _unpacked(packed)(first, runs, *more)
     except UsageError as lack:
         return Failed(f"a worker cannot do this: {lack}")
     except EkfsimError as failure:
@@ -109,11 +111,11 @@ def unfailed(made: T | Failed) -> T:
 
 
 @functools.lru_cache(maxsize=8)
-def _unpacked(packed: bytes) -> Callable[[int, int], Any]:
+def _unpacked(packed: bytes) -> Callable[..., Any]:
     """What is in a parcel, unpacked once: the walls of its scene are made ready once for all of its
     blocks.
     """
-    block: Callable[[int, int], Any] = pickle.loads(packed)
+    block: Callable[..., Any] = pickle.loads(packed)
     return block
 
 

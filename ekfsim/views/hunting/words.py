@@ -5,6 +5,7 @@ found.
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Literal
 
 from ekfsim.commands import Command, Move, Sense
 from ekfsim.filters.place import label
@@ -15,7 +16,9 @@ from ekfsim.study.results import Result, Share
 from ekfsim.views.words.text_table import folded
 from ekfsim.world import Faults, World
 
-GOALS: Mapping[Name, str] = {  # what is counted, of an estimate that is off by more than `off`
+GOALS: Mapping[
+    Name | Literal["numbers"], str
+] = {  # what is counted, of an estimate that is off by more than `off`
     "lost": "Lost and well off",
     "silent": "Lost and well off, with a ΣNIS inside its band",
     "apart": "Lost and well off more often than under the other filter, on the same draws",
