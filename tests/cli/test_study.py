@@ -63,7 +63,7 @@ def tables(folder):
 def test_a_study_leaves_a_folder_and_says_what_is_to_be_thought_of_it(place):
     told = ekfsim("study", "short.yaml", "--runs", 1500, "-o", "out")
     assert (told.status, told.err) == (0, "")
-    assert left_in(place / "out") == FOLDER
+    assert left_in(place / "out") == sorted([*FOLDER, "why.txt"])  # for some runs are lost
     (row,) = rows("out/summary.csv")
     assert (row["filter"], row["runs"], row["step"], row["seed"], row["guard"]) == (
         "ekf",
@@ -101,6 +101,11 @@ def test_a_study_leaves_a_folder_and_says_what_is_to_be_thought_of_it(place):
         f"  the worst run: {played} {row['worst_run']} --filter ekf  # its last NEES is "
     )
     assert lines[13] == f"  a typical run: {played} {row['typical_run']} --filter ekf"
+    why = played.replace("play", "why", 1)
+    assert lines[14] == f"  why it was lost: {why} {row['worst_run']} --filter ekf"
+    reason = (place / "out/why.txt").read_text().splitlines()
+    assert reason[0] == f"short.yaml: seed 0, run {row['worst_run']}, ekf"
+    assert reason[1].startswith("Cause: ")
     steps = rows("out/steps.csv")
     assert [step["step"] for step in steps] == ["0", "1", "2", "3"]
     assert all(steps[-1][name] == row[name] for name in steps[-1])

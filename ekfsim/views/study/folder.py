@@ -1,9 +1,14 @@
-"""The folder of a study: two tables, three pictures, and all that is needed to repeat it."""
+"""The folder of a study: two tables, three pictures, why its worst run was lost, and all that is
+needed to repeat it.
+"""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
+from ekfsim.commands import expanded_length
+from ekfsim.errors import EkfsimError
 from ekfsim.files.results.writing import whole_folder
 from ekfsim.files.scenes.load_study import Request
 from ekfsim.files.scenes.settings import Setting
@@ -16,11 +21,14 @@ from ekfsim.study.results import Result
 from ekfsim.study.tables import write_steps, write_summary
 from ekfsim.version import VERSION
 from ekfsim.views.study.pictures import draw_study
+from ekfsim.views.study.words import explained
 
 REPEATING = ("study.yaml", "compare.yaml")
+REASON = "why.txt"  # only where runs are lost
+LONGEST = 500  # commands of a run that is played again some hundred times
 FILES = (
     *("summary.csv", "steps.csv", "study.yaml", "commands.yaml", "world.yaml"),
-    *("nees.png", "coverage.png", "divergence.png"),
+    *("nees.png", "coverage.png", "divergence.png", REASON),
 )
 
 
@@ -33,8 +41,31 @@ def write_study(plan: Plan, results: Sequence[Result], out: Path, force: bool) -
         with (folder / "steps.csv").open("w", newline="", encoding="utf-8") as file:
             write_steps(file, plan, results)
         draw_study(plan, results, folder)
+        if reason := reason_of(results):
+            (folder / REASON).write_text(reason, encoding="utf-8")
         lines = study_lines(plan, copies.names)
         write_to_repeat(plan.request, folder / "study.yaml", lines, copies.files)
+
+
+def reason_of(results: Sequence[Result]) -> str:
+    """Why the worst run of all rows was lost; nothing where no more are lost than chance does, and
+    where playing it again takes long.
+    """
+    lost = [one for one in results if explained(one)]
+    if not lost:
+        return ""
+    worst = max(lost, key=lambda one: (one.tally.worst.impossible, one.tally.worst.nees))
+    scene = replace(worst.case.scene, run=worst.tally.worst.run, beside=())
+    if expanded_length(scene.commands) > LONGEST:
+        return ""
+    from ekfsim.views.why.answer import answer
+    from ekfsim.why import explain  # only here, and seldom
+
+    values = "".join(f"{one}\n" for one in worst.case.values)
+    try:
+        return values + answer(explain(scene))
+    except EkfsimError as refusal:  # the code of a filter of one's own, in a run that is another
+        return f"{values}It cannot be said why: {refusal}\n"
 
 
 def copies_in(out: Path, filters: Iterable[str]) -> Iterator[str]:

@@ -263,13 +263,29 @@ def _percent(value: float) -> str:
 
 
 def plays(plan: Plan, result: Result) -> list[str]:
-    """The commands that play the worst run and a typical one."""
+    """The commands that play the worst run and a typical one, and where runs are lost the one that
+    says why the worst was.
+    """
     worst = result.tally.worst
     how = "its belief is impossible" if worst.impossible else f"its last NEES is {worst.nees:.3g}"
     return [
         f"the worst run: {played(plan, result, worst.run)}  # {how}",
         f"a typical run: {played(plan, result, result.typical)}",
+        *([f"why it was lost: {asked_why(plan, result, worst.run)}"] if explained(result) else []),
     ]
+
+
+def explained(result: Result) -> bool:
+    """Whether it is told why the worst run of a row was lost: of a robot that obeys commands, where
+    more are lost than chance does.
+    """
+    last = result.last.lost
+    return last.runs > MOST_LOST * last.of and result.case.scene.commanded
+
+
+def asked_why(plan: Plan, result: Result, run: int) -> str:
+    """The command that says why a run of a row was lost."""
+    return played(plan, result, run).replace("play", "why", 1)
 
 
 def played(plan: Plan, result: Result, run: int) -> str:
