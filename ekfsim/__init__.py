@@ -38,6 +38,9 @@ belief)` the Steps (what a filter made of them), with `ekfsim.filter_of(scene)` 
 >>> bool(abs(mine[1].posterior.mean - steps[1].posterior.mean).max() < 1e-9)  # after one move
 True
 
+`ekfsim.why(scene)` says why its run was lost, and what cures it: one thing put right at a time, on
+the same draws.
+
 Where only the beliefs matter, `ekfsim.stretch(belief, motion, U)` predicts thousands of inputs of
 planar odometry at once.
 
@@ -148,7 +151,7 @@ _HOMES = {
 }
 _HOME_OF = {name: f"ekfsim.{home}" for home, names in _HOMES.items() for name in names}
 # Modules that can be called, by the same names whatever is imported first.
-_ROOMS = ("scene", "study")
+_ROOMS = ("scene", "study", "why")
 # What `help(ekfsim)` tells at length; the classes have pages of their own, or it would run to a
 # thousand lines.
 __all__ = sorted(name for name in _HOME_OF if name[0].islower())

@@ -51,6 +51,7 @@ DOORS = {  # the imports from below, each made when it is called for
     ("ekfsim.scene", "ekfsim.files.given.changes"),
     ("ekfsim.shown", "ekfsim.views.notebook.showing"),  # records show themselves in a notebook
     ("ekfsim.study", "ekfsim.views.notebook.studies"),  # as is `ekfsim.study(…)`
+    ("ekfsim.why", "ekfsim.views.notebook.reasons"),  # and `ekfsim.why(…)`
     ("ekfsim.scene", "ekfsim.files.scenes.load"),  # the module itself is `ekfsim.scene(…)`
 }
 CORE = {

@@ -38,6 +38,7 @@ def test_the_cells_of_the_readme_do_what_they_say(capsys):
 ROOMS = {
     "scene": "ekfsim.scene('square').seed",
     "study": "ekfsim.study('square', runs=5).plan.request.runs",
+    "why": "ekfsim.why('square', runs=5).outcome",
 }
 
 

@@ -6,5 +6,6 @@ drawing.py    a view on Axes of one's own, and more runs over it
 table.py      steps → the columns of `run --csv`
 animation.py  a run as it plays in a cell
 studies.py    study and compare of a scene that a notebook holds
+reasons.py    why the run of a scene was lost
 cells.py      words and pictures → what a cell shows
 """

@@ -10,13 +10,15 @@ from ekfsim.localization import play
 from ekfsim.provenance import provenance
 from ekfsim.records import Step
 from ekfsim.scene import Scene
-from ekfsim.views.notebook.cells import page
+from ekfsim.views.notebook.cells import page, png
 from ekfsim.views.picture.extent.scope import of as scope_of
 from ekfsim.views.picture.frames import Frame
 from ekfsim.views.playback.playback import views
 from ekfsim.views.playback.view import Judged, View
+from ekfsim.views.why.answer import answer
 from ekfsim.views.words.closing import conclude
 from ekfsim.views.words.narrative import narrate
+from ekfsim.why.records import Explanation
 
 # the last one that was drawn, with its picture: a notebook asks for both, HTML and PNG
 _last: tuple[object, bytes | None] = (None, None)
@@ -33,6 +35,10 @@ def picture(one: object) -> bytes | None:
     not known, and of what is no place.
     """
     global _last
+    if _last[0] is not one and isinstance(one, Explanation):
+        from ekfsim.views.why.picture import picture as picture_of  # seldom asked
+
+        _last = one, png(picture_of(one))
     if _last[0] is not one:
         view, scene = _seen(one)
         drawn = None
@@ -84,6 +90,11 @@ def _(step: Step) -> str:
 @words.register
 def _(summary: Summary) -> str:
     return conclude(summary)
+
+
+@words.register
+def _(explanation: Explanation) -> str:
+    return answer(explanation)
 
 
 def _numbers(step: Step) -> Iterator[str]:

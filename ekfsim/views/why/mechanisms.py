@@ -234,10 +234,11 @@ def _spread(explanation: Explanation) -> str:
 
 def _start(scene: Scene) -> str:
     told, true = scene.world.told, scene.world.start
-    apart = told.start - true
-    turned = math.degrees(abs(math.remainder(float(apart[2]), math.tau)))
-    far = float(np.hypot(*apart[:2]))
-    off = joined([text for text in (far and length(far), turned and f"{turned:.3g}°") if text])
+    error = told.start - true
+    turned = math.degrees(abs(math.remainder(float(error[2]), math.tau)))
+    far = float(np.hypot(*error[:2]))
+    apart_by = [text for text in (far and length(far), turned and f"{turned:.3g}°") if text]
+    off = joined(apart_by) if apart_by else ""
     sure = "without doubt" if not told.sigma.any() else "too surely"
     return (
         f"The filter is told {sure} that the robot starts {off or 'elsewhere'} from where it does"

@@ -116,3 +116,9 @@ def test_records_stay_what_they_were():
     assert step == dataclasses.replace(step, scene=None)
     assert pickle.loads(pickle.dumps(step)).entry.index == 3
     assert [field.name for field in dataclasses.fields(Step)][-1] == "scene"
+
+
+def test_an_explanation_shows_its_words_and_its_picture():
+    found = ekfsim.why("diverge-02c-laser-distrusted", runs=100)
+    assert "Over-cautious, not lost: told four times" in found._repr_html_()
+    assert found._repr_png_().startswith(b"\x89PNG")
