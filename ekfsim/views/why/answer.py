@@ -5,7 +5,7 @@ it rests on, and the table of what was tried.
 from collections.abc import Iterator
 
 from ekfsim.printable import in_a_line
-from ekfsim.views.why.changes import all_of, joined, put_right
+from ekfsim.views.why.changes import all_of, joined, named, put_right
 from ekfsim.views.why.mechanisms import LASER, because, told_noise
 from ekfsim.views.why.tried import table
 from ekfsim.views.words.judgement import count
@@ -62,11 +62,7 @@ def _sentences(explanation: Explanation) -> Iterator[str]:
         yield because(explanation, mechanism)
     yield from _cured(explanation)
     if explanation.parts_at is not None and explanation.cure:
-        yield (
-            f"Lost and cured run part at step {explanation.parts_at}"
-            if (explanation.outcome == "lost")
-            else f"The two runs part at step {explanation.parts_at}"
-        )
+        yield f"The two estimates part at step {explanation.parts_at}"
     if explanation.shares is not None:
         yield shares(explanation.shares)
 
@@ -125,7 +121,7 @@ def _cured(explanation: Explanation) -> Iterator[str]:
                 "cures it" if others > 1 else "does not cure it"
             )
         return
-    names = [one.name for one in also[:TOLD_OTHERS]]
+    names = [named(one) for one in also[:TOLD_OTHERS]]
     more = len(also) - len(names)
     listed = joined([*names, f"{more} more"] if more > 0 else names)
     verb = "cures" if len(also) == 1 else "cure"

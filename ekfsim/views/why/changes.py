@@ -1,8 +1,10 @@
 """What a change puts right, in words."""
 
+import re
 from collections.abc import Sequence
 
 from ekfsim.why.records import Change, Kind, Tried
+from ekfsim.world import BOUNDARY
 
 PLURALS: dict[Kind, str] = {
     "noise": "told noises, each made true",
@@ -29,7 +31,7 @@ def put_right(change: Change) -> str:
     >>> put_right(Change("noise", "the told rangeSigmaRatio", "0.01 told, 0.02 true"))
     'with the told rangeSigmaRatio made true'
     """
-    name, deed = change.name, change.told.partition(",")[0]
+    name, deed = named(change), change.told.partition(",")[0]
     match change.kind:
         case "noise" | "start" | "sigma":
             return f"with {name} made true"
@@ -42,6 +44,17 @@ def put_right(change: Change) -> str:
         case "move":
             return f"with {name} made exact"
     return f"with {name}"
+
+
+def named(change: Change) -> str:
+    """What a change is of, for a person: the room's own ring has a name of the files'.
+
+    >>> named(Change("map", "edge 1 of boundary in the map"))
+    "edge 1 of the room's wall in the map"
+    """
+    if change.kind != "map":
+        return change.name
+    return re.sub(rf"\b{BOUNDARY}\b", "the room's wall", change.name)
 
 
 def all_of(changes: Sequence[Change]) -> str:

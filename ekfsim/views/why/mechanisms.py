@@ -1,7 +1,6 @@
 """How each mechanism is told of one run: what the filter was told or saw, and what was so."""
 
 import math
-import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,11 +10,10 @@ from ekfsim.diagnostics.ambiguity import sighting_of
 from ekfsim.filters.belief import posed
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
-from ekfsim.views.why.changes import joined
+from ekfsim.views.why.changes import joined, named
 from ekfsim.views.why.met import Met, called, met, told
 from ekfsim.views.words.numbers import length
 from ekfsim.why.records import Change, Explanation, Mechanism
-from ekfsim.world import BOUNDARY
 
 LASER = (Mechanism.LASER_OVERTRUSTED, Mechanism.LASER_DISTRUSTED)
 KEYS = {
@@ -79,7 +77,12 @@ def because(explanation: Explanation, mechanism: Mechanism) -> str:
             return _repeated(explanation)
         case Mechanism.CLOSE_TO_THE_WALL:
             return _close(explanation)
-    return "No beam measures along one direction, and the estimate says so: its ellipse grows there"
+        case Mechanism.NO_DIRECTION_SEEN:
+            return (
+                "No beam measures along one direction, and the estimate says so: its ellipse grows "
+                "there"
+            )
+    return f"What there is of it: {mechanism.value}"
 
 
 def culprit(explanation: Explanation) -> Step | None:
@@ -212,8 +215,7 @@ def _map(explanation: Explanation, mechanism: Mechanism) -> str:
 
 
 def _with_what(change: Change) -> str:
-    name = change.name.removesuffix(" in the map").removesuffix(" of the map")
-    name = re.sub(rf"\b{BOUNDARY}\b", "the room's wall", name)
+    name = named(change).removesuffix(" in the map").removesuffix(" of the map")
     return f"{name} ({change.told})" if change.told else name
 
 
@@ -240,9 +242,9 @@ def _start(scene: Scene) -> str:
     apart_by = [text for text in (far and length(far), turned and f"{turned:.3g}°") if text]
     off = joined(apart_by) if apart_by else ""
     sure = "without doubt" if not told.sigma.any() else "too surely"
-    return (
-        f"The filter is told {sure} that the robot starts {off or 'elsewhere'} from where it does"
-    )
+    if not off:
+        return f"The filter is told {sure} where the robot starts"
+    return f"The filter is told {sure} of a start that lies {off} from the true one"
 
 
 def _repeated(explanation: Explanation) -> str:

@@ -8,7 +8,7 @@ from typing import TextIO
 
 from ekfsim.printable import cell, in_a_line
 from ekfsim.provenance import provenance
-from ekfsim.views.why.changes import PLURALS, ends
+from ekfsim.views.why.changes import PLURALS, ends, named
 from ekfsim.views.words.numbers import figure
 from ekfsim.views.words.text_table import aligned, folded
 from ekfsim.why.records import Explanation, Tried
@@ -51,7 +51,7 @@ def aligned_rows(rows: Sequence[tuple[str, str, str, str]], width: int | None) -
 def _row(one: Tried, mark: str) -> tuple[str, str, str, str]:
     obvious = one.change.kind in ("reading", "move")  # what becomes of them is always the same
     told = f" ({one.change.told})" if one.change.told and not obvious else ""
-    return mark, in_a_line(f"{one.change.name}{told}"), nees(one.nees_end), ends(one)
+    return mark, in_a_line(f"{named(one.change)}{told}"), nees(one.nees_end), ends(one)
 
 
 def _range(each: Sequence[Tried]) -> tuple[str, str]:

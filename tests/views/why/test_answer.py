@@ -42,7 +42,7 @@ def test_one_cure_and_the_others_do_not():
     found = lost(BEAM, parts_at=13, shares=SHARES)
     assert sentence(found) == (
         "Lost since step 13. Without the beam of step 13 the run ends consistent. None of the 2 "
-        "other changes cures it. Lost and cured run part at step 13. Of 1000 runs 38 % are lost as "
+        "other changes cures it. The two estimates part at step 13. Of 1000 runs 38 % are lost as "
         "they stand, 0.5 % without the beam of step 13 [−37.3 points, −40.3 to −34.4]."
     )
 
