@@ -64,7 +64,8 @@ def _sentences(explanation: Explanation) -> Iterator[str]:
     if explanation.parts_at is not None and explanation.cure:
         yield f"The two estimates part at step {explanation.parts_at}"
     if explanation.shares is not None:
-        yield shares(explanation.shares)
+        together = "with all of these put right" if explanation.causes else None
+        yield shares(explanation.shares, together)
 
 
 def _consistent(explanation: Explanation) -> Iterator[str]:
@@ -139,15 +140,17 @@ def _ending(alone: Tried | None) -> str:
     return f"is no longer lost, but {alone.outcome}"
 
 
-def shares(found: Shares) -> str:
-    """What many runs say: as they stand, and with such a change."""
+def shares(found: Shares, deed: str | None = None) -> str:
+    """What many runs say: as they stand, and with such a change. deed : in its words, where not in
+    those of the change
+    """
     low, high = sorted(100 * edge for edge in (found.low, found.high))
     what = found.of
     change = 100 * (found.lost_with - found.lost)
     numbers = f"{change:+.1f} points, {low:+.1f} to {high:+.1f}".replace("-", "−")
     return (
         f"Of {found.runs} runs {percent(found.lost)} are {what} as they stand, "
-        f"{percent(found.lost_with)} {put_right(found.change)} [{numbers}]"
+        f"{percent(found.lost_with)} {deed or put_right(found.change)} [{numbers}]"
     )
 
 
@@ -168,4 +171,5 @@ def effort(explanation: Explanation) -> str:
         f"{count(len(explanation.tried), 'change')} tried on the same draws, each alone: "
         f"{cured} {'cures' if cured == 1 else 'cure'}; {explanation.replays} of at most "
         f"{count(explanation.budget, 'replay')}"
+        + (", which did not do for all" if explanation.replays >= explanation.budget else "")
     )

@@ -68,6 +68,7 @@ def test_more_than_one_cause_is_told_with_all_that_it_takes():
         "Only together they cure it: with the told rangeSigmaRatio made true and without the beam "
         "of step 13 the run ends consistent."
     ) in sentence(found)
+    assert "0.5 % with all of these put right [" in sentence(replace(found, shares=SHARES))
 
 
 def test_what_is_not_found_is_told_with_what_was_tried():
@@ -76,6 +77,7 @@ def test_what_is_not_found_is_told_with_what_was_tried():
     assert sentence(found).endswith("Not one of the 3 changes that were tried cures it.")
     spent = replace(found, budget=3)
     assert "the budget of replays is spent" in sentence(spent)
+    assert "3 of at most 3 replays, which did not do for all" in answer(spent)
     assert "3 changes tried on the same draws" in answer(found)
     assert "3 of at most 400 replays" in answer(found)
 
