@@ -79,6 +79,10 @@ class Sensor(Protocol):
         """ν = z − h : (…, k), to be wrapped where it is an angle"""
         return z - h
 
+    def of_run(self, run: tuple[int, ...]) -> "Sensor":
+        """The sensor of one of N runs side by side, where each has its own."""
+        return self
+
 
 def angles(quantities: tuple[Quantity, ...]) -> tuple[int, ...]:
     """Which entries are directions on the circle.

@@ -87,6 +87,10 @@ class OfItsWall(Sensor):
         """(ratio · r)² : (…, 1, 1)"""
         return np.square(self.range_ratio * self.h(x))[..., None]
 
+    def of_run(self, run: tuple[int, ...]) -> Sensor:
+        """With the wall that is met in that run."""
+        return replace(self, place=_one(self.place, run, 1), normal=_one(self.normal, run, 1))
+
     def _met(self, x: Array) -> tuple[Array, Array, Array, Array]:
         """r : (…), n and d : (…, 2) each, n·d : (…)"""
         axes = (1,) * (x.ndim - self.place.ndim)  # sigma points, particles
@@ -127,6 +131,15 @@ class OnItsWall(Sensor):
         """That of the laser : (…, 1, 1)"""
         return self.laser.R(x)
 
+    def of_run(self, run: tuple[int, ...]) -> Sensor:
+        """With the line that is met in that run."""
+        return replace(self, line=self.line[run] if self.line.ndim else self.line)
+
+
+def _one(of_runs: Array, run: tuple[int, ...], inner: int = 0) -> Array:
+    """What is one run's; what is the same for all has no axes but its `inner` ones."""
+    return np.asarray(of_runs[run]) if of_runs.ndim > inner else of_runs
+
 
 def _beside(of_runs: Array | Integers, x: Array) -> Array:
     """A number of each run beside states of it, of which there may be more: sigma points,
@@ -160,6 +173,10 @@ class OfItsNoise(Sensor):
         """(ratio · true range)² : (…, 1, 1)"""
         R = np.broadcast_to(_beside(self.variance, x), x.shape[:-1])
         return R[..., None, None]
+
+    def of_run(self, run: tuple[int, ...]) -> Sensor:
+        """With the noise of that run's range."""
+        return replace(self, variance=_one(self.variance, run))
 
 
 def sensed(entry: Entry, sensor: Callable[[Laser, Array], Sensor]) -> Entry:

@@ -8,6 +8,7 @@ import pytest
 import shapely
 
 from ekfsim.files.scenes.load import load_scene
+from ekfsim.student.own.bring import bring
 from ekfsim.views.why.answer import answer, cause, sentence, shares
 from ekfsim.views.why.changes import put_right
 from ekfsim.views.why.mechanisms import because, told_noise
@@ -158,3 +159,23 @@ def test_what_a_change_puts_right_is_said_as_it_is():
     guard = Change("beams", "the ambiguous beams", "left out, as the guard does")
     assert put_right(guard) == "with the ambiguous beams left out"
     assert put_right(MOVE) == "with the move of step 6 made exact"
+
+
+def test_a_filter_of_ones_own_is_asked_as_the_built_in_one_is(wrong_wall):
+    def predict(x, P, u, motion):
+        F, G = motion.F(x, u), motion.G(x, u)
+        return motion.f(x, u), F @ P @ F.T + G @ motion.M(u) @ G.T
+
+    def update(x, P, z, sensor):
+        H = sensor.H(x)
+        K = P @ H.T @ np.linalg.inv(H @ P @ H.T + sensor.R(x))
+        return x + K @ sensor.residual(z, sensor.h(x)), (np.eye(3) - K @ H) @ P
+
+    name = bring(predict, update, name="as-the-ekf")
+    found = explain(replace(wrong_wall.scene, filter=name), runs=20)
+    assert found.lost_from == wrong_wall.lost_from
+    ours, theirs = (
+        {(one.change.kind, one.change.name): one.cures for one in each.tried}
+        for each in (found, wrong_wall)
+    )
+    assert ours == theirs
