@@ -16,6 +16,7 @@ from ekfsim.why.records import Explanation, Tried
 FORMAT = 1  # of the table; grows when a column changes its meaning, or goes
 HEAD = ("kind", "name", "step", "told", "cures", "in_cure", "outcome", "nees_end", "lost_from")
 TOLD = 3  # changes of one kind that are told each by itself
+NONE = "–"  # where no truth is known
 MOST = 10  # changes that cure, in the table
 
 
@@ -51,7 +52,8 @@ def aligned_rows(rows: Sequence[tuple[str, str, str, str]], width: int | None) -
 def _row(one: Tried, mark: str) -> tuple[str, str, str, str]:
     obvious = one.change.kind in ("reading", "move")  # what becomes of them is always the same
     told = f" ({one.change.told})" if one.change.told and not obvious else ""
-    return mark, in_a_line(f"{named(one.change)}{told}"), nees(one.nees_end), ends(one)
+    at_end = NONE if one.outcome == "recorded" else nees(one.nees_end)
+    return mark, in_a_line(f"{named(one.change)}{told}"), at_end, ends(one)
 
 
 def _range(each: Sequence[Tried]) -> tuple[str, str]:
@@ -62,7 +64,11 @@ def _range(each: Sequence[Tried]) -> tuple[str, str]:
 
 
 def _cut(name: str, room: int) -> str:
-    return name if len(name) <= room else f"{name[: room - 1].rstrip()}…"
+    """A name with as much of what was put right as there is room for: none, or all of it."""
+    if len(name) <= room:
+        return name
+    alone = name.partition(" (")[0]
+    return alone if len(alone) <= room else f"{alone[: room - 1].rstrip()}…"
 
 
 def nees(value: float) -> str:

@@ -49,6 +49,13 @@ def test_a_spreadsheet_calculates_nothing():
     assert "'=the beam" in file.getvalue()
 
 
+def test_what_was_put_right_gives_way_where_there_is_no_room_for_it():
+    wide, narrow = (table(FOUND, width) for width in (70, 60))
+    assert any("the bias of the laser (0.1 m)" in line for line in wide)
+    assert any("the bias of the laser  " in line for line in narrow)
+    assert max(map(len, narrow)) <= 60
+
+
 def test_many_of_a_kind_that_do_not_cure_share_a_row():
     lines = table(FOUND)
     assert len(lines) == 4  # head, the cure, the fault, the moves
