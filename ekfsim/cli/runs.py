@@ -197,9 +197,11 @@ def write_page(
     reason = ""
     if explained:
         from ekfsim.views.why.answer import answer
+        from ekfsim.views.why.asked import runs_for
         from ekfsim.why import explain
 
-        reason = answer(explain(scene.alone()[0], heard=lambda done, budget: heed()))
+        one = scene.alone()[0]
+        reason = answer(explain(one, runs_for(one), heard=lambda done, budget: heed()))
     made = write(scene, out, look, every, force, heed, reason)
     if made.left_out:
         say(f"{in_a_line(out)}: {made.left_out}")

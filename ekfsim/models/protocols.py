@@ -1,6 +1,6 @@
 """What a filter asks of a motion and of a sensor. All arrays carry leading axes (…)."""
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from ekfsim.geometry import Array
 from ekfsim.twins import twinned
@@ -79,9 +79,13 @@ class Sensor(Protocol):
         """ν = z − h : (…, k), to be wrapped where it is an angle"""
         return z - h
 
-    def of_run(self, run: tuple[int, ...]) -> "Sensor":
-        """The sensor of one of N runs side by side, where each has its own."""
-        return self
+
+@runtime_checkable
+class OfRuns(Protocol):
+    """A sensor that holds something of each of N runs side by side."""
+
+    def of_run(self, run: tuple[int, ...]) -> Sensor:
+        """The sensor of one of them."""
 
 
 def angles(quantities: tuple[Quantity, ...]) -> tuple[int, ...]:

@@ -1,6 +1,6 @@
 """The laser whose noise is taken from what it read: a counter-example to the one in laser.py."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,10 +25,6 @@ class LaserByReading(Laser):
         z = self.z.reshape(*self.z.shape[:-1], *(1,) * (h.ndim - self.z.ndim), 1)
         r = np.where(np.isnan(h) | np.isnan(z), h, z)
         return np.square(self.range_ratio * r)[..., None]
-
-    def of_run(self, run: tuple[int, ...]) -> Sensor:
-        """With the reading of that run."""
-        return replace(self, z=self.z[run])
 
 
 def by_reading(sensor: Sensor, z: Array) -> Sensor:

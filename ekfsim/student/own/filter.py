@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
 import numpy as np
@@ -12,7 +12,8 @@ from ekfsim.filters.arithmetic.algebra import symmetric
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Prediction, Refused
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.models.protocols import Motion, Sensor
+from ekfsim.models.protocols import Motion, OfRuns, Sensor
+from ekfsim.models.sensors.laser_by_reading import LaserByReading
 from ekfsim.records import Control, Reading
 from ekfsim.student.asked import Answer, Asked, Caller, Together, one_by_one
 from ekfsim.student.fault import FaultError
@@ -68,7 +69,7 @@ class OwnFilter:
         told = self._beside(x, P, sensor, z, skip)
         handed = (told.refused == Refused.NOT) & (told.S != 0).any(axis=(-2, -1))
         given = {
-            run: Reading(sensor.of_run(run), _row(z, run))
+            run: Reading(_of_run(sensor, run), _row(z, run))
             for run in np.ndindex(x.shape[:-1])
             if handed[run]
         }
@@ -130,3 +131,10 @@ def believed(asked: Asked, theirs: Answer, caller: Caller) -> Gaussian:
 def _row(values: Array, run: tuple[int, ...]) -> Array:
     """Input or reading of one run; one that is the same for all has no axes."""
     return values[run] if values.shape[:-1] else values
+
+
+def _of_run(sensor: Sensor, run: tuple[int, ...]) -> Sensor:
+    """The sensor of one run, where each has its own."""
+    if isinstance(sensor, LaserByReading):
+        return replace(sensor, z=sensor.z[run])
+    return sensor.of_run(run) if isinstance(sensor, OfRuns) else sensor

@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from ekfsim.commands import expanded_length
-from ekfsim.errors import EkfsimError
 from ekfsim.files.results.writing import whole_folder
 from ekfsim.files.scenes.load_study import Request
 from ekfsim.files.scenes.settings import Setting
@@ -22,6 +21,7 @@ from ekfsim.study.tables import write_steps, write_summary
 from ekfsim.version import VERSION
 from ekfsim.views.study.pictures import draw_study
 from ekfsim.views.study.words import explained
+from ekfsim.views.why.asked import is_quick
 
 REPEATING = ("study.yaml", "compare.yaml")
 REASON = "why.txt"  # only where runs are lost
@@ -56,16 +56,13 @@ def reason_of(results: Sequence[Result]) -> str:
         return ""
     worst = max(lost, key=lambda one: (one.tally.worst.impossible, one.tally.worst.nees))
     scene = replace(worst.case.scene, run=worst.tally.worst.run, beside=())
-    if expanded_length(scene.commands) > LONGEST:
+    if expanded_length(scene.commands) > LONGEST or not is_quick(scene):
         return ""
     from ekfsim.views.why.answer import answer
     from ekfsim.why import explain  # only here, and seldom
 
     values = "".join(f"{one}\n" for one in worst.case.values)
-    try:
-        return values + answer(explain(scene))
-    except EkfsimError as refusal:  # the code of a filter of one's own, in a run that is another
-        return f"{values}It cannot be said why: {refusal}\n"
+    return values + answer(explain(scene))
 
 
 def copies_in(out: Path, filters: Iterable[str]) -> Iterator[str]:

@@ -35,7 +35,8 @@ class Reason:
         interruptible: Callable[[], AbstractContextManager[Callable[[], bool]]],
     ) -> Self | None:  # fmt: skip
         """Of a scene's first filter; None where Ctrl-C has stopped it. wait : says how far it is"""
-        from ekfsim.why import explain  # asked seldom
+        from ekfsim.views.why.asked import runs_for  # asked seldom
+        from ekfsim.why import explain
 
         begun = 0.0
         wait(CALCULATING)
@@ -50,7 +51,8 @@ class Reason:
                     wait(f"{CALCULATING} · {done} of at most {budget}")
 
             try:
-                return cls(explain(scene.alone()[0], heard=heard))
+                one = scene.alone()[0]
+                return cls(explain(one, runs_for(one), heard=heard))
             except StoppedError:
                 return None
             except EkfsimError as refusal:

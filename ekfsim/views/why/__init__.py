@@ -1,5 +1,6 @@
 """What is seen of an explanation: why a run was lost, and what cures it.
 
+asked.py      how many runs are asked where nobody says it
 answer.py     all that is printed: the cause by its name, one sentence with its evidence, the table
 mechanisms.py how each mechanism is told of a run
 met.py        which wall a beam was predicted to meet, and which it met
