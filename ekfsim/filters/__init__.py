@@ -8,6 +8,7 @@
     stretch.py many predictions in a row        tuning.py    numbers that a person may set
     choice.py  the filter that a scene names    place.py     where one of one's own is found
 
+    cures/       for bad readings, each with what it assumes
     variants/    about a plan; noise in the sigma points; a document's listing; counter-examples
     arithmetic/  square roots of P, sigma points, the iterated filter's search, quantiles of χ²
 
@@ -31,6 +32,8 @@ FILTERS: Table["Kind"] = Table(
         "iekf": "ekfsim.filters.iekf:IEKF",
         "ukf": "ekfsim.filters.ukf:UKF",
         "ukf-augmented": "ekfsim.filters.variants.ukf_augmented:AugmentedUKF",
+        "huber": "ekfsim.filters.cures.huber:Huber",
+        "pdaf": "ekfsim.filters.cures.pdaf:PDAF",
         "pf": "ekfsim.filters.pf:PF",
     }
 )

@@ -94,6 +94,9 @@ class Correction:
     nis: Array  # νᵀ S⁻¹ ν : (…), refused readings included; nan where S = 0
     refused: Integers  # (…) one of Refused
     settled: Booleans | bool = True  # (…) whether the search of an iterated filter came to rest
+    # (…) how far a filter that weighs its readings believes this one, 0 to 1; nan where it is not
+    # used; None of a filter that weighs none
+    trust: Array | None = None
     # `predicted` is that of a tangent drawn elsewhere than at x⁻: it meets nothing of the map
     tangent: bool = False
 

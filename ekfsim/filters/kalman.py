@@ -104,6 +104,29 @@ def refusal(z: Array, h: Array, nis: Array, rule: Rule) -> Integers:
     return np.select(conditions, [np.int64(reason) for _, reason in reasons], np.int64(Refused.NOT))
 
 
+def of_used(told: Correction, trust: Array) -> Array:
+    """How far each reading is believed : (…), nan where it is not used."""
+    return np.where(told.used, trust, np.nan)
+
+
+def trusting(
+    trust: Array, prior: Gaussian, posterior: Gaussian, told: Correction, headings: tuple[int, ...]
+) -> Gaussian:
+    """x = x⁻ + w K ν      P = (1 − w) P⁻ + w (I − K H) P⁻
+
+    What of an update is left of readings that are believed to the share w. trust : (…), w in
+    [0, 1]; where it is 1, or nan, all is as it was updated
+    """
+    w = trust[..., None]
+    mean = wrapped(prior.mean + w * np.matvec(told.K, told.innovation), headings)
+    P = (1 - w[..., None]) * prior.covariance + w[..., None] * posterior.covariance
+    less = w < 1
+    return Gaussian(
+        np.where(less, mean, posterior.mean),
+        np.where(less[..., None], covariance(P), posterior.covariance),
+    )
+
+
 def where_used(refused: Integers, posterior: Gaussian, prior: Gaussian) -> Gaussian:
     """The posterior where the reading is used, the prior where it is refused."""
     used = (refused == Refused.NOT)[..., None]

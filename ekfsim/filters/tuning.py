@@ -9,7 +9,8 @@ MOST_PARTICLES = 1_000_000
 UNSCENTED = "ukf", "ukf-augmented"
 OF_SOME = {  # whose number it is
     "particles": ("pf",), "alpha": UNSCENTED, "beta": UNSCENTED, "kappa": UNSCENTED,
-    "iterations": ("iekf",),
+    "iterations": ("iekf",), "huber": ("huber",),
+    "clutter": ("pdaf",), "clutter_density": ("pdaf",),
 }  # fmt: skip
 HAS_NO_P = "pf"  # which has nothing to drop from
 
@@ -26,6 +27,9 @@ class Tuning:
     kappa: float | None = None  # None: max(3 − n, 0)
     # steps of the iterated filter's search at most, half a step counting as half; 0 is the EKF
     iterations: int = 50
+    huber: float = 2.0  # σ of an innovation; beyond it a reading pulls no harder than there
+    clutter: float = 0.1  # share of readings that are of something else than is expected
+    clutter_density: float = 0.1  # of those, per unit (m, rad) of each number: 0.1/m is in 10 m
     # whence the classroom's C_v = (ratio · r)² takes its r
     range_variance: RangeVariance = "prediction"
     cross_covariances: CrossCovariances = "kept"  # σ_xθ and σ_yθ, which no picture shows

@@ -179,8 +179,8 @@ WATCHED = (  # by whom a run is watched
         "filter_name",
         metavar="NAME,…",
         help="In place of the file's filter: "
-        "kf, kf-nominal, ekf, iekf, ukf, ukf-augmented or pf, or one of your own, FILE.py, "
-        "FILE.py:NAME or package.module:NAME. Several are put side by side; the name of "
+        "kf, kf-nominal, ekf, iekf, ukf, ukf-augmented, huber, pdaf or pf, or one of your own, "
+        "FILE.py, FILE.py:NAME or package.module:NAME. Several are put side by side; the name of "
         "each then stands before the ending of its files.",
     ),
     GATE,

@@ -189,6 +189,31 @@ class TuningKeys(Strict):
         le=1000,
         examples=[20],
     )
+    huber: float = Field(
+        Tuning.huber,
+        description="Standard deviations of an innovation beyond which a reading pulls the huber "
+        "filter no harder than it does there.",
+        gt=0,
+        le=8,
+        examples=[3],
+    )
+    clutter: float = Field(
+        Tuning.clutter,
+        description="Share of readings that the pdaf takes for something else than it expected; 0 "
+        "makes it the ekf.",
+        ge=0,
+        lt=1,
+        examples=[0.02],
+    )
+    clutter_density: float = Field(
+        Tuning.clutter_density,
+        alias="clutterDensity",
+        description="How dense such readings lie, per m or rad of each number: 0.1 where they may "
+        "be anywhere in 10 m. Of the pdaf.",
+        gt=0,
+        le=1000,
+        examples=[0.25],
+    )
     range_variance: RangeVariance = Field(
         Tuning.range_variance,
         alias="rangeVariance",

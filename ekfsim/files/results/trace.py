@@ -99,6 +99,7 @@ def _update(step: Step, reading: Reading, scene: Scene) -> dict[str, Any]:
         "updated": bool(c.refused == Refused.NOT),
         "refused": Refused(int(c.refused)).word,
         **({} if c.settled else {"settled": False}),
+        **({} if c.trust is None else {"trust": _number(c.trust)}),
         **_believed(step, scene),
     }
 
@@ -187,6 +188,7 @@ def _corrected(c: Correction) -> dict[str, Any]:
         "updated": bool(c.refused == Refused.NOT),
         "refused": Refused(int(c.refused)).word,
         **({} if c.settled else {"settled": False}),
+        **({} if c.trust is None else {"trust": _number(c.trust)}),
     }
 
 

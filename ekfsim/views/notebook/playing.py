@@ -62,6 +62,8 @@ def _held(step: Step) -> Step:
         _fast(made.F, made.G)
     if (c := step.correction) is not None:
         _fast(c.predicted, c.innovation, c.R, c.S, c.H, c.K, c.nis, c.refused, c.settled)
+        if c.trust is not None:
+            _fast(c.trust)
     if (nees := step.nees) is not None:
         _fast(nees.value, nees.dof, nees.impossible)
     _hold_fields(step.remark)

@@ -13,6 +13,7 @@ from ekfsim.views.picture.sights import sight, told
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.braille import Canvas, Pen, ansi
 from ekfsim.views.words.changes import revised
+from ekfsim.views.words.trust import believed
 
 READ = ansi("#D55E00")
 BEAM, REFUSED_BEAM = Pen(READ, "-"), Pen(READ, "-", on=2, off=3)
@@ -80,7 +81,9 @@ def outcome(view: View, probability: float) -> str:
         return "not used"
     word = Refused(int(correction.refused)).word
     if not view.beam:
-        return revised(view, probability) if word is None else f"not used ({word})"
+        if word is not None:
+            return f"not used ({word})"
+        return ", ".join(filter(None, [believed(correction), revised(view, probability)]))
     if not isinstance(reading.sensor, Laser):
         outputs, refused = reading.sensor.outputs, "" if word is None else f"refused ({word}): "
         return (

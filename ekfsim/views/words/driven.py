@@ -8,6 +8,7 @@ from ekfsim.filters.belief import Correction, Refused
 from ekfsim.geometry import Array
 from ekfsim.models.protocols import Quantity
 from ekfsim.records import Control, Reading
+from ekfsim.scene import Scene
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.beams.told import doubts, expected_wall
 from ekfsim.views.words.long_form import SHORT, Form
@@ -22,6 +23,7 @@ from ekfsim.views.words.numbers import (
     quantity,
     state,
 )
+from ekfsim.views.words.trust import trusted
 from ekfsim.views.words.uncertainty import crowd, judged, rest, surprise, uncertainty
 
 REFUSED = {
@@ -87,7 +89,7 @@ def read(view: View, guarded: bool, form: Form) -> str:
     return f"==>{at}{given.name} was read: {told}\n{doubts(view.step, guarded)}{doubted}"
 
 
-def revised(view: View, probability: float, form: Form) -> str:
+def revised(view: View, scene: Scene, probability: float, form: Form) -> str:
     """What was expected in place of the reading, and what the filter made of the difference."""
     given, c = view.step.entry.given, view.step.correction
     assert isinstance(given, Reading)
@@ -100,6 +102,7 @@ def revised(view: View, probability: float, form: Form) -> str:
         + _innovation(given.sensor.outputs, c)
         + REFUSED[Refused(int(c.refused))]
         + (_gain(view, given.sensor.outputs, c.K, by("gain")) if used else "")
+        + trusted(c, scene, form)
         + rest(c)
         + f"Revised state estimate: {state(x, view.layout)}{by('revised')}\n"
         + f"Revised covariance matrix is:{by('revised_covariance')}\n{matrix(P)}"

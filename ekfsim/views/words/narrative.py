@@ -16,6 +16,7 @@ from ekfsim.views.words.driven import REFUSED
 from ekfsim.views.words.long_form import SHORT, Form, LongForm
 from ekfsim.views.words.numbers import fill, fill_vector, fine, matrix, number, pose, turn
 from ekfsim.views.words.opening import opening, plain
+from ekfsim.views.words.trust import trusted
 from ekfsim.views.words.uncertainty import crowd, judged, rest, surprise, uncertainty
 
 DERIVATIVES = "  dh/dx = %.6g, dh/dy = %.6g, dh/dth = %.6g\n"
@@ -36,7 +37,9 @@ def narrate(view: View, scene: Scene, probability: float = 0.954, explain: bool 
             text = _move(view, move, scene, probability, form)
         case Sense(angle), _:
             text = (
-                _beam(step, angle, scene, form) if view.beam else _update(view, probability, form)
+                _beam(step, angle, scene, form)
+                if view.beam
+                else _update(view, scene, probability, form)
             )
         case Kidnap(x, y, theta), _:
             text = (
@@ -52,7 +55,7 @@ def narrate(view: View, scene: Scene, probability: float = 0.954, explain: bool 
             text = (
                 driven_narrative.read(view, guarded, form)
                 if view.beam
-                else driven_narrative.revised(view, probability, form)
+                else driven_narrative.revised(view, scene, probability, form)
             )
         case _:
             text = opening(scene) + form.words + _start(view, scene, probability)
@@ -122,7 +125,7 @@ def _beam(step: Step, angle: float, scene: Scene, form: Form) -> str:
     )
 
 
-def _update(view: View, probability: float, form: Form) -> str:
+def _update(view: View, scene: Scene, probability: float, form: Form) -> str:
     step = view.step
     c, (x, P) = step.correction, step.posterior
     assert c is not None
@@ -138,6 +141,7 @@ def _update(view: View, probability: float, form: Form) -> str:
             if used
             else ""
         )
+        + trusted(c, scene, form)
         + rest(c)
         + f"Revised state estimate: (x, y, theta) = {pose(x.tolist())}{by('revised')}\n"
         + f"Revised covariance matrix is:{by('revised_covariance')}\n{matrix(P)}"

@@ -25,7 +25,12 @@ RATIOS = {  # as the files call them
     "range": "rangeSigmaRatio",
 }
 SELDOM = "delay", "mount_x", "mount_y", "mount_theta"  # told where they are not 0
-LINEARISED = ("kf", "kf-nominal", "ekf", "iekf")
+LINEARISED = ("kf", "kf-nominal", "ekf", "iekf", "huber", "pdaf")
+WEIGHING = ("huber", "pdaf")  # their readings
+BOTH = (
+    "A gate and a weight judge each reading: one beyond the gate is refused outright, and only the "
+    "others are weighed"
+)
 PERFECT = (
     "The filter is told that the range has no noise: each beam leaves no doubt along its "
     "derivatives, which hold for "
@@ -42,6 +47,8 @@ def opening(scene: Scene) -> str:
         told.append(f"The filter {label(scene.filter)}: {remark}")
     if reads(scene.filter, "particles"):
         told.append(f"The filter {scene.filter}: {scene.tuning.particles} particles")
+    if scene.gate is not None and scene.filter in WEIGHING:
+        told.append(BOTH)
     if scene.world.perfect_beam and scene.filter in LINEARISED:
         told.append(PERFECT)
     if scene.reading != "corrected":

@@ -61,6 +61,14 @@ BY_FILTER: dict[str, Origins] = {
         gain="P H' (H P H' + R)^-1 with H where its iterations ended",
         revised="eq 10: x + K r, iterated",
     ),
+    "huber": Origins(
+        revised="eq 10 with K weighed: x + w K r",
+        revised_covariance="eq 12 with K weighed: (I - w K H) P",
+    ),
+    "pdaf": Origins(
+        revised="eq 10 with K weighed: x + beta K r",
+        revised_covariance="(1 - beta) P + beta (I - K H) P + beta (1 - beta) K r r' K'",
+    ),
     "ukf": SIGMA_POINTS,
     "ukf-augmented": replace(
         SIGMA_POINTS,

@@ -1,0 +1,5 @@
+"""Cures for what the EKF does not expect; the first line of each says what it assumes in return.
+
+huber.py      a reading that lies far off pulls no harder than one that lies k σ off
+pdaf.py       a reading is of what was expected, or of clutter: both, as probable as each is
+"""

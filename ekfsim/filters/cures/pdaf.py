@@ -1,0 +1,60 @@
+"""Assumes that the prior is right, and a reading either of what it expects or of clutter."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from ekfsim.filters import kalman
+from ekfsim.filters.belief import Belief, Correction, Gaussian
+from ekfsim.filters.ekf import EKF
+from ekfsim.filters.protocol import Beginning
+from ekfsim.filters.tuning import Tuning
+from ekfsim.geometry import Array, Booleans
+from ekfsim.models.protocols import Sensor
+
+SURELY_CLUTTER = 700.0  # ln of odds: exp of more is no number
+
+
+@dataclass(frozen=True)
+class PDAF(EKF):
+    """Probabilistic data association filter of one reading at a time: Bar-Shalom, Daum & Huang, The
+    probabilistic data association filter, IEEE Control Systems, 2009, with the density of clutter
+    known. All else is as in the EKF.
+    """
+
+    clutter: float = Tuning.clutter  # the share of readings that are of something else
+    density: float = Tuning.clutter_density  # of those, per unit (m, rad) of each number
+
+    @classmethod
+    def begin(cls, beginning: Beginning) -> Self:
+        """The filter for a run that begins so."""
+        own = beginning.tuning
+        return cls(beginning.gate, beginning.headings, own.clutter, own.clutter_density)
+
+    def update(
+        self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
+    ) -> tuple[Gaussian, Correction]:
+        """β = (1 − c) N(ν; 0, S) / ((1 − c) N(ν; 0, S) + c λᵏ)
+        x = x⁻ + β K ν      P = (1 − β) P⁻ + β (I − K H) P⁻ + β (1 − β) K ν νᵀ Kᵀ
+
+        These are the moments of a mixture: with probability β the EKF's posterior, else the prior.
+        c : clutter, λ : its density. What is told, S, K and NIS, is the EKF's.
+        """
+        posterior, told = super().update(prior, sensor, z, skip)
+        β = kalman.of_used(told, association(told, self.clutter, self.density))
+        x, P = kalman.trusting(β, Gaussian(*prior), posterior, told, self.headings)
+        apart = np.matvec(told.K, told.innovation)  # the two parts of the mixture
+        outer = apart[..., :, None] * apart[..., None, :]
+        spread = np.where(β[..., None, None] < 1, (β * (1 - β))[..., None, None] * outer, 0.0)
+        return Gaussian(x, P + spread), replace(told, trust=β)
+
+
+def association(told: Correction, clutter: float, density: float) -> Array:
+    """β : (…), that a reading is of what was expected; 1 where there is no clutter."""
+    k = told.innovation.shape[-1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ln_odds = np.log(clutter) - np.log1p(-clutter) + k * np.log(density * np.sqrt(2 * np.pi))
+        ln_odds = ln_odds + (np.linalg.slogdet(told.S).logabsdet + told.nis) / 2
+    β: Array = 1 / (1 + np.exp(np.minimum(ln_odds, SURELY_CLUTTER)))
+    return β
