@@ -88,6 +88,6 @@ def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
     beginning = Beginning(
         first_belief(scene), scene.world.layout.headings, scene.gate,
         lambda: particle_generators(scene.seed, numbers), scene.tuning,
-        lambda: nominal_trajectory(scene), runs,
+        lambda: nominal_trajectory(scene), scene.world.anywhere, runs,
     )  # fmt: skip
     return system_of(scene.world.system).filter(scene.filter, scene.reading, beginning)

@@ -21,6 +21,9 @@ from ekfsim.systems.instrument import Landmark as Landmark
 from ekfsim.systems.robot import Robot
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.random import Generator
     from shapely import Polygon
 
 
@@ -322,6 +325,19 @@ class World:
             said or bool(σ) for said, σ in zip(told.sigma_said, told.sigma.tolist(), strict=True)
         )
         return x, y, theta
+
+    @property
+    def anywhere(self) -> "Callable[[Generator, int], Array] | None":
+        """States from all over the floor that the filter believes free, with any heading:
+        (generator, number) → (p, n); None where no boundary says where the floor ends.
+        """
+        if self.told.map.boundary is None:
+            return None
+
+        def drawn(generator: "Generator", number: int) -> Array:
+            return self.layout.state(self.told.map.walls.ground.anywhere(generator, number))
+
+        return drawn
 
     def targets(self, reading: DocumentReading) -> list[tuple[Instrument, Target]]:
         """Everything that the instruments may read, with the sensors as the filter is told."""

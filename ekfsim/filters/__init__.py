@@ -35,5 +35,6 @@ FILTERS: Table["Kind"] = Table(
         "huber": "ekfsim.filters.cures.huber:Huber",
         "pdaf": "ekfsim.filters.cures.pdaf:PDAF",
         "pf": "ekfsim.filters.pf:PF",
+        "amcl": "ekfsim.filters.cures.amcl:AMCL",
     }
 )

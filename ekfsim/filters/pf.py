@@ -83,18 +83,7 @@ class PF:
         particles.
         """
         crowd = self._crowd(prior)
-        h, _, R = sensor.linearize(crowd.states)
-        R = np.broadcast_to(R, (*h.shape, h.shape[-1]))
-        told, spread = self._told(crowd, sensor, z, h, R, skip)
-        grain = spread * (KEPT / self.count) ** (2 / min(h.shape[-1], crowd.mean.shape[-1]))
-        log = _log_likelihood(sensor.residual(z[..., None, :], h), R, grain)
-        seen = np.where(crowd.weights > 0, log, -np.inf)
-        best = seen.max(axis=-1, keepdims=True)
-        # the best of them is not 0
-        weights = crowd.weights * np.exp(seen - np.where(np.isfinite(best), best, 0.0))
-        used: Booleans = np.isfinite(best) & (np.asarray(told.refused)[..., None] == Refused.NOT)
-        weights = np.where(used, weights, crowd.weights)
-        weights = weights / weights.sum(axis=-1, keepdims=True)
+        weights, used, told = self._weighed(crowd, sensor, z, skip)
         few = used & (1 / np.sum(weights**2, axis=-1, keepdims=True) < self.count / 2)
         weighted = self._summed(crowd.states, weights)
         states = np.where(few[..., None], self._drawn_anew(weighted), crowd.states)
@@ -105,6 +94,30 @@ class PF:
             posterior.states,
             posterior.weights,
         ), told
+
+    def _weighed(
+        self, crowd: Particles, sensor: Sensor, z: Array, skip: Booleans | bool
+    ) -> tuple[Array, Booleans, Correction]:
+        """The weights after a reading : (…, p), where it could be used : (…, 1), and what is told
+        of it.
+        """
+        h, _, R = sensor.linearize(crowd.states)
+        R = np.broadcast_to(R, (*h.shape, h.shape[-1]))
+        told, spread = self._told(crowd, sensor, z, h, R, skip)
+        share = KEPT / self._number(crowd)
+        grain = spread * (share ** (2 / min(h.shape[-1], crowd.mean.shape[-1])))[..., None]
+        log = _log_likelihood(sensor.residual(z[..., None, :], h), R, grain)
+        seen = np.where(crowd.weights > 0, log, -np.inf)
+        best = seen.max(axis=-1, keepdims=True)
+        # the best of them is not 0
+        weights = crowd.weights * np.exp(seen - np.where(np.isfinite(best), best, 0.0))
+        used: Booleans = np.isfinite(best) & (np.asarray(told.refused)[..., None] == Refused.NOT)
+        weights = np.where(used, weights, crowd.weights)
+        return weights / weights.sum(axis=-1, keepdims=True), used, told
+
+    def _number(self, crowd: Particles) -> Array:
+        """Of how many particles each crowd is : (…, 1)"""
+        return np.full((*crowd.weights.shape[:-1], 1), float(self.count))
 
     def _told(
         self, crowd: Particles, sensor: Sensor, z: Array, h: Array, R: Array, skip: Booleans | bool

@@ -26,6 +26,9 @@ class Beginning:
     tuning: Tuning = UNTUNED  # the numbers that this filter alone may have
     # where the state would be by plan : (T + 1, n); None: no plan is known
     nominal: Callable[[], Array] | None = None
+    # poses from all places where a robot can stand, as states: (generator, number) → (p, n); None:
+    # no map tells where that is
+    anywhere: "Callable[[Generator, int], Array] | None" = None
     runs: Integers | None = None  # (N,) the numbers of runs side by side; None of one alone
 
 

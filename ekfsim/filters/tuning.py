@@ -7,12 +7,12 @@ RangeVariance = Literal["prediction", "reading"]
 CrossCovariances = Literal["kept", "dropped"]
 MOST_PARTICLES = 1_000_000
 UNSCENTED = "ukf", "ukf-augmented"
+CROWDS = "pf", "amcl"  # particles, and no P to drop anything from
 OF_SOME = {  # whose number it is
-    "particles": ("pf",), "alpha": UNSCENTED, "beta": UNSCENTED, "kappa": UNSCENTED,
+    "particles": CROWDS, "alpha": UNSCENTED, "beta": UNSCENTED, "kappa": UNSCENTED,
     "iterations": ("iekf",), "huber": ("huber",),
     "clutter": ("pdaf",), "clutter_density": ("pdaf",),
 }  # fmt: skip
-HAS_NO_P = "pf"  # which has nothing to drop from
 
 
 @dataclass(frozen=True)
@@ -46,4 +46,4 @@ def reads(filter_name: str, number: str) -> bool:
     """
     if number in OF_SOME:
         return filter_name in OF_SOME[number]
-    return number != "cross_covariances" or filter_name != HAS_NO_P
+    return number != "cross_covariances" or filter_name not in CROWDS

@@ -4,7 +4,7 @@ no room.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -12,9 +12,13 @@ from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.twins import twinned
 
 CLEARANCE = 1e-3  # m; how near a robot comes to a wall
+MORE, MOST_TRIES = 64, 1_000_000  # places tried beyond those that are wanted; for a single one
 HAIR = 1e-9  # of a wall's length: how far beyond its ends a way is cut, too
 
 NONE = np.empty((0, 3))  # no circle
+
+if TYPE_CHECKING:
+    from numpy.random import Generator
 
 Edge = tuple[float, float, float, float]
 
@@ -63,6 +67,25 @@ class Ground:
             places.shape[:-1]
         )
         return free
+
+    def anywhere(self, generator: "Generator", number: int) -> Array:
+        """Poses, uniform over the places where a robot can stand and over all headings : (p, 3).
+
+        Raises ValueError where walls shut nothing in, or leave no place.
+        """
+        if self.room < 0:
+            raise ValueError("no wall says where the floor ends")
+        low, high = self.low[self.room], self.high[self.room]
+        found, tried = np.empty((0, 3)), 0
+        while len(found) < number:
+            poses = generator.random((number + MORE, 3))
+            poses[:, :2] = low + poses[:, :2] * (high - low)
+            poses[:, 2] = np.pi * (1 - 2 * poses[:, 2])
+            found = np.concatenate([found, poses[self.free(poses[:, :2])]])
+            tried += number + MORE
+            if not len(found) and tried > MOST_TRIES:
+                raise ValueError("the map leaves no place where a robot can stand")
+        return found[:number]
 
     def _holds(self, number: int, points: Array) -> Booleans:
         """Whether points (n, 2) lie in a polygon or circle : (n,)"""

@@ -17,6 +17,7 @@ import numpy as np
 from ekfsim.commands import expanded_length
 from ekfsim.diagnostics.verdict import LOST
 from ekfsim.filters.belief import Belief, Correction, posed
+from ekfsim.filters.tuning import CROWDS
 from ekfsim.geometry import Array, Integers
 from ekfsim.localization import play
 from ekfsim.models.layout import Layout
@@ -56,7 +57,7 @@ def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
 
     Only of particles there may be too many for a block's runs to be watched side by side.
     """
-    some = max(MOST_PARTICLES // scene.tuning.particles, 1) if scene.filter == "pf" else runs
+    some = max(MOST_PARTICLES // scene.tuning.particles, 1) if scene.filter in CROWDS else runs
     return [(run, min(some, first + runs - run)) for run in range(first, first + runs, some)]
 
 

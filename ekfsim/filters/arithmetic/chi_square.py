@@ -1,7 +1,10 @@
-"""Quantiles of the χ² distribution, each computed once."""
+"""Quantiles of the χ² distribution, each computed once, and its tail."""
 
 from functools import lru_cache
 
+import numpy as np
+
+from ekfsim.geometry import Array
 from ekfsim.twins import twinned
 
 
@@ -19,6 +22,17 @@ def quantile(probability: float, dof: int) -> float:
     from scipy.special import chdtri  # takes a fifth of a second to import
 
     return float(chdtri(dof, 1 - probability))
+
+
+def survival(value: Array, dof: int) -> Array:
+    """P(χ² > value) of `dof` degrees of freedom : (…); nan where the value is.
+
+    >>> survival(np.array([0.0, 3.841458820694124]), 1).round(6).tolist()
+    [1.0, 0.05]
+    """
+    from scipy.special import chdtrc  # takes a fifth of a second to import
+
+    return np.asarray(chdtrc(dof, value))
 
 
 def band(probability: float, dof: int) -> tuple[float, float]:
