@@ -135,7 +135,14 @@ def begun(name, first, gate=None, headings=(2,), runs=(0,), seed=0):
     its number alone."""
     generators = lambda: [np.random.default_rng([seed, run]) for run in runs]  # noqa: E731
     plan = lambda: first.mean[None]  # noqa: E731
-    return FILTERS[name].begin(Beginning(first, headings, gate, generators, nominal=plan))
+    return FILTERS[name].begin(
+        Beginning(first, headings, gate, generators, nominal=plan, anywhere=anywhere)
+    )
+
+
+def anywhere(generator, number):
+    """Poses from all over a room of 10 m by 8 m."""
+    return generator.uniform((0, 0, -np.pi), (10, 8, np.pi), (number, 3))
 
 
 def classroom(random, axes=()):

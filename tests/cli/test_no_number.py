@@ -12,6 +12,7 @@ from ekfsim.files.packaged import resolve
 from ekfsim.files.results.trace import line_of
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters import FILTERS
+from ekfsim.filters.tuning import CROWDS
 from ekfsim.localization import play
 from ekfsim.views.picture.sights import sight
 from ekfsim.views.playback.playback import views
@@ -90,7 +91,7 @@ def test_where_the_estimate_itself_sees_no_wall(tmp_path):
 
 
 @pytest.mark.parametrize("system", DRIVES)
-@pytest.mark.parametrize("filter", [name for name in FILTERS if name != "pf"])
+@pytest.mark.parametrize("filter", [name for name in FILTERS if name not in CROWDS])
 def test_a_drive(system, filter, tmp_path):
     path = tmp_path / "commands.yaml"
     path.write_text(f"world: {resolve(system, 'worlds')}\ndrive: {DRIVES[system]}\n")

@@ -13,13 +13,14 @@ from ekfsim.diagnostics.verdict import Evidence, Verdict
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian, Particles, Refused
+from ekfsim.filters.tuning import CROWDS
 from ekfsim.localization import play
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.motions.wheels import TwoWheels
 from ekfsim.models.sensors.laser import Laser
 
 WEIGHING = ("huber", "pdaf")  # their readings
-EXACT = [name for name in FILTERS if name not in ("pf", *WEIGHING)]  # without draws
+EXACT = [name for name in FILTERS if name not in (*CROWDS, *WEIGHING)]  # without draws
 STAY = ("kf", "kf-nominal")  # linearised where the run begins: the plan of `begun` is to stay there
 TOLD = ("predicted", "innovation", "R", "S", "H", "K", "nis", "refused")
 
@@ -134,8 +135,8 @@ def test_any_leading_axes(name, axes):
 def test_a_covariance_stays_one_over_thousands_of_steps(name):
     """200 robots take 1 000 steps each among landmarks, each seen from near and far; of particles
     there are fewer."""
-    robots = 20 if name == "pf" else 200
-    steps = 1000 if name != "pf" else 100
+    robots = 20 if name in CROWDS else 200
+    steps = 1000 if name not in CROWDS else 100
     random = np.random.default_rng(2)
     motion = TwoWheels(0.5, 0.002)
     first = Gaussian(np.zeros((robots, 3)), np.zeros((robots, 3, 3)))
@@ -245,7 +246,7 @@ def test_a_certain_belief_stays_so(name):
     belief, prediction = begun(name, first).predict(first, MoveTurn(0.1, 0.1), np.array([1.0, 0.3]))
     assert belief.covariance == pytest.approx(
         prediction.G @ np.diag([0.01, 0.0009]) @ prediction.G.T,
-        abs=0.002 if name == "pf" else 1e-15,
+        abs=0.002 if name in CROWDS else 1e-15,
     )
 
 
@@ -262,7 +263,7 @@ def test_a_singular_covariance(name, rank):
         moved = posterior.mean - prior.mean
         V = np.linalg.eigh(P)[1][:, : 3 - rank]
         # a circular mean is no sum
-        assert V.T @ moved == pytest.approx(0, abs=1e-5 if name == "pf" else 1e-9)
+        assert V.T @ moved == pytest.approx(0, abs=1e-5 if name in CROWDS else 1e-9)
         assert np.isfinite(correction.K).all()
         if name != "iekf":  # whose S is that of the prediction, and H is not
             np.testing.assert_allclose(
@@ -289,7 +290,7 @@ def test_a_heading_at_the_turn_of_the_circle(name, heading):
         assert -math.pi < belief.mean[2] <= math.pi
         assert abs(correction.innovation[1]) < 0.3
     # the root of P turns, and the particles' draws with it
-    tolerance = 0.1 if name == "pf" else 1e-9
+    tolerance = 0.1 if name in CROWDS else 1e-9
     if name not in STAY:
         assert results[0][0] == pytest.approx(
             results[1][0], abs=tolerance if not name.startswith("ukf") else 2e-3

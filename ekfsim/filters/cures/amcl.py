@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 Told = TypeVar("Told", Prediction, Correction)
 
+MIXED = 1_000_003  # more than there are bins along any axis
 FEWEST = 100  # particles, however sure they are
 BIN, BIN_ANGLE = 0.2, math.radians(5.0)  # m, rad: what KLD sampling counts as another place
 KLD = 0.05  # how far the crowd may be from what it stands for, in nats …
@@ -226,13 +227,16 @@ class AMCL(PF):
         for row, of_run in drawn.items():
             states[row], states[row, : len(of_run)] = of_run[0], of_run
             weights[row], weights[row, : len(of_run)] = 0.0, 1 / len(of_run)
-        x, P = crowd.mean.reshape(N, n).copy(), crowd.covariance.reshape(N, n, n).copy()
-        for row, of_run in drawn.items():
-            x[row], P[row] = self._summed(of_run, np.full(len(of_run), 1 / len(of_run)))
-        return Roaming(
-            x.reshape(*axes, n), P.reshape(*axes, n, n), states.reshape(*axes, p, n),
-            weights.reshape(*axes, p), number.reshape(axes), crowd.slow, crowd.fast,
+        made = Roaming(
+            crowd.mean, crowd.covariance, states.reshape(*axes, p, n), weights.reshape(*axes, p),
+            number.reshape(axes), crowd.slow, crowd.fast,
         )  # fmt: skip
+        x, P = crowd.mean.reshape(N, n).copy(), crowd.covariance.reshape(N, n, n).copy()
+        for rows, length in made.groups(self.count):
+            alike, these = made.part(rows, length), anew.reshape(N)[rows]
+            summed = self._summed(alike.states, alike.weights)
+            x[rows[these]], P[rows[these]] = summed.mean[these], summed.covariance[these]
+        return replace(made, mean=x.reshape(*axes, n), covariance=P.reshape(*axes, n, n))
 
     def _one_redrawn(self, generator: "Generator", crowd: Roaming) -> Array:
         """The particles of one run : (p', n), all of one weight."""
@@ -243,7 +247,7 @@ class AMCL(PF):
         n, σ = len(crowd.mean), np.sqrt(np.maximum(np.diagonal(crowd.covariance), 0.0))
         away = wrapped(crowd.states - crowd.mean, self.headings)
         L, bins, astray = square_root(crowd.covariance), self.bins(n), float(crowd.astray)
-        portions = list[Array]()
+        portions, found = list[Array](), list[Integers]()
         wanted = FEWEST
         while (there := sum(map(len, portions))) < min(wanted, self.count):
             p = min(max(there, FEWEST), max(wanted, FEWEST) - there, self.count - there)
@@ -257,9 +261,10 @@ class AMCL(PF):
                 lost = generator.random(p) < astray
                 assert self.anywhere is not None
                 drawn[lost] = self.anywhere(generator, int(np.count_nonzero(lost)))
-            portions.append(wrapped(drawn, self.headings))
-            wanted = enough(places(np.concatenate(portions), bins))
-        return np.concatenate(portions)
+            portions.append(drawn)
+            found.append(cells(drawn, bins))
+            wanted = enough(len(np.unique(np.concatenate(found))))
+        return wrapped(np.concatenate(portions), self.headings)
 
     def bins(self, n: int) -> Array:
         """How wide a bin is in each of n entries of the state : (n,)"""
@@ -279,11 +284,13 @@ def enough(k: int) -> int:
     return max(FEWEST, math.ceil((k - 1) / (2 * KLD) * (1 - a + math.sqrt(a) * Z_99) ** 3))
 
 
-def places(states: Array, bins: Array) -> int:
-    """In how many bins particles (p, n) lie."""
-    cells = np.floor(states / bins).astype(np.int64)
-    cells -= cells.min(axis=0)
-    return len(np.unique(np.ravel_multi_index(tuple(cells.T), tuple(cells.max(axis=0) + 1))))
+def cells(states: Array, bins: Array) -> Integers:
+    """In which bin each of the particles (p, n) lies, as one number : (p,)"""
+    numbers = np.floor(states / bins).astype(np.int64)
+    number: Integers = numbers[:, 0]
+    for i in range(1, numbers.shape[1]):
+        number = MIXED * number + numbers[:, i]  # may overflow: it only tells bins apart
+    return number
 
 
 def followed(average: Array, now: Array, α: float) -> Array:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from ekfsim.errors import UsageError
 from ekfsim.filters import FILTERS
 from ekfsim.filters.place import is_place, label
+from ekfsim.filters.tuning import CROWDS
 from ekfsim.localization import entries_of, filter_of, first_belief
 from ekfsim.scene import Scene
 from ekfsim.student.asked import Caller
@@ -16,7 +17,7 @@ from ekfsim.student.own.forms import Whole
 from ekfsim.student.own.loading import load
 
 # a filter that goes on from any mean and covariance, and does the same again
-COMPARABLE = tuple(name for name in FILTERS if name not in ("kf-nominal", "pf"))
+COMPARABLE = tuple(name for name in FILTERS if name not in ("kf-nominal", *CROWDS))
 
 
 def caller_of(scene: Scene, provided: Sequence[str] | None = None) -> Caller:

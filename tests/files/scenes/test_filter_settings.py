@@ -12,7 +12,7 @@ from ekfsim.files.packaged import resolve
 from ekfsim.files.scenes.load import check, read_scene
 from ekfsim.files.scenes.load_study import asked
 from ekfsim.filters import FILTERS
-from ekfsim.filters.tuning import UNTUNED
+from ekfsim.filters.tuning import CROWDS, UNTUNED
 from ekfsim.filters.variants.shadows import ShadowsAlone
 from ekfsim.localization import filter_of, play
 from ekfsim.records import Reading
@@ -93,7 +93,7 @@ def test_as_it_comes_every_filter_is_its_own_default():
          "filter itself by --filter"),
         ("ekf,ukf", "filter.particles=5",
          "--set filter.particles=5: no filter here (ekf, ukf) reads it; name one that does: "
-         "--filter pf"),
+         "--filter pf or amcl"),
         ("ukf", "filter.kappa=-3",
          "--set filter.kappa=-3: -3 leaves no sigma points, for the state has 3 numbers; write "
          "more than -3"),
@@ -103,7 +103,7 @@ def test_as_it_comes_every_filter_is_its_own_default():
         ("pf", "filter.crossCovariances=dropped",
          "--set filter.crossCovariances=dropped: no filter here (pf) reads it; name one that "
          "does: --filter "
-         + " or ".join(name for name in FILTERS if name != "pf")),
+         + " or ".join(name for name in FILTERS if name not in CROWDS)),
     ],
 )  # fmt: skip
 def test_a_wrong_setting_is_told_in_a_line(filters, settings, message):
@@ -127,7 +127,8 @@ def test_settings_that_the_files_own_filter_does_not_read_are_told_by_check_alon
     )
     told = [warning.partition("c.yaml:")[2] for warning in check(tmp_path / "c.yaml").warnings]
     assert told == [
-        "2:29: filterSettings.particles: the filter 'ekf' has no particles; pf would read it",
+        "2:29: filterSettings.particles: the filter 'ekf' has no particles; pf or amcl would read "
+        "it",
         "2:44: filterSettings.iterations: the filter 'ekf' has no iterations; iekf would read it",
     ]
     assert read_scene(tmp_path / "c.yaml").warnings == []  # --filter may name another

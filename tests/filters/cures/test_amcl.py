@@ -1,0 +1,149 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from problems import ROOM, anywhere, begun, classroom
+from scenes import DESK, scene, world
+from scipy.stats import chi2, chisquare, norm
+from shapely import Polygon, box
+
+from ekfsim.commands import Kidnap, Move, Sense
+from ekfsim.errors import UsageError
+from ekfsim.filters.belief import Gaussian, Particles, Refused
+from ekfsim.filters.cures.amcl import AMCL, FAST, KLD, SLOW, UNEXPLAINED, cells, enough, followed
+from ekfsim.filters.protocol import Beginning
+from ekfsim.localization import play
+from ekfsim.models.sensors.laser import Laser
+
+
+def one(seed=0, count=500, **settings):
+    return AMCL((np.random.default_rng(seed),), count=count, anywhere=anywhere, **settings)
+
+
+def carried(filter="amcl", count=2000):
+    """Some readings, a kidnapping, and twelve more."""
+    away = (Sense(0.0), Sense(2.1), Sense(-2.1), Move(0.5, 0.7))
+    course = (Move(1.0, 0.0), Sense(0.0), Sense(1.5), Kidnap(7.0, 5.5, 2.0), *4 * away)
+    made = scene(*course, start=(1.5, 1.5, 0.3), obstacles=(DESK,), seed=3, filter=filter)
+    return replace(made, tuning=replace(made.tuning, particles=count))
+
+
+@pytest.mark.parametrize("k", [2, 3, 10, 100, 5000])
+def test_as_many_are_enough_as_the_divergence_asks_for(k):
+    """χ²_{k−1} at 99 % over 2 ε is the number; Wilson and Hilferty's cube is within 1 % of it."""
+    exact = chi2.ppf(0.99, k - 1) / (2 * KLD)
+    a = 2 / (9 * (k - 1))
+    cube = (k - 1) / (2 * KLD) * (1 - a + math.sqrt(a) * norm.ppf(0.99)) ** 3
+    assert enough(k) == max(100, math.ceil(cube))
+    assert cube == pytest.approx(exact, rel=0.02)
+
+
+def test_places_are_bins_that_hold_some():
+    states = np.array([[0.1, 0.1, 0.01], [0.15, 0.05, 0.02], [0.1, 0.1, -0.01], [-0.1, 0.1, 0.01]])
+    assert len(set(cells(states, one().bins(3)).tolist())) == 3
+    assert one().bins(3) == pytest.approx([0.2, 0.2, math.radians(5)])
+
+
+def test_averages_by_hand():
+    """w = min(1, P/p₀) of a reading whose probability is 1e-4: 0.1."""
+    w = min(1.0, 1e-4 / UNEXPLAINED)
+    assert followed(np.array(1.0), np.array(w), FAST) == pytest.approx(1 - 0.9 * FAST)
+    assert followed(np.array([1.0, 0.5]), np.array([np.nan, 1.0]), SLOW) == pytest.approx(
+        [1.0, 0.5 + 0.5 * SLOW]
+    )
+    first, laser, _ = classroom(np.random.default_rng(1))
+    filter = one()
+    belief, told = filter.update(first, laser, laser.h(first.mean))
+    assert belief.astray == pytest.approx(0, abs=1e-12)
+    belief, told = filter.update(belief, laser, laser.h(belief.mean) / 2)
+    w = min(1.0, chi2.sf(told.nis, 1) / UNEXPLAINED)
+    slow, fast = 1 - SLOW * (1 - w), 1 - FAST * (1 - w)
+    assert (belief.slow, belief.fast) == pytest.approx((slow, fast))
+    assert belief.astray == pytest.approx(1 - fast / slow)
+    assert 0.3 < belief.astray < 1
+
+
+def test_what_the_gate_refuses_was_not_explained_either():
+    first, laser, _ = classroom(np.random.default_rng(1))
+    belief, told = one(gate=0.999).update(first, laser, laser.h(first.mean) / 2)
+    assert told.refused == Refused.GATE
+    assert belief.fast < 0.6
+    belief, _ = one().update(first, laser, np.array([np.nan]))  # no echo tells nothing
+    assert (belief.slow, belief.fast) == (1, 1)
+
+
+def test_the_sure_need_few_and_the_unsure_many():
+    filter = one(count=5000)
+    numbers = []
+    for σ in (0.05, 1.0):
+        prior = Gaussian(np.array([5.0, 4.0, 0.3]), np.diag([σ, σ, 0.3 * σ]) ** 2)
+        sharp = Laser(ROOM, 0.0, 0.001)
+        numbers.append(int(filter.update(prior, sharp, sharp.h(prior.mean))[0].number))
+    assert 100 <= numbers[0] < 500 < numbers[1] <= 5000
+
+
+def test_a_run_is_the_same_alone_as_among_others():
+    """To the bit, however many particles the others have, and wherever theirs are drawn from."""
+    whole = list(play(carried(), np.arange(8)))
+    alone = list(play(replace(carried(), run=3)))
+    numbers = set()
+    for among, own in zip(whole[1:], alone[1:], strict=True):
+        assert (among.posterior.mean[3] == own.posterior.mean).all()
+        assert (among.posterior.covariance[3] == own.posterior.covariance).all()
+        number = int(own.posterior.number)
+        assert (among.posterior.states[3, :number] == own.posterior.states[:number]).all()
+        assert (among.posterior.weights[3, number:] == 0).all()
+        numbers |= set(among.posterior.number.tolist())
+    assert len(numbers) > 5
+    assert whole[4].posterior.astray.max() >= 0
+
+
+def test_it_comes_back_where_others_stay_lost():
+    """Twelve readings after it was carried away; bounds 4 deviations wide of 40 runs."""
+    for filter, low, high in (("pf", 0.0, 0.25), ("amcl", 0.5, 1.0)):
+        last = list(play(carried(filter), np.arange(40)))[-1]
+        off = np.hypot(*(last.posterior.mean - last.entry.truth)[:, :2].T)
+        assert low <= np.mean(off < 0.5) <= high, filter
+
+
+def test_anywhere_is_uniform_over_the_free_floor():
+    """Cells of 2 m by 2 m hold particles in proportion to their free areas, and so do headings."""
+    made = world(obstacles=(DESK,))
+    poses = made.anywhere(np.random.default_rng(5), 40_000)
+    free = box(0, 0, 10, 8).difference(Polygon(DESK.points))
+    corners = [(x, y) for x in range(0, 10, 2) for y in range(0, 8, 2)]
+    areas = np.array([free.intersection(box(x, y, x + 2, y + 2)).area for x, y in corners])
+    held = np.array(
+        [np.sum((poses[:, :2] // 2 == (x // 2, y // 2)).all(axis=1)) for x, y in corners]
+    )
+    assert chisquare(held, areas / areas.sum() * 40_000).pvalue > 1e-4
+    headings = np.histogram(poses[:, 2], bins=12, range=(-math.pi, math.pi))[0]
+    assert chisquare(headings).pvalue > 1e-4
+    assert held.sum() == headings.sum() == 40_000
+
+
+def test_where_no_wall_ends_the_floor_it_is_refused():
+    first = Gaussian(np.zeros(3), np.eye(3))
+    generators = lambda: [np.random.default_rng(0)]  # noqa: E731
+    with pytest.raises(UsageError, match="a map with a boundary, and there is none; take pf"):
+        AMCL.begin(Beginning(first, generators=generators))
+    with pytest.raises(ValueError, match="needs generators"):
+        AMCL.begin(Beginning(first, anywhere=anywhere))
+
+
+@pytest.mark.parametrize("weight", [0.0, math.nan])
+def test_weights_that_say_nothing_are_an_error_not_a_draw(weight):
+    states = np.tile([5.0, 4.0, 0.0], (100, 1))
+    nothing = np.full(100, weight)
+    crowd = one()._crowd(Particles(states[0], np.eye(3), states, nothing))
+    with pytest.raises(ValueError, match="particle 1 has the weight"):
+        one()._redrawn(crowd, np.array(True))
+
+
+def test_a_first_belief_is_a_crowd_that_stands_for_itself():
+    first, _, motion = classroom(np.random.default_rng(2))
+    moved, made = begun("amcl", first).predict(first, motion, np.zeros(2))
+    assert moved.mean == pytest.approx(first.mean, abs=0.05)
+    assert int(moved.number) == 1000
+    assert pytest.approx(np.eye(3)) == made.F
