@@ -24,6 +24,7 @@ class Suspect:
     # what the change is made of, or other ways of the same: one of them alone may cure
     members: tuple[Change, ...] = ()
     often: Change | None = None  # the change in many runs, where it is another
+    reckoning: bool = False  # how the filter reckons, no mistake in what it is told
     slow: bool = False  # too slow for all of many runs
 
     @property
@@ -55,14 +56,18 @@ def suspects_of(scene: Scene, steps: Sequence[Step]) -> list[Suspect]:
     if wrong:
         like = Mechanism.LOOK_ALIKE_WALLS if alike(wrong) else Mechanism.WRONG_WALL
         each = tuple(reading(step.entry.index) for step in wrong)
-        found.append(Suspect(like, beams.ASTRAY, (*each, beams.WALL)))
+        found.append(Suspect(like, beams.ASTRAY, (*each, beams.WALL), reckoning=True))
     if any(map(beams.grazes, entries)):
         each = tuple(reading(entry.index) for entry in entries if beams.grazes(entry))
-        found.append(Suspect(Mechanism.GRAZING_BEAMS, beams.GRAZING_BEAMS, each))
-    found.append(Suspect(Mechanism.CLOSE_TO_THE_WALL, beams.NOISE_AT_TRUTH))
+        found.append(Suspect(Mechanism.GRAZING_BEAMS, beams.GRAZING_BEAMS, each, reckoning=True))
+    found.append(Suspect(Mechanism.CLOSE_TO_THE_WALL, beams.NOISE_AT_TRUTH, reckoning=True))
     if scene.filter != HAS_NO_LINES:
         exact = (sigma_points(), particles(PARTICLES))
-        found.append(Suspect(Mechanism.HEADING_SPREAD, exact[1], exact, particles(FEW), slow=True))
+        found.append(
+            Suspect(
+                Mechanism.HEADING_SPREAD, exact[1], exact, particles(FEW), reckoning=True, slow=True
+            )
+        )
     return found
 
 

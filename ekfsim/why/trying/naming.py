@@ -5,13 +5,14 @@ from collections.abc import Sequence
 from ekfsim.why.changes.suspects import Suspect
 from ekfsim.why.records import Shares, together
 from ekfsim.why.trying.crowd import Crowd
-from ekfsim.why.trying.minimal import SpentError
+from ekfsim.why.trying.minimal import SpentError, minimal
 from ekfsim.why.trying.trials import Trials
 
-MUCH = 0.5  # a change that takes away less of what is lost names no cause
+MUCH = 0.5  # of what is lost: less than that, taken away, names no way of reckoning as the cause
+SOME = 0.3  # the same of a mistake in what the filter is told or in what happens
 NEARLY = 0.1  # two that differ by less are alike: the one that explains more is named
 OFTEN = 0.03  # a share of bad runs below which a few runs tell nothing
-ALL_BUT = 0.2  # where all changes together take away so much more, there is more than one cause
+TOGETHER = "all of these together"
 
 
 def taken_away(found: Shares) -> float:
@@ -33,23 +34,39 @@ def named(
         curing += [one for one in suspects if one.slow and cured(one, trials)]
         return (tuple(curing) if len(curing) == 1 else ()), None
     found = [(one, crowd.shares(one.in_many)) for one in curing]
-    best = max((taken_away(shares) for _, shares in found), default=0.0)
-    if best < 1 - ALL_BUT:
-        several, shares = _several(quick, trials, crowd)
-        if shares is not None and taken_away(shares) > best + ALL_BUT:
-            return several, shares
-    if best >= MUCH:
-        return next(
-            ((one,), shares) for one, shares in found if taken_away(shares) >= best - NEARLY
-        )
-    if crowd.bad().mean() < OFTEN:
+    # what leads the filter's own lines astray is named before them
+    mistakes = [(one, shares) for one, shares in found if not one.reckoning]
+    reckoning = [(one, shares) for one, shares in found if one.reckoning]
+    for some, least in ((mistakes, SOME), (reckoning, MUCH)):
+        best = max((taken_away(shares) for _, shares in some), default=0.0)
+        if best >= least:
+            return next(
+                ((one,), shares) for one, shares in some if taken_away(shares) >= best - NEARLY
+            )
+    several = _several(quick, trials)
+    if len(several) > 1:
+        changes = tuple(one.in_many for one in several)
+        shares = crowd.shares(together(TOGETHER, changes), changes)
+        return (several, shares) if taken_away(shares) >= MUCH else ((), None)
+    return _last(suspects, trials, crowd, few)
+
+
+def _last(
+    suspects: Sequence[Suspect], trials: Trials, crowd: Crowd, few: Crowd
+) -> tuple[tuple[Suspect, ...], Shares | None]:
+    """A suspect that takes long to try, where nothing else has much to do with what is lost: what
+    makes nothing linear cures of much else, too.
+    """
+    slow = [one for one in suspects if one.slow and cured(one, trials)]
+    if not slow or crowd.bad().mean() < OFTEN:
         return (), None
-    for one in suspects:
-        if one.slow and cured(one, trials):
-            shares = few.shares(one.in_many)
-            if taken_away(shares) >= MUCH:
-                return (one,), shares
-    return (), None
+    rivals = (crowd.shares(one.in_many) for one in suspects if not one.slow)
+    if any(taken_away(shares) >= SOME for shares in rivals):
+        return (), None
+    found = [(one, few.shares(one.in_many)) for one in slow]
+    return next(
+        (((one,), shares) for one, shares in found if taken_away(shares) >= MUCH), ((), None)
+    )
 
 
 def cured(suspect: Suspect, trials: Trials) -> bool:
@@ -63,27 +80,11 @@ def cured(suspect: Suspect, trials: Trials) -> bool:
     return any(alone)
 
 
-def _several(
-    suspects: Sequence[Suspect], trials: Trials, crowd: Crowd
-) -> tuple[tuple[Suspect, ...], Shares | None]:
-    """The fewest suspects that take away as much as all together, if all together cure."""
-    kept = tuple(suspects)
+def _several(suspects: Sequence[Suspect], trials: Trials) -> tuple[Suspect, ...]:
+    """The fewest suspects that cure the run together; none where all of them do not."""
     try:
-        if len(kept) < 2 or not trials.together([one.change for one in kept]):
-            return (), None
+        if not suspects or not trials.together([one.change for one in suspects]):
+            return ()
     except SpentError:
-        return (), None
-
-    def shares(some: Sequence[Suspect]) -> Shares:
-        changes = tuple(one.in_many for one in some)
-        return crowd.shares(together(NAME, changes), changes)
-
-    most = taken_away(shares(kept))
-    for one in reversed(suspects):
-        rest = tuple(other for other in kept if other is not one)
-        if rest and taken_away(shares(rest)) >= most - NEARLY:
-            kept = rest
-    return kept, shares(kept)
-
-
-NAME = "all of these together"
+        return ()
+    return minimal(suspects, lambda some: trials.together([one.change for one in some]))
