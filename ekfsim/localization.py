@@ -6,15 +6,17 @@ import numpy as np
 
 from ekfsim.diagnostics.ambiguity import remark as remarked
 from ekfsim.diagnostics.nees import nees
-from ekfsim.errors import StepError
-from ekfsim.filters.belief import Belief, Gaussian
+from ekfsim.errors import StepError, UsageError
+from ekfsim.filters.belief import Belief, Gaussian, Particles
+from ekfsim.filters.place import label
 from ekfsim.filters.protocol import Beginning, Filter
+from ekfsim.filters.tuning import CROWDS
 from ekfsim.geometry import Integers
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Control, Entry, Reading, Step, called
 from ekfsim.scene import Guard, Scene
 from ekfsim.simulation import simulate
-from ekfsim.simulation.draws import particle_generators
+from ekfsim.simulation.draws import STARTS, particle_generators
 from ekfsim.simulation.nominal import nominal_trajectory
 from ekfsim.systems import system_of
 from ekfsim.twins import twinned
@@ -62,7 +64,7 @@ def advance(
 
 def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
     """Localize in a scene: every Step of its run, or of N runs side by side. runs : (N,)"""
-    belief = first_belief(scene, np.shape(scene.run if runs is None else runs))
+    belief = belief_of(scene, runs)
     entries = entries_of(scene, runs)
     return localize(entries, filter_of(scene, runs), belief, scene.guard, scene.world.layout)
 
@@ -71,6 +73,28 @@ def entries_of(scene: Scene, runs: Integers | None = None) -> Iterable[Entry]:
     """What happens in a scene, simulated or recorded, as its system gives it to a filter."""
     happened = simulate(scene, runs) if scene.log is None else scene.log.entries
     return system_of(scene.world.system).entries(happened, scene.reading)
+
+
+def belief_of(scene: Scene, runs: Integers | None = None) -> Belief:
+    """With what the filter begins a run, or N runs side by side: the first belief, or where no
+    start is known particles from all over the floor.
+
+    Raises UsageError where the filter can begin with no such crowd.
+    """
+    numbers = np.asarray(scene.run if runs is None else runs)
+    first = first_belief(scene, numbers.shape)
+    if not scene.world.told.start_unknown:
+        return first
+    anywhere = scene.world.anywhere
+    if scene.filter not in CROWDS or anywhere is None:
+        raise UsageError(
+            f"{scene.world_source}: belief.start: {label(scene.filter)} cannot begin where the "
+            f"start is unknown; name one that can: --filter {' or '.join(reversed(CROWDS))}"
+        )
+    p = scene.tuning.particles
+    drawn = [anywhere(one, p) for one in particle_generators(scene.seed, numbers, STARTS)]
+    states = np.stack(drawn).reshape(*numbers.shape, p, -1)
+    return Particles(*first, states, np.full(states.shape[:-1], 1 / p))
 
 
 def first_belief(scene: Scene, axes: tuple[int, ...] = ()) -> Gaussian:

@@ -166,6 +166,7 @@ class Told:
     start_said: Axes = NOTHING_SAID
     # of which of them somebody says how sure they are; None: of all where any sigma is more than 0
     sigma_said: Axes | None = None
+    start_unknown: bool = False  # whether the filter has no idea where the robot starts
 
 
 @dataclass(frozen=True, repr=False)
@@ -299,9 +300,22 @@ class World:
         may say how uncertain its pose is.
         """
         told = self.told
+        if told.start_unknown:
+            return self._all_over
         if self.told_robot is None:
             return Gaussian(told.start, np.diag(told.sigma**2))
         return Gaussian(self.layout.state(told.start), self.first_covariance(reading))
+
+    @property
+    def _all_over(self) -> Gaussian:
+        """Mean and covariance of no idea at all: uniform over a room's width and depth, and over
+        all headings.
+        """
+        if (boundary := self.told.map.boundary) is None:
+            raise ValueError(f"{self.name}: no boundary says where the robot can be")
+        low, high = boundary.min(axis=0), boundary.max(axis=0)
+        widths = np.append(high - low, 2 * np.pi)
+        return Gaussian(np.append((low + high) / 2, 0.0), np.diag(widths**2 / 12))
 
     def first_covariance(self, reading: DocumentReading) -> Array:
         """P₀ : (n, n) of a robot that is driven or was recorded: the document's own, but for the

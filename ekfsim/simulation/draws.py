@@ -16,7 +16,7 @@ from ekfsim.world import World
 
 BLOCK = 1024  # runs that share a generator
 # keys of the generators of particle filters and of streams, apart from those of the draws
-PARTICLES, STREAMS = 1, 2
+PARTICLES, STREAMS, STARTS = 1, 2, 3
 
 
 class Draws:
@@ -147,11 +147,14 @@ def true_start(world: World, draws: Draws) -> Array:
     return pose
 
 
-def particle_generators(seed: int, runs: Integers) -> Sequence[np.random.Generator]:
-    """A generator for the particles of each run, alike whether it is run alone or beside others."""
+def particle_generators(
+    seed: int, runs: Integers, key: int = PARTICLES
+) -> Sequence[np.random.Generator]:
+    """A generator for the particles of each run, alike whether it is run alone or beside others; by
+    the key STARTS one for the first of them, where no start is known.
+    """
     _verify(seed, runs)
     keys = (
-        np.random.SeedSequence([seed, int(run)], spawn_key=(PARTICLES,))
-        for run in np.atleast_1d(runs)
+        np.random.SeedSequence([seed, int(run)], spawn_key=(key,)) for run in np.atleast_1d(runs)
     )
     return [np.random.Generator(np.random.PCG64(key)) for key in keys]

@@ -100,7 +100,7 @@ PARTICLES = click.option(
     "--particles",
     type=Whole(1, MOST_PARTICLES),
     metavar="N",
-    help="Of each run's particle filter; short for --set filter.particles=N.",
+    help="Of each run's particle filter, of amcl at most; short for --set filter.particles=N.",
 )
 GATE = click.option(
     "--gate",

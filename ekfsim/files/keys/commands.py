@@ -153,7 +153,7 @@ class TuningKeys(Strict):
 
     particles: int = Field(
         Tuning.particles,
-        description="Particles of each run, of the pf.",
+        description="Particles of each run, of the pf; of the amcl at most so many.",
         ge=1,
         le=MOST_PARTICLES,
         examples=[10000],

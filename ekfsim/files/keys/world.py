@@ -1,6 +1,6 @@
 """The keys of a world file."""
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 from pydantic.config import JsonDict
@@ -198,11 +198,30 @@ class BelievedStartKeys(Strict):
     )
 
 
+def kind_of_start(start: Any) -> str | None:
+    """Which way a believed start is written; None for neither."""
+    if isinstance(start, str):
+        return "unknown"
+    return "pose" if isinstance(start, dict | BelievedStartKeys) else None
+
+
+BelievedStart = Annotated[
+    Annotated[Literal["unknown"], Tag("unknown")] | Annotated[BelievedStartKeys, Tag("pose")],
+    Discriminator(kind_of_start),
+    Field(title="a pose, or the word unknown"),
+]
+
+
 class BeliefKeys(Strict):
     """What the filter is told, where that differs from the truth."""
 
-    start: BelievedStartKeys | None = Field(
-        None, description="Where the filter believes the robot to start.", examples=[POSE]
+    start: BelievedStart | None = Field(
+        None,
+        description="Where the filter believes the robot to start. `unknown`: it has no idea, and "
+        "begins with particles all over the free floor of its map, with any heading; only in the "
+        "classroom with a boundary, and only amcl and pf can. (`ekfsim check` also refuses a sigma "
+        "of such a belief, as no schema can.)",
+        examples=[POSE],
     )
     sigma: SigmaKeys | None = Field(
         None,

@@ -188,10 +188,12 @@ def instrument_of(item: "SensorKeys") -> Instrument:
 def told(keys: WorldKeys, floor_plan: Map, start: Array, noise: Noise) -> Told:
     """What the filter is told: the truth, except where `belief` differs."""
     belief = keys.belief or BeliefKeys.model_construct()
+    unknown = belief.start == "unknown"
+    believed = belief.start if isinstance(belief.start, BelievedStartKeys) else None
     return Told(
-        start=start if belief.start is None else told_start(belief.start, keys.start),
+        start=start if believed is None else told_start(believed, keys.start),
         sigma=sigma(belief.sigma, keys.start.sigma),
-        start_said=said(belief.start),
+        start_said=said(believed),
         sigma_said=said(belief.sigma, keys.start.sigma),
         noise=replace(noise, **{name: value for name, value in belief.noise if value is not None})
         if belief.noise
@@ -199,6 +201,7 @@ def told(keys: WorldKeys, floor_plan: Map, start: Array, noise: Noise) -> Told:
         map=told_map(belief, floor_plan),
         robot=told_robot_of(keys, belief),
         instruments=told_instruments_of(keys, belief),
+        start_unknown=unknown,
     )
 
 

@@ -129,6 +129,9 @@ def key_of(mapping: Schema, key: str) -> Schema:
 
 def words_of(schema: Schema) -> list[str]:
     """The few words that a value may be, [] where it may be any; FILE.py is a file of one's own."""
+    word = next((one for one in schema.get("oneOf", ()) if "const" in one), None)
+    if word is not None:
+        return [word["const"]]
     words: list[str] = schema.get("enum", [])
     for one in schema.get("anyOf", []):
         words = [*one["enum"], "FILE.py"] if "enum" in one else words

@@ -26,6 +26,7 @@ OF_SEVERAL_KINDS = (
     ("drive",),
     ("walls", EACH),
     ("belief", "walls", EACH),
+    ("belief", "start"),
     *(("recording", "topics", topic) for topic in ("fix", "scan", "landmarks")),
 )
 

@@ -12,9 +12,9 @@ from ekfsim.commands import Command, Expanded, Move, Sense, expand, first
 from ekfsim.diagnostics.summary import Summary
 from ekfsim.errors import StepError, UsageError
 from ekfsim.filters import FILTERS
-from ekfsim.filters.pf import PF
 from ekfsim.filters.protocol import Filter
-from ekfsim.localization import advance, filter_of, first_belief
+from ekfsim.filters.tuning import CROWDS
+from ekfsim.localization import advance, belief_of, filter_of
 from ekfsim.records import Entry, Step
 from ekfsim.scene import Scene
 from ekfsim.simulation import Draws
@@ -217,14 +217,14 @@ class Watch:
         self._filter: Filter | None = None
         self._again = False  # whether it is told what it was told before
         # whether what it makes of an entry depends on more than the belief before it
-        self._remembers = FILTERS.get(scene.filter, PF) is PF
+        self._remembers = scene.filter in CROWDS or scene.filter not in FILTERS
 
     def go_on(self, entries: Sequence[Entry], commands: Sequence[Expanded]) -> None:
         """What it makes of the entries that it does not know yet. Raises StepError."""
         with redirect_stderr(StringIO()) if self._again else nullcontext():
             if self._filter is None or not self._remembers:  # it may know the plan, which grew
                 self._filter = filter_of(replace(self.scene, commands=tuple(commands)))
-            belief = self.steps[-1].posterior if self.steps else first_belief(self.scene)
+            belief = self.steps[-1].posterior if self.steps else belief_of(self.scene)
             for entry in entries[len(self.steps) :]:
                 step = advance(
                     self._filter, belief, entry, self.scene.guard, self.scene.world.layout

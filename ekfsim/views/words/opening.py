@@ -31,6 +31,7 @@ BOTH = (
     "A gate and a weight judge each reading: one beyond the gate is refused outright, and only the "
     "others are weighed"
 )
+NO_IDEA = "The filter has no idea where the robot starts: it may be anywhere on the floor"
 PERFECT = (
     "The filter is told that the range has no noise: each beam leaves no doubt along its "
     "derivatives, which hold for "
@@ -46,7 +47,10 @@ def opening(scene: Scene) -> str:
     if remark := kind_of(scene.filter).remark:
         told.append(f"The filter {label(scene.filter)}: {remark}")
     if reads(scene.filter, "particles"):
-        told.append(f"The filter {scene.filter}: {scene.tuning.particles} particles")
+        most = "at most " if scene.filter == "amcl" else ""
+        told.append(f"The filter {scene.filter}: {most}{scene.tuning.particles} particles")
+    if scene.world.told.start_unknown:
+        told.append(NO_IDEA)
     if scene.gate is not None and scene.filter in WEIGHING:
         told.append(BOTH)
     if scene.world.perfect_beam and scene.filter in LINEARISED:

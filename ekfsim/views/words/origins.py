@@ -89,6 +89,7 @@ BY_FILTER: dict[str, Origins] = {
         linear=False,
     ),
 }
+BY_FILTER["amcl"] = BY_FILTER["pf"]
 A_FILE = Origins(
     state="as the filter's file has it",
     covariance="as the filter's file has it",

@@ -75,6 +75,21 @@ def crowd(belief: Belief) -> str:
     """
     if not isinstance(belief, Particles):
         return ""
+    told = _weighed(belief)
+    if type(belief) is Particles:
+        return told
+    from ekfsim.filters.cures.amcl import Roaming  # which no other filter needs
+
+    if not isinstance(belief, Roaming):
+        return told
+    return (
+        f"{told}Readings were explained to {float(belief.fast):.2f} lately, and to "
+        f"{float(belief.slow):.2f} over long, of 1: {float(belief.astray):.0%} of the next crowd "
+        "come from anywhere\n"
+    )
+
+
+def _weighed(belief: Particles) -> str:
     weights = belief.weights
     if np.all(weights == weights[0]):
         return (

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from ekfsim.diagnostics.verdict import Evidence, Verdict
 from ekfsim.geometry import Integers
-from ekfsim.localization import entries_of, filter_of, first_belief, localize
+from ekfsim.localization import belief_of, entries_of, filter_of, localize
 from ekfsim.records import Entry, Step
 from ekfsim.scene import Scene
 from ekfsim.why.records import Change, Outcome
@@ -32,7 +32,7 @@ def replayed(
     now = changed(scene, changes)
     entries: Iterable[Entry] = entries_of(now, runs)
     entries = functools.reduce(lambda so_far, one: one.of_entries(so_far), changes, entries)
-    belief = first_belief(now, () if runs is None else runs.shape)
+    belief = belief_of(now, runs)
     return localize(entries, filter_of(now, runs), belief, now.guard, now.world.layout)
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 
-from ekfsim.localization import filter_of, first_belief, localize
+from ekfsim.localization import belief_of, filter_of, localize
 from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.study.block import watched_along
@@ -76,7 +76,7 @@ class Trials:
         scene, runs = self.scene, numbers(self.scene, len(some))
         entries = abreast([step.entry for step in self.steps], some)
         steps = localize(
-            entries, filter_of(scene, runs), first_belief(scene, runs.shape), scene.guard,
+            entries, filter_of(scene, runs), belief_of(scene, runs), scene.guard,
             scene.world.layout,
         )  # fmt: skip
         watched = watched_along(scene, runs, steps)

@@ -68,6 +68,7 @@ def check_world(file: Sound) -> Iterator[Mistake]:
         yield from check_names(file, owner)
     yield from check_landmarks(file)
     yield from check_missing(file)
+    yield from check_unknown_start(file)
     x, y = file.value("start", "x"), file.value("start", "y")
     if x is not None and y is not None:
         plan = FloorPlan(
@@ -245,6 +246,21 @@ def check_missing(file: Sound) -> Iterator[Mistake]:
             )
             yield file.mistake(path, f"no {one} is named {quoted(name)}", right)
             told += 1
+
+
+def check_unknown_start(file: Sound) -> Iterator[Mistake]:
+    """No idea of the start where it can be none."""
+    if file.value("belief", "start") != "unknown":
+        return
+    where, belief = ("belief", "start"), file.root.at(("belief",))
+    if (file.value("system") or "classroom") != "classroom":
+        yield file.mistake(where, "'unknown' belongs to the classroom", "write a pose")
+    elif belief and belief.at(("sigma",)):
+        wrong = "nobody is sure to a sigma of a start that is unknown"
+        yield file.mistake(("belief", "sigma"), wrong, "delete either")
+    elif not (file.root.at(("boundary",)) or (belief and belief.at(("boundary",)))):
+        right = "add a boundary, or write a pose"
+        yield file.mistake(where, "no boundary says where the robot may be", right)
 
 
 def check_commands(file: Sound) -> Iterator[Mistake]:
