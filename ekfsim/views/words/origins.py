@@ -62,11 +62,11 @@ BY_FILTER: dict[str, Origins] = {
         revised="eq 10: x + K r, iterated",
     ),
     "huber": Origins(
-        revised="eq 10 with K weighed: x + w K r",
-        revised_covariance="eq 12 with K weighed: (I - w K H) P",
+        revised="eq 10: x + w K r",
+        revised_covariance="eq 12: (I - w K H) P",
     ),
     "pdaf": Origins(
-        revised="eq 10 with K weighed: x + beta K r",
+        revised="eq 10: x + beta K r",
         revised_covariance="(1 - beta) P + beta (I - K H) P + beta (1 - beta) K r r' K'",
     ),
     "ukf": SIGMA_POINTS,
