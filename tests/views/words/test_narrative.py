@@ -461,13 +461,13 @@ def test_no_filter_is_given_the_equations_of_another(filter):
         == (tangents or at_estimate)
     )
     assert ("(eq 4: f(x, u))" in text) == ("(eq 8: h(x))" in text) == at_estimate
-    assert ("(eq 10: x + K r)" in text) == (filter not in ("iekf", "pf", "huber", "pdaf"))
-    assert ("J_u P_u J_u' is:" in text) == (filter not in ("pf", "ukf-augmented"))
+    assert ("(eq 10: x + K r)" in text) == (filter not in ("iekf", "pf", "amcl", "huber", "pdaf"))
+    assert ("J_u P_u J_u' is:" in text) == (filter not in ("pf", "amcl", "ukf-augmented"))
     assert ("x0 the first state estimate" in text) == (filter == "kf")
     assert ("x0 on the nominal trajectory" in text) == (filter == "kf-nominal")
     assert ("sigma points" in text) == filter.startswith("ukf")
     assert ("which hold the noise" in text) == (filter == "ukf-augmented")
-    assert ("the mean of the particles" in text) == (filter == "pf")
+    assert ("the mean of the particles" in text) == (filter in ("pf", "amcl"))
 
 
 def test_the_noise_of_a_range_is_told_as_each_filter_has_it():
