@@ -12,6 +12,7 @@ A notebook needs no more than this module:
 and `ekfsim.draw(views[1], scene, axes)` puts the picture on matplotlib axes;
 `ekfsim.plot_errors(steps)` plots errors with their ±2σ, NIS and NEES over the steps;
 `ekfsim.table(steps)` has the columns of `run --csv`, a DataFrame where pandas is installed;
+`ekfsim.smooth(steps)` gives the same steps, each with the readings that came after it, too;
 `ekfsim.animate(scene)` plays in the cell. Scenes, steps, views, summaries and studies show
 themselves there, and nobody can write into what is handed out. All of it: docs/notebook.ipynb.
 `scene.with_("noise.rangeSigmaRatio", 0.1)` is the same scene with another number, told to the truth
@@ -100,6 +101,7 @@ if TYPE_CHECKING:
     from ekfsim.records import Entry as Entry
     from ekfsim.records import Step as Step
     from ekfsim.scene import Scene as Scene
+    from ekfsim.smoothing.rts import smooth as smooth
     from ekfsim.student.own.bring import bring as bring
     from ekfsim.views.curves.errors import plot_errors as plot_errors
     from ekfsim.views.notebook.animation import animate as animate
@@ -136,6 +138,7 @@ _HOMES = {
     "models.motions.move_turn": ("MoveTurn",),
     "records": ("Entry", "Step"),
     "scene": ("Scene",),
+    "smoothing.rts": ("smooth",),
     "student.own.bring": ("bring",),
     "views.words.closing": ("conclude",),
     "views.curves.errors": ("plot_errors",),

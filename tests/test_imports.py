@@ -32,6 +32,7 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"files"},
     {"simulation"},
     {"localization"},
+    {"smoothing"},
     {"fitting"},
     {"study"},
     {"fast"},
