@@ -52,6 +52,12 @@ OPTIONS = (
         "which it has other numbers than a second filter, or ekf, on the same belief.",
     ),
     click.option(
+        "--change", type=Word(("commands", "start", "told")), default="commands",
+        show_default=True,
+        help="What is looked for: a list of commands; a start for those of COMMANDS; or the "
+        "smallest change of one told number at which enough of their runs are lost.",
+    ),
+    click.option(
         "--off", type=Metres(), default=0.1, show_default=True, metavar="METRES",
         help="A run counts as lost where its estimate is farther from the truth, too.",
     ),
@@ -180,7 +186,11 @@ def _asked(
         for name in (scene.filter, against or "ekf"):
             comparable(name, "--for")
     way = "compiled" if fast else taken()
-    return Asked(replace(scene, beside=()), chosen, against, way=way, **numbers)
+    if numbers["change"] != "commands" and (not scene.commands or chosen == "numbers"):
+        what = f"--change {numbers['change']}"
+        raise UsageError(f"{what}: name COMMANDS that are to be lost, and no other goal than runs")
+    plain = replace(scene, beside=())
+    return Asked(plain, goal=chosen, against=against, way=way, **numbers)
 
 
 def _usual(scene: "Scene") -> str:
@@ -220,7 +230,7 @@ def _rounds_bar(total: int) -> "Iterator[Callable[[Search], None]]":
         def heard(search: "Search") -> None:
             nonlocal before
             best = search.best[0]
-            told = f"best {100 * best.count.share:.3g} % by {len(best.listed)} commands"
+            told = f"best {100 * best.count.share:.3g} % by {best.variant.size} commands"
             bar.update(search.looked_at - before, told)
             before = search.looked_at
             heed()

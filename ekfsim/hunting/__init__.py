@@ -1,7 +1,6 @@
 """Inputs that bring a filter down: short lists of commands, starts, told numbers, found by trying.
 
-variants.py   what may be changed of a scene: its commands, its start, one told number
-lists.py      short lists of moves and senses that a robot can do: made, changed, crossed
+changes/      what may be changed of a scene: its commands, its start, one told number
 goals.py      what is wanted of many runs of a scene, and how many of them do it
 crew.py       many variants judged at once, here or in processes of this machine
 search.py     from nothing to the best list: few runs for all, more for the best

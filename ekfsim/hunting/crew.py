@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from ekfsim.hunting.changes.variants import Variant
 from ekfsim.hunting.goals import Count, Goal
-from ekfsim.hunting.variants import Variant
 from ekfsim.scene import Scene
 from ekfsim.study.running.engines import do_packed, processes, unfailed
 from ekfsim.twins import Way, taking

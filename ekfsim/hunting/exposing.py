@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ekfsim.hunting.lists import Listed, Space
+from ekfsim.hunting.changes.lists import Listed, Space
 from ekfsim.hunting.search import KEY
 from ekfsim.hunting.shrinking import less
 from ekfsim.hunting.worlds import without

@@ -8,12 +8,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from ekfsim.errors import StepError, UsageError
+from ekfsim.errors import RunError, StepError, UsageError
 from ekfsim.hunting import goals
-from ekfsim.hunting.crew import crew
+from ekfsim.hunting.changes.lists import Listed, Lists, Space
+from ekfsim.hunting.changes.starts import Starts, begun, rounder
+from ekfsim.hunting.changes.told import Needed, needed, untruly
+from ekfsim.hunting.changes.variants import Commanded, Started, Variant
+from ekfsim.hunting.crew import Judge, crew
 from ekfsim.hunting.goals import Count, Goal
-from ekfsim.hunting.lists import Listed, Space
-from ekfsim.hunting.search import Search, searched
+from ekfsim.hunting.search import Candidates, Search, Seen, searched
 from ekfsim.hunting.shrinking import Shrunk, shrunk
 from ekfsim.hunting.worlds import without
 from ekfsim.scene import Expect, Scene
@@ -24,6 +27,8 @@ from ekfsim.study.results import Result, Share
 from ekfsim.twins import Way, taking
 
 SEARCHING = 0.75  # of the seconds; the rest is for shrinking
+Change = Literal["commands", "start", "told"]
+ENOUGH = 0.5  # the share that a told number is to do, where nothing is said
 End = Literal["lists", "best", "seconds", "interrupted"]
 
 
@@ -33,6 +38,7 @@ class Asked:
 
     scene: Scene  # with the commands that are begun with, if any; watched by the hunted filter
     goal: goals.Name | Literal["numbers"] = "lost"
+    change: Change = "commands"
     against: str | None = None  # the filter that keeps its way, where two are told apart
     off: float = 0.1  # m from the truth, within which no run counts as lost
     moves: int = 8  # commands at most
@@ -71,6 +77,7 @@ class Hunted:
     fresh: Count  # and on fresh ones
     result: Result  # on fresh draws
     against: Result | None  # the same of the other filter
+    needed: tuple[Needed, ...] = ()  # where a told number is changed: each, the smallest first
 
     @property
     def is_barer(self) -> bool:
@@ -84,7 +91,12 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
 
     heard : hears of the search after each round
     """
-    space = Space(asked.scene.world, asked.moves)
+    if asked.change == "told":
+        return _told(asked, heed)
+    space, starts = (
+        Lists(Space(asked.scene.world, asked.moves)),
+        Starts(asked.scene.world, asked.scene.commands),
+    )
     state, shorter = Search(), None
     end: End = "lists"
     began = time.monotonic()
@@ -92,9 +104,11 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
     def left(share: float) -> bool:
         return time.monotonic() - began < share * asked.seconds
 
+    candidates: Candidates = space if asked.change == "commands" else starts
+    first = [Commanded(one) for one in begun_with(asked)] if asked.change == "commands" else []
     try:
         with crew(asked.workers, asked.counting(), asked.way, heed) as judge:
-            for state in searched(asked.scene, space, judge, asked.lists, begun_with(asked)):
+            for state in searched(asked.scene, candidates, judge, asked.lists, first):
                 heard(state)
                 if _is_best(state, asked.enough):
                     end = "best"
@@ -102,15 +116,61 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
                 if state.looked_at < asked.lists and not left(SEARCHING):
                     end = "seconds"
                     break
-            shorter = shrunk(
-                asked.scene, space, state.best[0].listed, judge, asked.enough, without,
-                lambda: left(1),
-            )  # fmt: skip
+            shorter = _less(asked, state.best[0].variant, judge, lambda: left(1))
     except (KeyboardInterrupt, SystemExit):
         if not state.best:
             raise
         end = "interrupted"
-    return _measured(asked, state, end, shorter)
+    return _measured(asked, state, end, shorter or _as_it_is(asked, state.best[0]))
+
+
+def _less(asked: Asked, best: Variant, judge: Judge, go_on: Callable[[], bool]) -> Shrunk:
+    """The best, shrunk."""
+    scene = asked.scene
+    if isinstance(best, Started):
+        one, count = rounder(scene, Starts(scene.world, scene.commands), best, judge)
+        return Shrunk(_begun(scene, one), scene.commands, count, True)
+    assert isinstance(best, Commanded)
+    space = Space(scene.world, asked.moves)
+    listed = space.from_file(best.commands)
+    return shrunk(scene, space, listed, judge, asked.enough, without, go_on)
+
+
+def _as_it_is(asked: Asked, best: Seen) -> Shrunk:
+    """The best where there is no time to shrink it."""
+    match best.variant:
+        case Started() as start:
+            scene = _begun(asked.scene, start)
+            return Shrunk(scene, scene.commands, best.count, False)
+        case Commanded(commands):
+            return Shrunk(asked.scene, commands, best.count, False)
+    raise AssertionError
+
+
+def _begun(scene: Scene, start: Started) -> Scene:
+    found = begun(scene, start)
+    if found is None:
+        raise UsageError(
+            f"{scene.world.name}: its `belief` tells the filter a start of its own; delete that"
+        )
+    return found
+
+
+def _told(asked: Asked, heed: Callable[[], None]) -> Hunted:
+    """The smallest change of one told number."""
+    enough = asked.enough or ENOUGH
+    with crew(asked.workers, asked.counting(), asked.way, heed) as judge:
+        found = sorted(needed(asked.scene, judge, enough), key=lambda one: one.factor)
+    if not found:
+        raise RunError(
+            f"{asked.scene.commands_source}: no told number, changed by itself, does that in "
+            f"{100 * enough:g} % of runs"
+        )
+    scene = untruly(asked.scene, found[0].told)
+    if scene is None:
+        raise UsageError(f"{asked.scene.world.name}: its file cannot tell {found[0].told.key}")
+    smallest = Shrunk(scene, scene.commands, found[0].count, True)
+    return replace(_measured(asked, Search(), "lists", smallest), needed=tuple(found))
 
 
 def begun_with(asked: Asked) -> list[Listed]:
@@ -125,10 +185,8 @@ def _is_best(state: Search, enough: float | None) -> bool:
     return count.share == 1 or (enough is not None and Share(*count).low >= enough)
 
 
-def _measured(asked: Asked, state: Search, end: End, shorter: Shrunk | None) -> Hunted:
+def _measured(asked: Asked, state: Search, end: End, found: Shrunk) -> Hunted:
     """What was found, on draws that the search has not seen."""
-    best = state.best[0]
-    found = shorter or Shrunk(asked.scene, best.listed, best.count, False)
     seed = asked.scene.seed
     scene = replace(
         found.scene, commands=found.listed, seed=seed + 1 if seed < MOST_SEED else seed - 1,

@@ -1,4 +1,5 @@
-"""From nothing to the best list: few runs for every list, more for the best of them.
+"""From nothing to the best list: few runs for every list, more for the best of them. What is said
+of lists here holds of starts as well.
 
 Lists are looked at in rounds. Of each round the best by a few runs are looked at with more, and the
 best of these, of all rounds so far, are the parents of the next round's lists; some lists are
@@ -8,13 +9,13 @@ machine and with any number of workers; a clock may only end it between two roun
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
+from ekfsim.hunting.changes.variants import Variant
 from ekfsim.hunting.crew import Judge
 from ekfsim.hunting.goals import Count
-from ekfsim.hunting.lists import Listed, Space
-from ekfsim.hunting.variants import Commanded
 from ekfsim.scene import Scene
 
 ROUND = 128  # lists
@@ -26,17 +27,30 @@ CROSSED = 0.3  # and of the rest by crossing two parents
 KEY = 3  # of the search's own generator, apart from those of draws
 
 
+class Candidates(Protocol):
+    """What is looked through: lists of commands, or starts."""
+
+    def by_chance(self, rng: np.random.Generator) -> Variant:
+        """Any."""
+
+    def changed(self, one: Variant, rng: np.random.Generator) -> Variant:
+        """One beside another."""
+
+    def crossed(self, one: Variant, other: Variant, rng: np.random.Generator) -> Variant:
+        """Part of one and part of another."""
+
+
 @dataclass(frozen=True)
 class Seen:
     """A list, and how many runs did what is wanted."""
 
-    listed: Listed
+    variant: Variant
     count: Count
 
     @property
     def rank(self) -> tuple[float, int]:
         """Greater is better: more runs, then fewer commands."""
-        return self.count.share, -len(self.listed)
+        return self.count.share, -self.variant.size
 
 
 @dataclass
@@ -49,7 +63,7 @@ class Search:
 
 
 def searched(
-    scene: Scene, space: Space, judge: Judge, lists: int, begin: Sequence[Listed] = ()
+    scene: Scene, space: Candidates, judge: Judge, lists: int, begin: Sequence[Variant] = ()
 ) -> Iterator[Search]:
     """The state of a search after each round, until so many lists were looked at.
 
@@ -58,7 +72,7 @@ def searched(
     rng = np.random.Generator(
         np.random.PCG64(np.random.SeedSequence([scene.seed], spawn_key=(KEY,)))
     )
-    known, state = set[Listed](), Search()
+    known, state = set[Variant](), Search()
     waiting = list(begin)
     while state.looked_at < lists:
         size = min(ROUND, lists - state.looked_at)
@@ -73,43 +87,43 @@ def searched(
 
 
 def _new_lists(
-    space: Space, parents: Sequence[Seen], waiting: Sequence[Listed], size: int,
-    known: set[Listed], rng: np.random.Generator,
-) -> list[Listed]:  # fmt: skip
+    space: Candidates, parents: Sequence[Seen], waiting: Sequence[Variant], size: int,
+    known: set[Variant], rng: np.random.Generator,
+) -> list[Variant]:  # fmt: skip
     """Lists that were not looked at before, in a fixed order."""
-    new = list[Listed]()
-    for listed in _offered(space, parents, waiting, 4 * size, rng):
-        if listed not in known:
-            known.add(listed)
-            new.append(listed)
+    new = list[Variant]()
+    for one in _offered(space, parents, waiting, 4 * size, rng):
+        if one not in known:
+            known.add(one)
+            new.append(one)
         if len(new) == size:
             break
     return new
 
 
 def _offered(
-    space: Space, parents: Sequence[Seen], waiting: Sequence[Listed], most: int,
+    space: Candidates, parents: Sequence[Seen], waiting: Sequence[Variant], most: int,
     rng: np.random.Generator,
-) -> Iterator[Listed]:  # fmt: skip
+) -> Iterator[Variant]:  # fmt: skip
     yield from waiting
-    yield from (space.changed(listed, rng) for listed in waiting for _ in range(ROUND // 4))
+    yield from (space.changed(one, rng) for one in waiting for _ in range(ROUND // 4))
     for _ in range(most):
         if not parents or rng.random() < FRESH:
             yield space.by_chance(rng)
             continue
-        one = parents[int(rng.integers(len(parents)))].listed
+        one = parents[int(rng.integers(len(parents)))].variant
         if rng.random() < CROSSED:
-            other = parents[int(rng.integers(len(parents)))].listed
+            other = parents[int(rng.integers(len(parents)))].variant
             yield space.crossed(one, other, rng)
         else:
             yield space.changed(one, rng)
 
 
-def _round(scene: Scene, judge: Judge, state: Search, new: Sequence[Listed]) -> Search:
-    counts = judge(scene, [Commanded(listed) for listed in new], 0, FEW)
+def _round(scene: Scene, judge: Judge, state: Search, new: Sequence[Variant]) -> Search:
+    counts = judge(scene, new, 0, FEW)
     seen = sorted(map(Seen, new, counts), key=lambda one: one.rank, reverse=True)[:BEST]
-    more = judge(scene, [Commanded(one.listed) for one in seen], FEW, MORE - FEW)
-    tried = [Seen(one.listed, one.count.plus(c)) for one, c in zip(seen, more, strict=True)]
+    more = judge(scene, [one.variant for one in seen], FEW, MORE - FEW)
+    tried = [Seen(one.variant, one.count.plus(c)) for one, c in zip(seen, more, strict=True)]
     best = sorted([*state.best, *tried], key=lambda one: one.rank, reverse=True)[:PARENTS]
     runs = state.runs + FEW * len(new) + (MORE - FEW) * len(seen)
     return Search(state.looked_at + len(new), runs, tuple(best))

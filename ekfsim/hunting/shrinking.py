@@ -8,11 +8,11 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from ekfsim.commands import Move, Sense
+from ekfsim.commands import Command, Move, Sense
+from ekfsim.hunting.changes.lists import Doing, Listed, Space
+from ekfsim.hunting.changes.variants import Commanded
 from ekfsim.hunting.crew import Judge
 from ekfsim.hunting.goals import Count
-from ekfsim.hunting.lists import Doing, Listed, Space
-from ekfsim.hunting.variants import Commanded
 from ekfsim.scene import Scene
 from ekfsim.study.results import Share
 
@@ -30,7 +30,7 @@ class Shrunk:
     """What is left of a scene and its list."""
 
     scene: Scene
-    listed: Listed
+    listed: tuple[Command, ...]
     count: Count
     whole: bool  # whether all was tried that may be left out
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.files.template import template
+from ekfsim.hunting.changes.lists import Space
 from ekfsim.hunting.exposing import by_length, exposing, exposure
-from ekfsim.hunting.lists import Space
 from ekfsim.student.exposing.exposed import exposed, possible
 from ekfsim.student.mistakes.known import KNOWN
 

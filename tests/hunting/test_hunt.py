@@ -8,13 +8,13 @@ import pytest
 
 from ekfsim.commands import Move, Sense
 from ekfsim.files.scenes.load import load_scene
+from ekfsim.hunting.changes.lists import CLEAR, Lists, Space
+from ekfsim.hunting.changes.variants import Commanded
 from ekfsim.hunting.crew import crew
 from ekfsim.hunting.goals import Apart, Count, Lost, Silent
 from ekfsim.hunting.hunt import Asked, hunt
-from ekfsim.hunting.lists import CLEAR, Space
 from ekfsim.hunting.search import searched
 from ekfsim.hunting.shrinking import shrunk
-from ekfsim.hunting.variants import Commanded
 from ekfsim.hunting.worlds import without
 from ekfsim.localization import play
 from ekfsim.study.results import Share
@@ -75,7 +75,7 @@ def test_the_search_is_the_same_with_any_number_of_workers_and_betters_chance():
     found = []
     for workers in (1, 2):
         with crew(workers, Lost(0.1), "quick", no_ear) as judge:
-            found.append(list(searched(ROOM, Space(ROOM.world, 8), judge, 200)))
+            found.append(list(searched(ROOM, Lists(Space(ROOM.world, 8)), judge, 200)))
     assert found[0] == found[1]
     first, last = found[0]
     assert last.looked_at == 200
@@ -111,7 +111,7 @@ def test_ctrl_c_keeps_the_best_so_far_and_nothing_keeps_nothing():
     asked = Asked(ROOM, lists=1000, runs=200)
     found = hunt(asked, after(1), no_ear)
     assert (found.end, found.search.looked_at) == ("interrupted", 128)
-    assert found.scene.commands == found.search.best[0].listed
+    assert found.scene.commands == found.search.best[0].variant.commands
     assert found.scene.expect.runs == 200
 
     def at_once():

@@ -84,11 +84,23 @@ def _sentences(hunted: Hunted, repeated: str) -> Iterator[str]:
         f"{hunted.scene.seed}, which the search has not seen; on its own draws, seed "
         f"{hunted.asked.scene.seed}, {_percent(hunted.count.share)}."
     )
-    yield _looked(hunted)
+    yield from _needed(hunted)
+    if hunted.search.looked_at:
+        yield _looked(hunted)
     if not hunted.is_shrunk:
         yield "Not shrunk to the end: there may be fewer commands and rounder numbers in it."
     if hunted.end in ("seconds", "interrupted"):
         yield in_a_line(f"The clock ended it, not a count: {repeated} repeats it on any machine.")
+
+
+def _needed(hunted: Hunted) -> Iterator[str]:
+    """What each told number would have to be."""
+    if hunted.asked.change == "start":
+        x, y, θ = hunted.scene.world.start.tolist()
+        yield f"Begun at x {x:g}, y {y:g}, heading {math.degrees(θ):.6g}°."
+    for n, one in enumerate(hunted.needed):
+        first = "Written: " if n == 0 else "As well: "
+        yield f"{first}{one.told.key} told as {one.told.value:g}, {one.true:g} true."
 
 
 def _truth(world: World) -> Iterator[str]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from ekfsim.commands import Command, Move, Sense, expand
 from ekfsim.geometry.angles import wrap
+from ekfsim.hunting.changes.variants import Commanded, Variant
 from ekfsim.raycast.walls import Walls
 from ekfsim.world import World
 
@@ -81,7 +82,7 @@ class Space:
         done = list[Doing]()
         for command in commands:
             if isinstance(command, Move):
-                d = _free(walls, x, y, θ, command.distance)
+                d = free_way(walls, x, y, θ, command.distance)
                 x, y = x + d * math.cos(θ), y + d * math.sin(θ)
                 θ += command.angle
                 if d == command.angle == 0:
@@ -91,7 +92,31 @@ class Space:
         return tuple(done) or (Sense(0.0),)
 
 
-def _free(walls: Walls, x: float, y: float, θ: float, distance: float) -> float:
+@dataclass(frozen=True)
+class Lists:
+    """The same as candidates of a search."""
+
+    space: Space
+
+    def by_chance(self, rng: np.random.Generator) -> Commanded:
+        """A list of any length."""
+        return Commanded(self.space.by_chance(rng))
+
+    def changed(self, one: Variant, rng: np.random.Generator) -> Commanded:
+        """The same with another command or number."""
+        return Commanded(self.space.changed(_listed(one), rng))
+
+    def crossed(self, one: Variant, other: Variant, rng: np.random.Generator) -> Commanded:
+        """The beginning of one and the end of another."""
+        return Commanded(self.space.crossed(_listed(one), _listed(other), rng))
+
+
+def _listed(one: Variant) -> Listed:
+    assert isinstance(one, Commanded)
+    return tuple(command for command in one.commands if isinstance(command, Move | Sense))
+
+
+def free_way(walls: Walls, x: float, y: float, θ: float, distance: float) -> float:
     """How much of a way can be driven, in whole steps where it is cut short."""
     if distance == 0:
         return 0.0
