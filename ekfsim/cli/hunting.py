@@ -111,7 +111,8 @@ def hunt_options(command: Callable[..., Any]) -> Callable[..., Any]:
 def hunt(place: str, out: Path, force: bool, fast: bool, **asked: Any) -> None:
     """Look for a short list of moves and senses in WORLD, or by changing those of COMMANDS, at
     which a filter is lost most often, though all that it is told is true; shrink it, measure it
-    with draws that the search has not seen, and write it with what it promises.
+    with draws that the search has not seen, and write it with what it promises. Or look for a
+    start, or for the smallest change of one told number, by which COMMANDS do it (--change).
 
     Ctrl-C ends the search, and what was found until then is written.
     """
@@ -126,7 +127,7 @@ def hunt(place: str, out: Path, force: bool, fast: bool, **asked: Any) -> None:
         return _expose(task, out, force)
     with _rounds_bar(task.lists) as heard:
         found = hunted_by(task, heard, heed)
-    repeated = _repeating(found.search.looked_at, task.scene.seed)
+    repeated = _repeating(found.search.looked_at or None, task.scene.seed)
     told = Told(description(found), repeated, f"`ekfsim study {out.name} --expect` confirms it")
     files = write(found.scene, told, task.scene.world, out, force)
     if found.end == "interrupted":

@@ -121,6 +121,11 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
         if not state.best:
             raise
         end = "interrupted"
+    if not state.best[0].count.hits:
+        raise RunError(
+            f"{asked.scene.world.name}: no run of {state.looked_at} lists does that; look at more "
+            f"(--lists, --budget), allow more commands (--moves), or less error (--off)"
+        )
     return _measured(asked, state, end, shorter or _as_it_is(asked, state.best[0]))
 
 
@@ -159,18 +164,32 @@ def _begun(scene: Scene, start: Started) -> Scene:
 def _told(asked: Asked, heed: Callable[[], None]) -> Hunted:
     """The smallest change of one told number."""
     enough = asked.enough or ENOUGH
-    with crew(asked.workers, asked.counting(), asked.way, heed) as judge:
-        found = sorted(needed(asked.scene, judge, enough), key=lambda one: one.factor)
+    end: End = "lists"
+    found, began = list[Needed](), time.monotonic()
+    try:
+        with crew(asked.workers, asked.counting(), asked.way, heed) as judge:
+            for one in needed(asked.scene, judge, enough):
+                if one is not None:
+                    found.append(one)
+                if time.monotonic() - began >= asked.seconds:
+                    end = "seconds"
+                    break
+    except (KeyboardInterrupt, SystemExit):
+        if not found:
+            raise
+        end = "interrupted"
     if not found:
+        tried = f" in the {asked.seconds:g} s of --budget" if end == "seconds" else ""
         raise RunError(
-            f"{asked.scene.commands_source}: no told number, changed by itself, does that in "
-            f"{100 * enough:g} % of runs"
+            f"{asked.scene.commands_source}: no told number was found{tried} that, changed by "
+            f"itself, does that in {100 * enough:g} % of runs"
         )
+    found.sort(key=lambda one: one.factor)
     scene = untruly(asked.scene, found[0].told)
     if scene is None:
         raise UsageError(f"{asked.scene.world.name}: its file cannot tell {found[0].told.key}")
     smallest = Shrunk(scene, scene.commands, found[0].count, True)
-    return replace(_measured(asked, Search(), "lists", smallest), needed=tuple(found))
+    return replace(_measured(asked, Search(), end, smallest), needed=tuple(found))
 
 
 def begun_with(asked: Asked) -> list[Listed]:

@@ -25,6 +25,23 @@ def test_what_is_written_keeps_its_word(tmp_path, monkeypatch):
     assert len(yaml.safe_load((tmp_path / "hunt.yaml").read_text())["commands"]) <= 8
 
 
+def test_the_smallest_wrong_number_keeps_its_word(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "two.yaml").write_text(
+        "world: room\ncommands:\n  - say: Hear.\n  - move: {distance: 1, angle: 90}\n"
+        "  - sense: {angle: 0}\n"
+    )
+    made = ekfsim("hunt", "two.yaml", "--change", "told", "--runs", "300")
+    assert (made.status, made.err) == (0, "")
+    assert "  say: Hear.\n" in made.out
+    assert "Not all is as the filter is told:" in made.out
+    assert ekfsim("check", "hunt.yaml", "hunt-world.yaml").status == 0
+    held = ekfsim("study", "hunt.yaml", "--expect")
+    assert held.status == 0
+    assert "lost: kept" in held.out
+    assert "--lists" not in (tmp_path / "hunt.yaml").read_text()
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
@@ -32,6 +49,7 @@ def test_what_is_written_keeps_its_word(tmp_path, monkeypatch):
         (["room", "--goal", "apart"], "name two filters, e.g. --for ekf,iekf"),
         (["room", "--for", "ekf,ukf", "--goal", "lost"], "apart and numbers take two filters"),
         (["room", "-o", "a.txt"], "a.txt: a commands file is written; name it e.g. hunt"),
+        (["room", "--change", "told"], "--change told: name COMMANDS that are to be lost"),
         (["room", "--for", "ekf,pf", "--goal", "numbers"], "pf: does not go on from a mean"),
     ],
 )

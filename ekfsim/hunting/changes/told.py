@@ -1,12 +1,13 @@
 """The smallest change of one told number that brings a filter down: the commands and the truth stay
 as they are.
 
-Each number goes away from what is true step by step, up and down, until enough runs do what is
-wanted; between the last two steps the edge is halved a few times.
+All of them go away from what is true step by step, up and down, each until enough runs do what is
+wanted; between its last two steps the edge is halved a few times.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,46 +41,60 @@ class Needed:
         return other / one
 
 
-def needed(scene: Scene, judge: Judge, enough: float) -> Iterator[Needed]:
-    """For each told number that can do it, in either direction, the smallest change."""
-    for key, true, values in _numbers(scene):
-        before = true
-        for value in values:
-            (count,) = judge(scene, [Told(key, value)], 0, RUNS)
-            if count.share >= enough:
-                yield _edge(scene, judge, enough, key, true, before, Needed(Told(key, value), true,
-                            count))  # fmt: skip
-                break
-            before = value
+class Way(NamedTuple):
+    """A told number in one direction."""
+
+    key: str
+    true: float  # in the file's unit
+    values: list[float]  # farther and farther from it
 
 
-def _edge(
-    scene: Scene, judge: Judge, enough: float, key: str, true: float, before: float, found: Needed
-) -> Needed:
+def needed(scene: Scene, judge: Judge, enough: float) -> Iterator[Needed | None]:
+    """Each told number that can do it, in either direction, by the smallest change of it; None
+    after each step away from what is true.
+    """
+    waiting = list(_numbers(scene))
+    for k in range(STEPS):
+        waiting = [one for one in waiting if k < len(one.values)]
+        steps = [Told(one.key, one.values[k]) for one in waiting]
+        counts = judge(scene, steps, 0, RUNS)
+        does = [count.share >= enough for count in counts]
+        for one, step, count, yes in zip(waiting, steps, counts, does, strict=True):
+            if yes:
+                before = one.values[k - 1] if k else one.true
+                yield _edge(scene, judge, enough, before, Needed(step, one.true, count))
+        yield None
+        waiting = [one for one, yes in zip(waiting, does, strict=True) if not yes]
+
+
+def _edge(scene: Scene, judge: Judge, enough: float, before: float, found: Needed) -> Needed:
+    """The edge between a number that does not do it and one that does, halved a few times."""
+    key = found.told.key
     for _ in range(HALVINGS):
         middle = _told((before + found.told.value) / 2)
         (count,) = judge(scene, [Told(key, middle)], 0, RUNS)
         if count.share >= enough:
-            found = Needed(Told(key, middle), true, count)
+            found = Needed(Told(key, middle), found.true, count)
         else:
             before = middle
     return found
 
 
-def _numbers(scene: Scene) -> Iterator[tuple[str, float, list[float]]]:
-    """Each told number: its key, the true one, and values farther and farther from it."""
+def _numbers(scene: Scene) -> Iterator[Way]:
+    """Each told number, up and down."""
     noise = scene.world.noise
     for name, field in RATIOS.items():
         true = float(getattr(noise, field))
         if true > 0:
             for way in (1, -1):
                 steps = [_told(true * STEP ** (way * k)) for k in range(1, STEPS)]
-                yield f"noise.{name}", true, steps
+                yield Way(f"noise.{name}", true, steps)
     for axis, true in zip(AXES, scene.world.start.tolist(), strict=True):
         true = float(np.degrees(true)) if axis == "theta" else true
         for way in (1, -1):
             offsets = [way * LEAST[axis] * 1.3**k for k in range(16)]
-            yield f"start.{axis}", true, [_told(true + offset) for offset in offsets]
+            values = [_told(true + offset) for offset in offsets]
+            yield Way(f"start.{axis}", true, values)
 
 
 def _told(value: float) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
-from ekfsim.commands import Command, Move, Sense
+from ekfsim.commands import Command, Move, Say, Sense
 from ekfsim.filters.place import label
 from ekfsim.hunting.goals import Name
 from ekfsim.hunting.hunt import Hunted
@@ -23,6 +23,7 @@ GOALS: Mapping[
     "silent": "Lost and well off, with a ΣNIS inside its band",
     "apart": "Lost and well off more often than under the other filter, on the same draws",
 }
+UNITS: Mapping[str, str] = {"start.x": " m", "start.y": " m", "start.theta": "°"}  # of told numbers
 
 
 def conclude(hunted: Hunted, files: Sequence[Path], repeated: str, width: int | None) -> str:
@@ -34,7 +35,7 @@ def conclude(hunted: Hunted, files: Sequence[Path], repeated: str, width: int | 
         *folded(in_a_line(_headline(hunted)), width),
         *(f"  {told(command)}" for command in hunted.scene.commands),
         *(line for sentence in _sentences(hunted, repeated) for line in folded(sentence, width)),
-        *folded(in_a_line(_written(files)), width),
+        *folded(in_a_line(_written(files, hunted.result.worst)), width),
     ]
     return "".join(f"{line}\n" for line in lines)
 
@@ -42,10 +43,9 @@ def conclude(hunted: Hunted, files: Sequence[Path], repeated: str, width: int | 
 def interrupted(hunted: Hunted, file: Path) -> str:
     """What is kept of a hunt that was interrupted, in a line."""
     lost = _share(hunted.result.last.lost)
-    return (
-        f"the best of {hunted.search.looked_at} lists is kept in {file}: "
-        f"{label(hunted.scene.filter)} is lost in {lost}"
-    )
+    looked = hunted.search.looked_at
+    best = f"the best of {looked} lists" if looked else "the smallest change so far"
+    return f"{best} is kept in {file}: {label(hunted.scene.filter)} is lost in {lost}"
 
 
 def description(hunted: Hunted) -> str:
@@ -67,6 +67,8 @@ def told(command: Command) -> str:
             return f"move {d:g} m, turn {math.degrees(a):.6g}°"
         case Sense(a):
             return f"sense at {math.degrees(a):.6g}°"
+        case Say(text):
+            return f"say: {in_a_line(text)}"
     return str(command)
 
 
@@ -89,7 +91,9 @@ def _sentences(hunted: Hunted, repeated: str) -> Iterator[str]:
         yield _looked(hunted)
     if not hunted.is_shrunk:
         yield "Not shrunk to the end: there may be fewer commands and rounder numbers in it."
-    if hunted.end in ("seconds", "interrupted"):
+    if hunted.asked.change == "told" and hunted.end != "lists":
+        yield "The clock ended it before every number was tried: a smaller change may do as much."
+    elif hunted.end in ("seconds", "interrupted"):
         yield in_a_line(f"The clock ended it, not a count: {repeated} repeats it on any machine.")
 
 
@@ -100,7 +104,8 @@ def _needed(hunted: Hunted) -> Iterator[str]:
         yield f"Begun at x {x:g}, y {y:g}, heading {math.degrees(θ):.6g}°."
     for n, one in enumerate(hunted.needed):
         first = "Written: " if n == 0 else "As well: "
-        yield f"{first}{one.told.key} told as {one.told.value:g}, {one.true:g} true."
+        unit = UNITS.get(one.told.key, "")
+        yield f"{first}{one.told.key} told as {one.told.value:g}{unit}, {one.true:g}{unit} true."
 
 
 def _truth(world: World) -> Iterator[str]:
@@ -155,12 +160,12 @@ def _looked(hunted: Hunted) -> str:
     return f"Looked at {search.looked_at} lists in {search.runs} runs{why}."
 
 
-def _written(files: Sequence[Path]) -> str:
+def _written(files: Sequence[Path], worst: int) -> str:
     first, *rest = files
     beside = f", with {rest[0]}" if rest else ""
     return (
         f"{first}{beside}: ekfsim play {first} shows a run, ekfsim study {first} --expect holds it "
-        "to its word"
+        f"to its word, ekfsim why {first} --run {worst} asks what lost the worst run"
     )
 
 
