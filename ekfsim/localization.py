@@ -8,7 +8,7 @@ from ekfsim.diagnostics.ambiguity import remark as remarked
 from ekfsim.diagnostics.nees import nees
 from ekfsim.errors import StepError, UsageError
 from ekfsim.filters.belief import Belief, Gaussian, Particles
-from ekfsim.filters.place import label
+from ekfsim.filters.place import forward, is_smoothed, label
 from ekfsim.filters.protocol import Beginning, Filter
 from ekfsim.filters.tuning import CROWDS
 from ekfsim.geometry import Integers
@@ -63,10 +63,19 @@ def advance(
 
 
 def play(scene: Scene, runs: Integers | None = None) -> Iterator[Step]:
-    """Localize in a scene: every Step of its run, or of N runs side by side. runs : (N,)"""
+    """Localize in a scene: every Step of its run, or of N runs side by side. runs : (N,)
+
+    Where the filter's name asks for it, with all readings of the run: the first step comes when the
+    last is known.
+    """
     belief = belief_of(scene, runs)
     entries = entries_of(scene, runs)
-    return localize(entries, filter_of(scene, runs), belief, scene.guard, scene.world.layout)
+    steps = localize(entries, filter_of(scene, runs), belief, scene.guard, scene.world.layout)
+    if is_smoothed(scene.filter):
+        from ekfsim.smoothing import smoothed  # seldom asked
+
+        return smoothed(steps)
+    return steps
 
 
 def entries_of(scene: Scene, runs: Integers | None = None) -> Iterable[Entry]:
@@ -86,7 +95,7 @@ def belief_of(scene: Scene, runs: Integers | None = None) -> Belief:
     if not scene.world.told.start_unknown:
         return first
     anywhere = scene.world.anywhere
-    if scene.filter not in CROWDS or anywhere is None:
+    if forward(scene.filter) not in CROWDS or anywhere is None:
         raise UsageError(
             f"{scene.world_source}: belief.start: {label(scene.filter)} cannot begin where the "
             f"start is unknown; name one that can: --filter {' or '.join(reversed(CROWDS))}"
@@ -114,4 +123,5 @@ def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
         lambda: particle_generators(scene.seed, numbers), scene.tuning,
         lambda: nominal_trajectory(scene), scene.world.anywhere, runs,
     )  # fmt: skip
-    return system_of(scene.world.system).filter(scene.filter, scene.reading, beginning)
+    name = forward(scene.filter)
+    return system_of(scene.world.system).filter(name, scene.reading, beginning)

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from ekfsim.filters import FILTERS
+from ekfsim.filters.place import forward
 from ekfsim.filters.protocol import Beginning, Filter, Kind
 
 GROUP = "ekfsim.filters"  # of entry points
@@ -10,19 +11,20 @@ GROUP = "ekfsim.filters"  # of entry points
 
 def kind_of(name: str) -> Kind:
     """The filter of that name, built-in or registered, or at that place; see `verify`."""
-    if name in FILTERS:
-        return FILTERS[name]
+    alone = forward(name)
+    if alone in FILTERS:
+        return FILTERS[alone]
     from ekfsim.student.own.choice import Own  # the door to filters of one's own
 
-    return Own(name)
+    return Own(alone)
 
 
 def verify(name: str) -> None:
     """Raises UsageError where there is no such filter, FaultError where its code fails."""
-    if name not in FILTERS:
+    if forward(name) not in FILTERS:
         from ekfsim.student.own.choice import quietly
 
-        quietly(name)
+        quietly(forward(name))
 
 
 def registered() -> list[str]:
@@ -45,11 +47,11 @@ def code_of(name: str) -> Mapping[str, bytes]:
     """The files that a filter of one's own is made of, by their names from its own folder; none
     of a built-in one. Raises what `verify` does.
     """
-    if name in FILTERS:
+    if forward(name) in FILTERS:
         return {}
     from ekfsim.student.own.choice import contents
 
-    return contents(name)
+    return contents(forward(name))
 
 
 def begun(name: str, beginning: Beginning) -> Filter:

@@ -1,16 +1,43 @@
 """Where a filter of one's own is found: the text of its place, and what people see of it.
 
 A scene names its filter by a text: the name of a built-in one, or a place. In a place the path of a
-file is absolute, so that whoever calculates in another folder finds it too.
+file is absolute, so that whoever calculates in another folder finds it too. Behind either may stand
+"-smoothed": what the filter believes is then smoothed, see ekfsim/smoothing/.
 """
 
 import os
 import re
+from collections.abc import Sequence
 
 from ekfsim.filters import FILTERS
 
 FILE = re.compile(r"(?P<file>.*\.py)(?::(?P<name>\w*))?", re.DOTALL)
+SMOOTHED = "-smoothed"
 MODULE = re.compile(r"(?P<module>[^\W\d][\w.]*):(?P<name>[^\W\d][\w.]*)")
+
+
+def forward(filter: str) -> str:
+    """The filter alone, whether what it believes is to be smoothed or not.
+
+    >>> forward("ekf-smoothed"), forward("ekf")
+    ('ekf', 'ekf')
+    """
+    return filter.removesuffix(SMOOTHED)
+
+
+def is_smoothed(filter: str) -> bool:
+    """Whether what it believes is to be smoothed."""
+    return filter.endswith(SMOOTHED)
+
+
+def with_smoothed(filters: Sequence[str]) -> tuple[str, ...]:
+    """Filters, and behind each the same smoothed, where it does not stand there already.
+
+    >>> with_smoothed(["ekf", "pf"])
+    ('ekf', 'ekf-smoothed', 'pf', 'pf-smoothed')
+    """
+    both = (name for one in filters for name in (one, forward(one) + SMOOTHED))
+    return tuple(dict.fromkeys(both))
 
 
 def is_place(text: str) -> bool:
@@ -19,7 +46,8 @@ def is_place(text: str) -> bool:
     >>> [is_place(text) for text in ("mine.py", "mine.py:MyEKF", "my.filters:MyEKF", "ekf")]
     [True, True, True, False]
     """
-    return bool(FILE.fullmatch(text) or MODULE.fullmatch(text))
+    alone = forward(text)
+    return bool(FILE.fullmatch(alone) or MODULE.fullmatch(alone))
 
 
 def parts(place: str) -> tuple[str, str]:
@@ -28,16 +56,17 @@ def parts(place: str) -> tuple[str, str]:
     >>> parts("/home/anna/mine.py:MyEKF"), parts("mine.py"), parts("my.filters:MyEKF")
     (('/home/anna/mine.py', 'MyEKF'), ('mine.py', ''), ('my.filters', 'MyEKF'))
     """
-    found = FILE.fullmatch(place)
+    alone = forward(place)
+    found = FILE.fullmatch(alone)
     if found:
         return found["file"], found["name"] or ""
-    module, _, name = place.partition(":")
+    module, _, name = alone.partition(":")
     return module, name
 
 
 def is_file(place: str) -> bool:
     """Whether it is a file's place, not that of an installed module."""
-    return FILE.fullmatch(place) is not None
+    return FILE.fullmatch(forward(place)) is not None
 
 
 def absolute(place: str) -> str:
@@ -46,7 +75,7 @@ def absolute(place: str) -> str:
         return place
     file, name = parts(place)
     path = os.path.abspath(os.path.expanduser(file))
-    return f"{path}:{name}" if name else path
+    return (f"{path}:{name}" if name else path) + place.removeprefix(forward(place))
 
 
 def label(filter: str) -> str:
@@ -58,7 +87,8 @@ def label(filter: str) -> str:
     if not is_file(filter):
         return filter
     file, name = parts(filter)
-    return os.path.basename(file) + (f":{name}" if name else "")
+    behind = filter.removeprefix(forward(filter))
+    return os.path.basename(file) + (f":{name}" if name else "") + behind
 
 
 def stem(filter: str) -> str:
@@ -71,4 +101,5 @@ def stem(filter: str) -> str:
         return filter.replace(":", "-")
     file, name = parts(filter)
     own = os.path.basename(file).removesuffix(".py") + (f"-{name}" if name else "")
-    return f"{own}-own" if own in FILTERS else own
+    own = f"{own}-own" if own in FILTERS else own
+    return own + filter.removeprefix(forward(filter))

@@ -44,6 +44,7 @@ def reads(filter_name: str, number: str) -> bool:
     >>> reads("pf", "particles"), reads("ekf", "particles"), reads("ekf", "range_variance")
     (True, False, True)
     """
+    alone = filter_name.removesuffix("-smoothed")
     if number in OF_SOME:
-        return filter_name in OF_SOME[number]
-    return number != "cross_covariances" or filter_name not in CROWDS
+        return alone in OF_SOME[number]
+    return number != "cross_covariances" or alone not in CROWDS

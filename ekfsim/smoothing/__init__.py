@@ -7,3 +7,4 @@ The smoother asks no filter: what it needs stands in the Steps.
 """
 
 from ekfsim.smoothing.rts import smooth as smooth
+from ekfsim.smoothing.rts import smoothed as smoothed

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ekfsim.diagnostics.nees import nees
+from ekfsim.errors import StepError
 from ekfsim.filters.arithmetic.algebra import symmetric, wrapped
 from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array
@@ -44,6 +45,19 @@ def smooth(steps: Iterable[Step]) -> list[Step]:
     """
     kept = [of_step(step) for step in steps]
     return list(_forth(kept))
+
+
+def smoothed(steps: Iterable[Step]) -> Iterator[Step]:
+    """The same as they are asked for. Of a run that fails, what came before it, and then the
+    failure.
+    """
+    coming = list[Step]()
+    try:
+        coming.extend(steps)
+    except StepError:
+        yield from smooth(coming)
+        raise
+    yield from smooth(coming)
 
 
 def of_step(step: Step) -> Kept:

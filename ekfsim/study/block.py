@@ -17,6 +17,7 @@ import numpy as np
 from ekfsim.commands import expanded_length
 from ekfsim.diagnostics.verdict import LOST
 from ekfsim.filters.belief import Belief, Correction, posed
+from ekfsim.filters.place import forward, is_smoothed
 from ekfsim.filters.tuning import CROWDS
 from ekfsim.geometry import Array, Integers
 from ekfsim.localization import play
@@ -29,6 +30,7 @@ from ekfsim.study.tally import AtSteps, OfRuns, Tally, dtype_of
 from ekfsim.twins import Way, taken, taking, twinned
 
 MOST_PARTICLES = 2_000_000  # of all runs that are watched at once: they take some 400 bytes each
+MOST_KEPT = 1_000_000  # steps of all runs that are smoothed at once, at some 500 bytes each
 MOST_STEPS = 1000  # of a longer run so many are told of, evenly spaced, and the last
 
 
@@ -55,8 +57,14 @@ def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
     """The runs first … first + runs − 1 in portions that fit the memory, each its first and how
     many.
 
-    Only of particles there may be too many for a block's runs to be watched side by side.
+    Only of particles there may be too many for a block's runs to be watched side by side, and of
+    steps that are kept until a run is over.
     """
+    some = runs
+    if forward(scene.filter) in CROWDS:
+        some = max(MOST_PARTICLES // scene.tuning.particles, 1)
+    if is_smoothed(scene.filter):
+        some = min(some, max(MOST_KEPT // (length_of(scene) + 1), 1))
     some = max(MOST_PARTICLES // scene.tuning.particles, 1) if scene.filter in CROWDS else runs
     return [(run, min(some, first + runs - run)) for run in range(first, first + runs, some)]
 

@@ -19,7 +19,7 @@ from ekfsim.files.scenes.one_file import read
 from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.source import as_written, bytes_of
 from ekfsim.files.yaml.parsing import parse
-from ekfsim.filters.place import label
+from ekfsim.filters.place import label, with_smoothed
 from ekfsim.scene import Scene
 from ekfsim.simulation.draws import BLOCK
 from ekfsim.study.block import run_block
@@ -160,6 +160,12 @@ def is_recorded(request: Request) -> bool:
     return named or request.log is not None
 
 
+def _watching(request: Request, scene: Scene) -> tuple[str, ...]:
+    """The filters that watch a scene."""
+    names = request.filters or (scene.filter,)
+    return with_smoothed(names) if request.smooth else names
+
+
 def cases_of(request: Request) -> tuple[tuple[Case, ...], tuple[str, ...]]:
     """Every cell that is asked for, watched by every filter, and what is to be warned of.
 
@@ -182,7 +188,7 @@ def cases_of(request: Request) -> tuple[tuple[Case, ...], tuple[str, ...]]:
         seeded = scene if request.seed is None else replace(scene, seed=request.seed)
         cases += [
             Case(values, replace(seeded, filter=name))
-            for name in request.filters or (scene.filter,)
+            for name in _watching(request, scene)
         ]
     return tuple(cases), tuple(warnings)
 

@@ -18,11 +18,11 @@ def scene_of(
     filter_name: str | None = None, gate: float | Literal["off"] | None = None,
     guard: str | None = None,
     log: str | None = None, reading: str = "corrected", settings: tuple[str, ...] = (),
-    particles: int | None = None,
+    particles: int | None = None, smooth: bool = False,
 ) -> "Scene":  # fmt: skip
     """The scene of a commands file, or of what one would hold, overruled by the options that were
     given.
-    filter_name : one, or several: ekf,ukf
+    filter_name : one, or several: ekf,ukf; smooth : beside each, the same smoothed
     """
     from dataclasses import replace
     from typing import cast
@@ -31,6 +31,7 @@ def scene_of(
     from ekfsim.files.scenes.checking.filter_checks import refuse_unread
     from ekfsim.files.scenes.load import read_scene
     from ekfsim.files.scenes.settings import filters_in, particles_of, setting
+    from ekfsim.filters.place import with_smoothed
 
     names = () if filter_name is None else filters_in(filter_name)
     world_file = None if world is None else resolve(world, "worlds")
@@ -39,11 +40,13 @@ def scene_of(
     found = read_scene(read, world_file, log, cast("DocumentReading", reading), overruling)
     scene = found.get()
     warn(found.warnings)
-    refuse_unread(overruling, names or (scene.filter,))
+    names = names or (scene.filter,)
+    names = with_smoothed(names) if smooth else names
+    refuse_unread(overruling, names)
     if gate == "off":
         scene, gate = replace(scene, gate=None), None
     chosen: dict[str, Any] = {"seed": seed, "run": run_number, "gate": gate, "guard": guard}
-    chosen |= {"filter": names[0] if names else None, "beside": names[1:]}
+    chosen |= {"filter": names[0], "beside": names[1:]}
     return replace(scene, **{name: value for name, value in chosen.items() if value is not None})
 
 

@@ -173,6 +173,12 @@ MADE_WHERE = (
 )
 
 
+SMOOTH = click.option(
+    "--smooth",
+    is_flag=True,
+    help="Beside each filter, what it believes once the whole run is known (Rauch-Tung-Striebel); "
+    "short for --filter ekf,ekf-smoothed.",
+)
 WATCHED = (  # by whom a run is watched
     click.option(
         "--filter",
@@ -183,6 +189,7 @@ WATCHED = (  # by whom a run is watched
         "FILE.py, FILE.py:NAME or package.module:NAME. Several are put side by side; the name of "
         "each then stands before the ending of its files.",
     ),
+    SMOOTH,
     GATE,
     GUARD,
     SET,
@@ -229,6 +236,7 @@ def study_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 metavar="NAME,…",
                 help="Filters that watch the same runs, e.g. ekf,ukf or ekf,mine.py: see play.",
             ),
+            SMOOTH,
             click.option(
                 "--sweep",
                 "sweeps",

@@ -52,9 +52,10 @@ def known_filters(schema: dict[str, Any]) -> None:
 def is_filter(name: str) -> bool:
     """Whether it names a filter, or a place where one may be found."""
     from ekfsim.filters import FILTERS
-    from ekfsim.filters.place import is_place
+    from ekfsim.filters.place import forward, is_place
 
-    return name in FILTERS or is_place(name) or name in filter_names()
+    alone = forward(name)
+    return alone in FILTERS or is_place(name) or alone in filter_names()
 
 
 class MoveKeys(Strict):

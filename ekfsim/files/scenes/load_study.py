@@ -62,6 +62,7 @@ class Request:
     world_name: str | None = None
     log: str | None = None  # the recorded log that is studied, in place of the commands file's own
     in_python: bool = False  # of a scene that a notebook holds, not of files
+    smooth: bool = False  # beside each filter the same smoothed
 
     def overruled(
         self, settings: tuple[Setting, ...], sweep: tuple[tuple[Setting, ...], ...]
@@ -98,7 +99,7 @@ def asked(
     sweeps: Sequence[str],
     settings: Sequence[str], gate: float | str | None, guard: str | None,
     reading: DocumentReading | None, fast: bool, particles: int | None = None,
-    log: str | None = None,
+    log: str | None = None, smooth: bool = False,
 ) -> Request:  # fmt: skip
     """What the command line asks for:
     a file, overruled by its options. Raises UsageError or InputError.
@@ -119,7 +120,7 @@ def asked(
     return replace(
         request, filters=watching, runs=request.runs if runs is None else runs,
         seed=request.seed if seed is None else seed, reading=reading or request.reading,
-        fast=fast or request.fast, log=log or request.log,
+        fast=fast or request.fast, log=log or request.log, smooth=smooth,
     ).checked()  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from ekfsim.files.yaml.marked import Scalar, field_of, scalar
 from ekfsim.files.yaml.schema import Kind, keys_at, schema_at
 from ekfsim.files.yaml.telling import nearest, quoted, short
 from ekfsim.filters import FILTERS
-from ekfsim.filters.place import absolute, is_place, label, stem
+from ekfsim.filters.place import absolute, forward, is_place, label, stem
 
 OF_COMMANDS = ("gate", "guard")  # the rest belongs to the world
 # filter.particles=… is a commands file's filterSettings
@@ -111,10 +111,10 @@ def filter_in(name: str, option: str, brought: Sequence[str] = ()) -> str:
     from ekfsim.filters import FILTERS
     from ekfsim.filters.choice import registered, verify
 
-    if name in FILTERS:
+    if forward(name) in FILTERS:
         return name
     known = [*FILTERS, *registered(), *brought]
-    if is_place(name) or name in known:
+    if is_place(name) or forward(name) in known:
         name = absolute(name)
         verify(name)
         return name

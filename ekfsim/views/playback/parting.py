@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from ekfsim.filters import FILTERS
 from ekfsim.filters.belief import Gaussian, Refused
-from ekfsim.filters.place import label
+from ekfsim.filters.place import forward, label
 from ekfsim.records import Step
 from ekfsim.student.asked import Answer, Asked
 from ekfsim.student.comparing.difference import DIFFERENT, differences, in_sigmas, sizes
@@ -54,7 +54,7 @@ class Parting:
 
     def until(self, index: int) -> Apart:
         """Whether they have parted up to that entry."""
-        own_last = self.first in FILTERS and self.other not in FILTERS
+        own_last = _built_in(self.first) and not _built_in(self.other)
         names = (self.other, self.first) if own_last else (self.first, self.other)
         if self.index is None or self.index > index:
             return Apart((label(names[0]), label(names[1])), None, 0.0)
@@ -63,7 +63,7 @@ class Parting:
     @property
     def _first_is_right(self) -> bool:
         """Whether the first is what the other is held against: the built-in one of the two."""
-        return self.first in FILTERS or self.other not in FILTERS
+        return _built_in(self.first) or not _built_in(self.other)
 
 
 def difference(right: Step, step: Step) -> float:
@@ -82,3 +82,7 @@ def difference(right: Step, step: Step) -> float:
     asked = Asked(x, P, given)
     found = differences(theirs, ours, rounding(asked, made, ours.covariance), step.layout)
     return max((one.size for one in found), default=0.0)
+
+
+def _built_in(filter: str) -> bool:
+    return forward(filter) in FILTERS

@@ -22,6 +22,7 @@ from ekfsim.study.verdict import (
     Verdict,
     Word,
 )
+from ekfsim.views.study.all_steps import over_all_steps
 from ekfsim.views.words.numbers import instant
 from ekfsim.views.words.text_table import aligned, folded
 
@@ -60,6 +61,7 @@ def conclude(
             "(RMSE in m and degrees; NEES above quantiles of χ², and the other shares, in %)", width
         ),
         *aligned([[*plan.keys, *HEAD], *map(_row, results)], len(plan.keys) + 1, width),
+        *over_all_steps(plan, results, width),
     ]
     if len(results) > MOST_TOLD:  # the table is what is wanted
         where = "table()" if request.in_python else "summary.csv (-o)"

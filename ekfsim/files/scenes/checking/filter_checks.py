@@ -85,7 +85,7 @@ def refuse_unread(
 
 def filter_beside(file: str | Path, named: str) -> str:
     """The filter that a file names: a built-in one, or the place of another."""
-    if named in FILTERS or not is_file(named):
+    if not is_file(named):
         return named
     return absolute(os.path.join(os.path.dirname(file), os.path.expanduser(named)))
 
@@ -95,7 +95,7 @@ def missing(file: str | Path, named: str) -> tuple[str, str] | None:
     where a file is there.
     """
     place = filter_beside(file, named)
-    if named in FILTERS or not is_file(place):
+    if not is_file(place):
         return None
     path, _ = parts(place)
     try:
