@@ -31,6 +31,7 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"provenance"},
     {"files"},
     {"simulation"},
+    {"smoothing"},
     {"localization"},
     {"smoothing"},
     {"fitting"},
@@ -68,6 +69,7 @@ CORE = {
     "diagnostics",
     "provenance",
     "simulation",
+    "smoothing",
     "localization",
     "fast",
 }

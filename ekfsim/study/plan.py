@@ -186,10 +186,7 @@ def cases_of(request: Request) -> tuple[tuple[Case, ...], tuple[str, ...]]:
         scene = loaded.get()
         warnings |= dict.fromkeys(loaded.warnings)
         seeded = scene if request.seed is None else replace(scene, seed=request.seed)
-        cases += [
-            Case(values, replace(seeded, filter=name))
-            for name in _watching(request, scene)
-        ]
+        cases += [Case(values, replace(seeded, filter=name)) for name in _watching(request, scene)]
     return tuple(cases), tuple(warnings)
 
 
