@@ -1,0 +1,13 @@
+"""--smooth: a filter and the same smoothed, side by side."""
+
+import pytest
+from program import ekfsim
+
+
+@pytest.mark.parametrize("asked", [["run", "square"], ["study", "square", "--runs", "64"]])
+def test_both_have_a_row(asked):
+    """A study tells of all steps, too, for both are one at the last."""
+    told = ekfsim(*asked, "--smooth")
+    rows = [line for line in told.stdout.splitlines() if line.startswith(("ekf ", "ekf-smoothed "))]
+    assert len(rows) == (4 if asked[0] == "study" else 2)
+    assert ("Over all steps" in told.stdout) == (asked[0] == "study")
