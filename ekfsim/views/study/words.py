@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from ekfsim.files.scenes.checking.filter_checks import unread
 from ekfsim.files.yaml.marked import scalar
+from ekfsim.filters.place import is_smoothed
 from ekfsim.printable import in_a_line
 from ekfsim.study.plan import Plan
 from ekfsim.study.results import AtStep, Result, Share
@@ -282,6 +283,8 @@ def explained(result: Result) -> bool:
     more are lost than chance does.
     """
     last = result.last.lost
+    if is_smoothed(result.case.scene.filter):  # its filter's row tells it
+        return False
     return last.runs > MOST_LOST * last.of and result.case.scene.commanded
 
 
