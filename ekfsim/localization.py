@@ -1,6 +1,6 @@
 """Entries × filter → Steps."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
@@ -11,12 +11,12 @@ from ekfsim.filters.belief import Belief, Gaussian, Particles
 from ekfsim.filters.place import forward, is_smoothed, label
 from ekfsim.filters.protocol import Beginning, Filter
 from ekfsim.filters.tuning import CROWDS
-from ekfsim.geometry import Integers
+from ekfsim.geometry import Array, Integers
 from ekfsim.models.layout import POSE, Layout
 from ekfsim.records import Control, Entry, Reading, Step, called
 from ekfsim.scene import Guard, Scene
 from ekfsim.simulation import simulate
-from ekfsim.simulation.draws import STARTS, particle_generators
+from ekfsim.simulation.draws import PLACES, STARTS, particle_generators
 from ekfsim.simulation.nominal import nominal_trajectory
 from ekfsim.systems import system_of
 from ekfsim.twins import twinned
@@ -115,13 +115,25 @@ def first_belief(scene: Scene, axes: tuple[int, ...] = ()) -> Gaussian:
     )
 
 
+def places_of(scene: Scene) -> Callable[[int], Array] | None:
+    """So many states from all over the floor that the filter believes free, the same for all runs
+    of a seed; None where no map tells where that is.
+    """
+    anywhere = scene.world.anywhere
+    if anywhere is None:
+        return None
+    first = np.array(0)
+    return lambda number: anywhere(particle_generators(scene.seed, first, PLACES)[0], number)
+
+
 def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
     """The filter that watches a scene, at the beginning of its run, or of N runs side by side."""
     numbers = np.asarray(scene.run if runs is None else runs)
     beginning = Beginning(
         first_belief(scene), scene.world.layout.headings, scene.gate,
         lambda: particle_generators(scene.seed, numbers), scene.tuning,
-        lambda: nominal_trajectory(scene), scene.world.anywhere, runs,
+        lambda: nominal_trajectory(scene), scene.world.anywhere, places_of(scene),
+        runs,
     )  # fmt: skip
     name = forward(scene.filter)
     return system_of(scene.world.system).filter(name, scene.reading, beginning)

@@ -156,7 +156,10 @@ def test_the_text_asks_for_no_form_no_axes_and_no_way(module):
     } <= {"twinned"}
 
 
-EQUATIONS = {"motions": {"inputs", *"fFGMQ"}, "sensors": {"outputs", *"hHR", "residual"}}
+EQUATIONS = {
+    "motions": {"inputs", *"fFGMQ"},
+    "sensors": {"outputs", *"hHR", "residual", "alternatives"},
+}
 
 
 @pytest.mark.parametrize(

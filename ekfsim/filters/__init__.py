@@ -10,6 +10,7 @@
 
     cures/       for bad readings, each with what it assumes
     variants/    about a plan; noise in the sigma points; a document's listing; counter-examples
+    mixture/     a few Gaussians: mhekf.py, and how they are merged
     arithmetic/  square roots of P, sigma points, the iterated filter's search, quantiles of χ²
 
 The filters know no robot and no sensor: f, F, G, M, Q and h, H, R come from the models (see
@@ -36,5 +37,6 @@ FILTERS: Table["Kind"] = Table(
         "pdaf": "ekfsim.filters.cures.pdaf:PDAF",
         "pf": "ekfsim.filters.pf:PF",
         "amcl": "ekfsim.filters.cures.amcl:AMCL",
+        "mhekf": "ekfsim.filters.mixture.mhekf:MHEKF",
     }
 )

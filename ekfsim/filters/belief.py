@@ -48,6 +48,40 @@ class Particles:
         return iter((self.mean, self.covariance))
 
 
+@dataclass(frozen=True, slots=True)
+class Mixture:
+    """A belief that is a few Gaussians, each a hypothesis. Its mean and covariance are those of all
+    together, and stand for it where one is drawn, told or judged.
+
+    The heaviest comes first. A place of weight 0 is unused.
+    """
+
+    mean: Array  # (…, n), circular where it is a heading
+    covariance: Array  # (…, n, n), what parts the hypotheses included
+    means: Array  # (…, h, n)
+    covariances: Array  # (…, h, n, n)
+    weights: Array  # (…, h), their sum is 1
+    walls: Integers  # (…, h) the wall that each took its last reading for, −1 where none is known
+    merged: Integers  # (…, h) how many the last reading left, that are one in this one
+    pruned: Integers  # (…) how many it left without a place, their weight being given to the others
+    memory: object = None  # what its filter remembers besides
+
+    def __iter__(self) -> Iterator[Array]:
+        """`x, P = belief` takes any kind of belief."""
+        return iter((self.mean, self.covariance))
+
+
+def parts(belief: Belief, layout: Layout) -> list[tuple[float, Gaussian]]:
+    """The hypotheses of one run that are several, each with its weight, the lightest first, and
+    what it believes of the pose; none of a belief that is one Gaussian, or no mixture.
+    """
+    if not isinstance(belief, Mixture) or np.count_nonzero(belief.weights) < 2:
+        return []
+    each = zip(belief.weights.tolist(), belief.means, belief.covariances, strict=True)
+    made = [(w, posed(Gaussian(x, P), layout)) for w, x, P in each if w > 0]
+    return sorted(made, key=lambda one: one[0])
+
+
 def posed(belief: Belief, layout: Layout) -> Gaussian:
     """What is believed of the pose, whatever else the state holds : (…, 3), (…, 3, 3)"""
     x, P = belief

@@ -29,6 +29,8 @@ class Beginning:
     # poses from all places where a robot can stand, as states: (generator, number) → (p, n); None:
     # no map tells where that is
     anywhere: "Callable[[Generator, int], Array] | None" = None
+    # so many of them : (p, n), the same for all runs of a seed; None as above
+    places: Callable[[int], Array] | None = None
     runs: Integers | None = None  # (N,) the numbers of runs side by side; None of one alone
 
 

@@ -6,11 +6,12 @@ from typing import Literal
 RangeVariance = Literal["prediction", "reading"]
 CrossCovariances = Literal["kept", "dropped"]
 MOST_PARTICLES = 1_000_000
+MOST_HYPOTHESES = 64
 UNSCENTED = "ukf", "ukf-augmented"
 CROWDS = "pf", "amcl"  # particles, and no P to drop anything from
 OF_SOME = {  # whose number it is
     "particles": CROWDS, "alpha": UNSCENTED, "beta": UNSCENTED, "kappa": UNSCENTED,
-    "iterations": ("iekf",), "huber": ("huber",),
+    "iterations": ("iekf",), "hypotheses": ("mhekf",), "huber": ("huber",),
     "clutter": ("pdaf",), "clutter_density": ("pdaf",),
 }  # fmt: skip
 
@@ -30,6 +31,7 @@ class Tuning:
     huber: float = 2.0  # σ of an innovation; beyond it a reading pulls no harder than there
     clutter: float = 0.1  # share of readings that are of something else than is expected
     clutter_density: float = 0.1  # of those, per unit (m, rad) of each number: 0.1/m is in 10 m
+    hypotheses: int = 8  # Gaussians of the mhekf at most
     # whence the classroom's C_v = (ratio · r)² takes its r
     range_variance: RangeVariance = "prediction"
     cross_covariances: CrossCovariances = "kept"  # σ_xθ and σ_yθ, which no picture shows

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple, Protocol, runtime_checkable
 
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, Integers
 from ekfsim.twins import twinned
 
 
@@ -49,6 +49,18 @@ class Motion(Protocol):
         return self.f(x, u), self.F(x, u), self.G(x, u), self.M(u), self.Q(u)
 
 
+class Alternatives(NamedTuple):
+    """The lines that a sensor may be taken for about one state, the first of them its own there.
+    What is none has a share of 0.
+    """
+
+    h: Array  # (…, a, k), nan where nothing is predicted
+    H: Array  # (…, a, k, n)
+    R: Array  # (…, a, k, k)
+    share: Array  # (…, a) of the belief, from where the reading would be that line's
+    wall: Integers  # (…, a) which wall it is, as the sensor's map counts them; −1 where none is
+
+
 class Sensor(Protocol):
     """z = h(x) + noise of covariance R, linearised by H = ∂h/∂x."""
 
@@ -86,6 +98,16 @@ class OfRuns(Protocol):
 
     def of_run(self, run: tuple[int, ...]) -> Sensor:
         """The sensor of one of them."""
+
+
+@runtime_checkable
+class Parting(Protocol):
+    """A sensor whose reading may be one thing or another: a beam may meet this wall or that."""
+
+    def alternatives(self, x: Array, P: Array) -> Alternatives | None:
+        """What may be read within a belief x : (…, n), P : (…, n, n); None where what it is made of
+        has no alternatives.
+        """
 
 
 def angles(quantities: tuple[Quantity, ...]) -> tuple[int, ...]:

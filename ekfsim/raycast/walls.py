@@ -175,6 +175,15 @@ class Walls:
         )
 
     @cached_property
+    def plane(self) -> Integers:
+        """(W + C,) as `line`, but edges of different polygons on one straight line share a number,
+        too.
+        """
+        W = len(self.segments)
+        straight = _lines(self.segments, np.zeros(W, np.int64)) if W else self.line[:0]
+        return np.concatenate([straight, W + np.arange(len(self.circles))])
+
+    @cached_property
     def recent(self) -> dict[tuple[float, float, float], tuple[float, int]]:
         """The last few single beams, with what they met."""
         return {}

@@ -16,7 +16,7 @@ from ekfsim.world import World
 
 BLOCK = 1024  # runs that share a generator
 # keys of the generators of particle filters and of streams, apart from those of the draws
-PARTICLES, STREAMS, STARTS = 1, 2, 3
+PARTICLES, STREAMS, STARTS, PLACES = 1, 2, 3, 4
 
 
 class Draws:

@@ -20,7 +20,13 @@ from ekfsim.files.keys.fields import (
     Text,
 )
 from ekfsim.files.keys.recorded.recording import RecordingKeys
-from ekfsim.filters.tuning import MOST_PARTICLES, CrossCovariances, RangeVariance, Tuning
+from ekfsim.filters.tuning import (
+    MOST_HYPOTHESES,
+    MOST_PARTICLES,
+    CrossCovariances,
+    RangeVariance,
+    Tuning,
+)
 
 if TYPE_CHECKING:
     from ekfsim.files.keys.drive import WayKeys
@@ -189,6 +195,13 @@ class TuningKeys(Strict):
         ge=0,
         le=1000,
         examples=[20],
+    )
+    hypotheses: int = Field(
+        Tuning.hypotheses,
+        description="Gaussians of the mhekf at most; beyond them the lightest are left out.",
+        ge=1,
+        le=MOST_HYPOTHESES,
+        examples=[4],
     )
     huber: float = Field(
         Tuning.huber,

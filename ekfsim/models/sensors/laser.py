@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.models.protocols import Quantity, Sensor
+from ekfsim.models.protocols import Alternatives, Quantity, Sensor
+from ekfsim.models.which_wall import other_walls
 from ekfsim.raycast.walls import Walls
 
 ALONG = 1e-9  # rad; a beam this close to its wall's direction has no usable derivative
@@ -57,6 +58,10 @@ class Laser(Sensor):
         (laser_by_reading.py).
         """
         return np.square(self.range_ratio * self.h(x))[..., None]
+
+    def alternatives(self, x: Array, P: Array) -> Alternatives | None:
+        """The ranges to the other walls that it may meet."""
+        return other_walls(self.walls, self.bearing, self.range_ratio, self.linearize(x), x, P)
 
     def _met(self, x: Array) -> tuple[Array, Array, Array]:
         """r : (…), the normal n of the wall that is met and the beam's direction d : (…, 2) each"""

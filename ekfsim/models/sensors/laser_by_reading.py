@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ekfsim.geometry import Array
-from ekfsim.models.protocols import Sensor
+from ekfsim.models.protocols import Alternatives, Sensor
 from ekfsim.models.sensors.laser import Laser
 
 
@@ -25,6 +25,10 @@ class LaserByReading(Laser):
         z = self.z.reshape(*self.z.shape[:-1], *(1,) * (h.ndim - self.z.ndim), 1)
         r = np.where(np.isnan(h) | np.isnan(z), h, z)
         return np.square(self.range_ratio * r)[..., None]
+
+    def alternatives(self, x: Array, P: Array) -> Alternatives | None:
+        """None: what is read of other walls has no noise before it is read."""
+        return None
 
 
 def by_reading(sensor: Sensor, z: Array) -> Sensor:

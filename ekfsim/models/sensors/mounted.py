@@ -8,7 +8,7 @@ import numpy as np
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.models.layout import Layout
-from ekfsim.models.protocols import Quantity, Sensor
+from ekfsim.models.protocols import Alternatives, Parting, Quantity, Sensor
 from ekfsim.models.sensors.frozen import Frozen
 
 
@@ -78,6 +78,15 @@ class Mounted(Sensor):
     def R(self, x: Array) -> Array:
         """R of the sensor where it sits : (…, k, k)"""
         return self.sensor.R(self._pose(x))
+
+    def alternatives(self, x: Array, P: Array) -> Alternatives | None:
+        """Those of the sensor where it sits."""
+        if not isinstance(self.sensor, Parting):
+            return None
+        pose = self.layout.pose(x)
+        J = carried_by(pose, self.mount)
+        other = self.sensor.alternatives(self._pose(x), J @ self.layout.pose_covariance(P) @ J.mT)
+        return None if other is None else other._replace(H=self._placed(other.H, x[..., None, :]))
 
     def residual(self, z: Array, h: Array) -> Array:
         """ν = z − h as the sensor has it : (…, k)"""

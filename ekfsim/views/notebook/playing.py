@@ -10,7 +10,7 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 
 from ekfsim import localization, simulation
-from ekfsim.filters.belief import Belief, Particles
+from ekfsim.filters.belief import Belief, Mixture, Particles
 from ekfsim.filters.protocol import Filter
 from ekfsim.geometry import Integers
 from ekfsim.models.layout import POSE, Layout
@@ -74,6 +74,9 @@ def _hold(belief: Belief) -> None:
     _fast(belief.mean, belief.covariance)
     if isinstance(belief, Particles):
         _fast(belief.states, belief.weights)
+    elif isinstance(belief, Mixture):
+        _fast(belief.means, belief.covariances, belief.weights)
+        _fast(belief.walls, belief.merged, belief.pruned)
 
 
 def _hold_entry(entry: Entry) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from ekfsim.commands import Say
 from ekfsim.diagnostics.verdict import LOST
 from ekfsim.filters.arithmetic.chi_square import quantile
-from ekfsim.filters.belief import Particles
+from ekfsim.filters.belief import Particles, parts
 from ekfsim.geometry import Array
 from ekfsim.printable import shown
 from ekfsim.records import Control, Reading
@@ -124,6 +124,11 @@ class Teller:
         if isinstance(view.belief, Particles):
             states = view.layout.pose(view.belief.states)[:, :2]
             told["crowd"] = points(states[:: max(1, len(states) // CROWD)][:CROWD], self.origin)
+        if several := parts(view.belief, view.layout):
+            told["several"] = [
+                [short(w), *points(x[None, :2], self.origin), *triangle(P[:2, :2])]
+                for w, (x, P) in several
+            ]
         return told
 
     def _linearised(self, view: View) -> dict[str, Any]:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ekfsim.filters.belief import parts
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import cone_halfwidth, outline
 from ekfsim.views.playback.view import View
@@ -18,6 +19,9 @@ ALARM = Pen(
 )  # either of them, while the truth is outside of it
 GHOST = Pen(ansi("#8A8A8A"), '"', on=1, off=1)
 TRUE_WAY = Pen(ansi("#8A8A8A"), "~", on=1, off=4)
+HEAVY = Pen(ansi("#CC79A7"), "`")  # hypotheses
+LIGHT = Pen(ansi("#CC79A7"), "`", on=1, off=2)
+EVEN, LABELLED = 0.5, 0.05  # weights from which a hypothesis is drawn whole, and told
 CONE_LENGTH = 0.25  # of the shorter side of the picture
 
 
@@ -39,6 +43,7 @@ def draw_uncertainty(canvas: Canvas, view: View, probability: float) -> list[Ite
     ellipse = ALARM if stands.outside_ellipse else ELLIPSE
     cone = ALARM if stands.outside_cone else CONE
     canvas.polyline(outline(mean[:2], P[:2, :2], probability), ellipse)
+    several = _draw_hypotheses(canvas, view, probability)
     _draw_cone(canvas, mean, half, cone)
     round_, edges = ("*", "'") if canvas.ascii else ("⢎⡱", "⡠⠊")
     size = Item(round_, f"{100 * probability:g} % ellipse", ELLIPSE.colour)
@@ -46,8 +51,24 @@ def draw_uncertainty(canvas: Canvas, view: View, probability: float) -> list[Ite
     return [
         _warned("ellipse", canvas.ascii) if stands.outside_ellipse else size,
         _warned("cone", canvas.ascii) if stands.outside_cone else opening,
+        *several,
         *ghost,
     ]
+
+
+def _draw_hypotheses(canvas: Canvas, view: View, probability: float) -> list[Item]:
+    """The ellipses of a belief that is several Gaussians, the lighter the more broken, with the
+    weights of those that matter.
+    """
+    several = parts(view.belief, view.layout)
+    for w, (x, P) in several:
+        rim = outline(x[:2], P[:2, :2], probability)
+        canvas.polyline(rim, HEAVY if w >= EVEN else LIGHT)
+        if w >= LABELLED:
+            top = rim[rim[:, 1].argmax()]
+            canvas.text(top, f"{w:.2f}", HEAVY.colour)
+    sample = "``" if canvas.ascii else "⢎⡱"
+    return [Item(sample, "hypotheses, with weights", HEAVY.colour)] if several else []
 
 
 def _warned(what: str, ascii: bool) -> Item:

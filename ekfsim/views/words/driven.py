@@ -10,6 +10,7 @@ from ekfsim.models.protocols import Quantity
 from ekfsim.records import Control, Reading
 from ekfsim.scene import Scene
 from ekfsim.views.playback.view import View
+from ekfsim.views.words.beams.hypotheses import hypotheses
 from ekfsim.views.words.beams.told import doubts, expected_wall
 from ekfsim.views.words.long_form import SHORT, Form
 from ekfsim.views.words.numbers import (
@@ -104,6 +105,7 @@ def revised(view: View, scene: Scene, probability: float, form: Form) -> str:
         + (_gain(view, given.sensor.outputs, c.K, by("gain")) if used else "")
         + trusted(c, scene, form)
         + rest(c)
+        + (hypotheses(view.step) if used else "")
         + f"Revised state estimate: {state(x, view.layout)}{by('revised')}\n"
         + f"Revised covariance matrix is:{by('revised_covariance')}\n{matrix(P)}"
         + _beside_truth(view, probability)

@@ -11,6 +11,7 @@ from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.playback.view import View
 from ekfsim.views.words import driven as driven_narrative
+from ekfsim.views.words.beams.hypotheses import hypotheses
 from ekfsim.views.words.beams.told import doubts, edge_of, expected_wall
 from ekfsim.views.words.driven import REFUSED
 from ekfsim.views.words.long_form import SHORT, Form, LongForm
@@ -143,6 +144,7 @@ def _update(view: View, scene: Scene, probability: float, form: Form) -> str:
         )
         + trusted(c, scene, form)
         + rest(c)
+        + (hypotheses(step) if used else "")
         + f"Revised state estimate: (x, y, theta) = {pose(x.tolist())}{by('revised')}\n"
         + f"Revised covariance matrix is:{by('revised_covariance')}\n{matrix(P)}"
         + uncertainty(view.pose, probability)

@@ -51,6 +51,12 @@ def opening(scene: Scene) -> str:
         told.append(f"The filter {scene.filter}: {most}{scene.tuning.particles} particles")
     if scene.world.told.start_unknown:
         told.append(NO_IDEA)
+    if reads(scene.filter, "hypotheses"):
+        told.append(
+            f"The filter {scene.filter}: {scene.tuning.hypotheses} hypotheses at most; it is "
+            "judged by the mean and covariance of all, and a reading's numbers are those of the "
+            "heaviest"
+        )
     if scene.gate is not None and scene.filter in WEIGHING:
         told.append(BOTH)
     if scene.world.perfect_beam and scene.filter in LINEARISED:

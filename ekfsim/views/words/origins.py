@@ -76,6 +76,14 @@ BY_FILTER: dict[str, Origins] = {
         jacobians="",
         S="the spread of the sigma points' readings, which hold the noise of R",
     ),
+    "mhekf": Origins(
+        state="the mean of all hypotheses, each moved by itself",
+        covariance="the spread of all hypotheses",
+        predicted="h(x) of the hypothesis that is heaviest after the reading",
+        revised="the mean of all hypotheses, each revised by its own wall",
+        revised_covariance="the spread of all hypotheses",
+        linear=False,
+    ),
     "pf": Origins(
         state="the mean of the particles, each moved with a noise of its own",
         covariance="the spread of the particles",

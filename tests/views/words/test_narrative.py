@@ -461,7 +461,9 @@ def test_no_filter_is_given_the_equations_of_another(filter):
         == (tangents or at_estimate)
     )
     assert ("(eq 4: f(x, u))" in text) == ("(eq 8: h(x))" in text) == at_estimate
-    assert ("(eq 10: x + K r)" in text) == (filter not in ("iekf", "pf", "amcl", "huber", "pdaf"))
+    assert ("(eq 10: x + K r)" in text) == (
+        filter not in ("iekf", "pf", "amcl", "huber", "pdaf", "mhekf")
+    )
     assert ("J_u P_u J_u' is:" in text) == (filter not in ("pf", "amcl", "ukf-augmented"))
     assert ("x0 the first state estimate" in text) == (filter == "kf")
     assert ("x0 on the nominal trajectory" in text) == (filter == "kf-nominal")

@@ -21,6 +21,7 @@ function legend(place) {
         ["second", "line", filter],
         ["second reference", filter.mark, filter],
       ]),
+    [any(belief => belief.several), "hypotheses, by weight", ["hypothesis", "line"]],
     [any(belief => belief.crowd), "particles", ["particle", "dot"]],
     [views.some(view => view.truth), "truth", ["true-heading", "line"], ["truth", "dot"]],
     [views.some(view => view.truth), "true way", ["true-path", "line"]],

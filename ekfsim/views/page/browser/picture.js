@@ -205,7 +205,20 @@ class Picture {
     this.line("shift-hit", "hit", moved, false, "K");
     this.line("ellipse", off ? "ellipse wrong" : "ellipse", oval, true, "P");
     this.line("ghost", "ghost", old ? outline(old, was, k) : [], true);
+    this.several((shown && belief.several) || [], k);
     this.mark("crowd", "particle", "dot", (shown && belief.crowd) || []);
+  }
+
+  // The ellipses of a belief of several Gaussians, as bold as each is heavy.
+  several(parts, k) {
+    for (let i = 0; i < parts.length || this.parts.has("hypothesis" + i); i++) {
+      const [weight, x, y, xx, xy, yy] = parts[i] ?? [];
+      const oval = parts[i] ? outline([x, y], [[xx, xy], [xy, yy]], k) : [];
+      const part = this.line("hypothesis" + i, "hypothesis", oval, true);
+      part.style.opacity = 0.25 + 0.75 * (weight ?? 0);
+      part.replaceChildren();
+      if (parts[i]) part.appendChild(element("title")).textContent = `weight ${weight.toFixed(3)}`;
+    }
   }
 
   reading(seen) {

@@ -5,5 +5,6 @@ shape.py    where the belief of a view is in the plane, found once for all Axes
 warned.py   an area in its own colour, or in that of a warning while the truth is outside
 ghost.py    the belief before this view's
 ways.py     where the robot truly was, and where it would be by odometry alone
+hypotheses.py  the ellipses of a belief that is several Gaussians
 others.py   the filters that watch beside the first
 """

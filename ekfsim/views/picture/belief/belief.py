@@ -6,7 +6,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ekfsim.filters.belief import Particles
+from ekfsim.filters.belief import Particles, parts
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import conditioned, outline
 from ekfsim.views.picture.artists import (
@@ -33,6 +33,7 @@ from ekfsim.views.picture.artists import (
     sector,
 )
 from ekfsim.views.picture.belief.ghost import GhostArtists
+from ekfsim.views.picture.belief.hypotheses import HypothesisArtists
 from ekfsim.views.picture.belief.shape import Shape
 from ekfsim.views.picture.belief.warned import EitherArea, alarm
 from ekfsim.views.picture.belief.ways import WayArtists
@@ -73,6 +74,7 @@ class BeliefArtists:
             [], [], s=[GRAIN], c=CROWD, alpha=0.45, linewidths=0, zorder=2.2, label="particles"
         )
         self.particles.set_gid("particles")
+        self.hypotheses = HypothesisArtists(axes)
         self.path = line(axes, "path", "path of the estimates", 3, BLUE, 1.2)
         self.path.set(marker="" if driven else ".", markersize=5)
         self.body = self._body = None
@@ -99,6 +101,7 @@ class BeliefArtists:
             scatter(self.particles, view.layout.pose(view.belief.states), view.belief.weights)
         elif not empty(self.particles):
             self.particles.set_offsets(NOWHERE)
+        self.hypotheses.show(parts(view.belief, view.layout), self._probability)
         place(self.path, shape.path)
         dot = "" if self._driven or len(shape.path) > DOTS else "."
         if self.path.get_marker() != dot:
@@ -142,6 +145,7 @@ class BeliefArtists:
         """What it shows of what comes and goes."""
         if self._true:
             yield self.alarms
+        yield self.hypotheses.ellipses
         yield from self.ghost.handles()
 
 
