@@ -8,6 +8,8 @@ from ekfsim.errors import UsageError
 from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.why.changes.beams import AMBIGUOUS
+from ekfsim.why.changes.driven import NO_GATE, suspects_of_drive
+from ekfsim.why.changes.groups import groups_of
 from ekfsim.why.changes.singles import singles
 from ekfsim.why.changes.suspects import FEW, Suspect, suspects_of
 from ekfsim.why.changes.told import ratios, starts
@@ -19,6 +21,11 @@ from ekfsim.why.trying.seeing import unseen
 from ekfsim.why.trying.trials import Heard, Trials
 
 BUDGET = 400  # replays of one run
+# of a driven robot, whose run has thousands of steps
+STEPS_REPLAYED = 3_000_000  # of all replays of one run
+LEAST_BUDGET = 40
+STEPS_OF_RUNS = 200_000  # of all of many runs, with each change
+FEWEST_DRIVEN = 20  # runs; of fewer nothing is to be learnt, and this one speaks for itself
 PARTED = 1e-6  # m, rad; two estimates that differ by more have parted
 PARTICLE_STEPS = 4_000_000  # of many runs' exact filter, in all
 FEWEST = 100  # runs that it is tried in all the same
@@ -32,17 +39,22 @@ def explain(
     runs : how many stand behind the shares; budget : how many times one run is played again at
     most; heard : is told how many of these are done, and the budget
     """
-    if not scene.commanded or scene.log is not None:
-        raise UsageError(f"{scene.commands_source}: why explains runs of commands; this is none")
+    if scene.log is not None:
+        raise UsageError(f"{scene.commands_source}: why explains runs, and no recorded logs")
     steps = tuple(Trials.first(scene))
+    if not scene.commanded:  # its runs are long
+        budget = min(budget, max(LEAST_BUDGET, STEPS_REPLAYED // len(steps)))
+        runs = min(runs, STEPS_OF_RUNS // len(steps))
+        runs = runs if runs >= FEWEST_DRIVEN else 0
     trials = Trials(scene, steps, budget, heard)
     was = trials.was
     if was.outcome == "consistent":
-        seen = Mechanism.NO_DIRECTION_SEEN if unseen(scene, steps) else None
+        blind = scene.commanded and unseen(scene, steps)
+        seen = Mechanism.NO_DIRECTION_SEEN if blind else None
         return Explanation(
             scene, was.outcome, None, mechanism=seen, budget=budget, lost_steps=steps
         )
-    suspects = suspects_of(scene, steps)
+    suspects = suspects_of(scene, steps) if scene.commanded else suspects_of_drive(scene)
     _try_all(scene, suspects, trials)
     few = max(min(runs, FEWEST), min(runs, PARTICLE_STEPS // (FEW * len(steps))))
     guilty, shares = named(
@@ -84,13 +96,17 @@ def _try_all(scene: Scene, suspects: Sequence[Suspect], trials: Trials) -> None:
         for one in (suspect.change, *suspect.members)
         if one.kind != "reading"
     ]
-    others = [*ratios(scene.world), *starts(scene.world), AMBIGUOUS]
+    others = [*starts(scene.world)]
+    others += [*ratios(scene.world), AMBIGUOUS] if scene.commanded else [NO_GATE]
     names = {(one.kind, one.name) for one in classes}
     classes += [one for one in others if (one.kind, one.name) not in names]
     try:
         for change in classes:
             trials.alone(change)
-        trials.each(singles([step.entry for step in trials.steps]))
+        if scene.commanded:
+            trials.each(singles([step.entry for step in trials.steps]))
+        else:
+            trials.groups(groups_of(trials.steps, scene.world.robot))
     except SpentError:
         pass
 

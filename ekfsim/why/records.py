@@ -12,6 +12,7 @@ from ekfsim.shown import Shown
 
 Kind = Literal[
     "noise",  # a told number of the noise made true
+    "number",  # any other number that is told of a robot or an instrument
     "start",  # the told start
     "sigma",  # how sure the filter is told to be of it
     "map",  # something of the told map
@@ -48,6 +49,16 @@ class Mechanism(Enum):
     REPEATED_READINGS = "repeated readings"
     SHORT_RETURNS = "short returns"
     CLOSE_TO_THE_WALL = "close to the wall"
+    # of robots that are driven
+    SENSOR_OVERTRUSTED = "sensor overtrusted"
+    SENSOR_DISTRUSTED = "sensor distrusted"
+    SENSOR_BIAS = "sensor bias"
+    OUTLIERS = "outliers"
+    LATE_READINGS = "late readings"
+    MOTION_BIAS = "motion bias"
+    WRONG_ROBOT = "wrong numbers of the robot"
+    WRONG_SENSOR = "wrong numbers of a sensor"
+    WRONG_EQUATIONS = "wrong equations"
     NO_DIRECTION_SEEN = "no direction is seen"  # of a run that did not diverge
 
 

@@ -8,6 +8,7 @@ from ekfsim.world import BOUNDARY
 
 PLURALS: dict[Kind, str] = {
     "noise": "told noises, each made true",
+    "number": "told numbers, each made true",
     "start": "told starts, each made true",
     "sigma": "told sigmas of the start, each made true",
     "map": "things of the told map, each put right",
@@ -33,7 +34,7 @@ def put_right(change: Change) -> str:
     """
     name, deed = named(change), change.told.partition(",")[0]
     match change.kind:
-        case "noise" | "start" | "sigma":
+        case "noise" | "number" | "start" | "sigma":
             return f"with {name} made true"
         case "map":
             return f"with {name} put right"

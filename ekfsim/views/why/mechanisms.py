@@ -11,6 +11,7 @@ from ekfsim.filters.belief import posed
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.why.changes import joined, named
+from ekfsim.views.why.driven import because_driven
 from ekfsim.views.why.met import Met, called, met, told
 from ekfsim.views.words.numbers import length
 from ekfsim.why.records import Change, Explanation, Mechanism
@@ -36,6 +37,8 @@ FEW = 3  # things of the map that are told by name
 def because(explanation: Explanation, mechanism: Mechanism) -> str:
     """Why the run ended as it did, in a clause that begins a sentence."""
     scene, faults = explanation.scene, explanation.scene.world.faults
+    if not scene.commanded:
+        return because_driven(explanation, mechanism)
     match mechanism:
         case Mechanism.WRONG_WALL | Mechanism.LOOK_ALIKE_WALLS:
             return _wrong_wall(explanation, mechanism)

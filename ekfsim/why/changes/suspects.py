@@ -13,6 +13,7 @@ from ekfsim.why.records import Change, Mechanism, together
 HAS_NO_LINES = "pf"  # the filter that makes nothing linear
 PARTICLES = 10_000  # of one run's exact filter
 FEW = 1000  # of each of many runs'
+PARTED = ("noise", "number", "start", "map", "fault")  # kinds whose whole is made of its members
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Suspect:
     @property
     def has_parts(self) -> bool:
         """Whether the change is that of all members together."""
-        return len(self.members) > 1 and self.change.kind in ("noise", "start", "map", "fault")
+        return len(self.members) > 1 and self.change.kind in PARTED
 
     @property
     def in_many(self) -> Change:

@@ -2,10 +2,13 @@
 
 from collections.abc import Callable, Iterable, Sequence
 
+from ekfsim.geometry import Integers
 from ekfsim.localization import belief_of, filter_of, localize
-from ekfsim.records import Step
+from ekfsim.records import Entry, Step
 from ekfsim.scene import Scene
 from ekfsim.study.block import watched_along
+from ekfsim.why.changes.groups import Group, instants
+from ekfsim.why.changes.groups import abreast as groups_abreast
 from ekfsim.why.changes.singles import abreast, numbers
 from ekfsim.why.records import Change, Outcome, Tried
 from ekfsim.why.trying.crowd import outcomes
@@ -73,8 +76,22 @@ class Trials:
         if not some:
             return
         self._count(len(some))
-        scene, runs = self.scene, numbers(self.scene, len(some))
         entries = abreast([step.entry for step in self.steps], some)
+        self._side_by_side(some, entries, None)
+
+    def groups(self, groups: Sequence[Group]) -> None:
+        """Try groups of readings and of moves side by side: as many as the budget allows."""
+        some = groups[: max(self.budget - self.replays, 0)]
+        if some:
+            self._count(len(some))
+            entries = groups_abreast([step.entry for step in self.steps], some)
+            self._side_by_side([one.change for one in some], entries, instants(self.steps))
+
+    def _side_by_side(
+        self, some: Sequence[Change], entries: Iterable[Entry], at: Integers | None
+    ) -> None:
+        """at : (k,) the entry of each instant, where one may have several"""
+        scene, runs = self.scene, numbers(self.scene, len(some))
         steps = localize(
             entries, filter_of(scene, runs), belief_of(scene, runs), scene.guard,
             scene.world.layout,
@@ -84,6 +101,7 @@ class Trials:
         for row, change in reversed(list(enumerate(some))):
             outcome: Outcome = next(word for word in found if found[word][row])
             since = int(watched.lost_from[row])
+            since = since if at is None or since < 0 else int(at[since])
             self.tried.append(
                 Tried(
                     change, cured(self.was.outcome, outcome), float(watched.ends.nees.value[row]),
