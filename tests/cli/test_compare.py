@@ -129,8 +129,8 @@ def test_the_options_of_either_side_win_over_those_of_both():
             "--b guard=maybe: 'maybe' is not known here; write off, warn or skip",
         ),
         (
-            ["--b", "filter=oracle"],
-            f"--b filter oracle: there is no such filter; known: {', '.join(FILTERS)}, or one of "
+            ["--b", "filter=wizard"],
+            f"--b filter wizard: there is no such filter; known: {', '.join(FILTERS)}, or one of "
             "your own: FILE.py",
         ),
         (["--b", "gate=2"], "--b gate=2: "),
@@ -149,15 +149,15 @@ def test_what_cannot_be_compared_is_refused_in_a_line(place, args, line):
 
 def test_mistakes_in_a_file_of_a_comparison_are_told_at_their_place(place):
     (place / "compare.yaml").write_text(
-        "study: short.yaml\na: {gaurd: off}\nb: {filter: oracle, gate: [1]}\n"
+        "study: short.yaml\na: {gaurd: off}\nb: {filter: wizard, gate: [1]}\n"
     )
     ended = ekfsim("compare", "compare.yaml")
     assert ended.status == 2
     assert "compare.yaml:3:" in ended.err
-    (place / "compare.yaml").write_text("study: short.yaml\na: {gaurd: off}\nb: {filter: oracle}\n")
+    (place / "compare.yaml").write_text("study: short.yaml\na: {gaurd: off}\nb: {filter: wizard}\n")
     assert ekfsim("compare", "compare.yaml").err.splitlines() == [
         "compare.yaml:2:5: a: unknown key 'gaurd'; did you mean 'guard'?",
-        f"compare.yaml:3:13: b.filter: 'oracle' is no filter; known: {', '.join(FILTERS)}, or one "
+        f"compare.yaml:3:13: b.filter: 'wizard' is no filter; known: {', '.join(FILTERS)}, or one "
         "of your own: FILE.py",
     ]
 

@@ -148,10 +148,10 @@ def test_a_value_that_cannot_be_is_refused_by_name(place, option, value):
 
 
 def test_an_unknown_filter_is_told_with_the_known_ones():
-    ended = ekfsim("run", "short.yaml", "--filter", "oracle")
+    ended = ekfsim("run", "short.yaml", "--filter", "wizard")
     assert (ended.status, ended.out) == (2, "")
     assert ended.err.startswith(
-        f"ekfsim: --filter oracle: there is no such filter; known: {', '.join(FILTERS)}"
+        f"ekfsim: --filter wizard: there is no such filter; known: {', '.join(FILTERS)}"
     )
 
 

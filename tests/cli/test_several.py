@@ -107,7 +107,7 @@ def test_files_of_several_filters_appear_together_or_not_at_all(place):
 @pytest.mark.parametrize(
     ("filters", "line"),
     [
-        ("ekf,oracle", f"--filter oracle: there is no such filter; known: {KNOWN}"),
+        ("ekf,wizard", f"--filter wizard: there is no such filter; known: {KNOWN}"),
         ("ekf,", f"--filter : there is no such filter; known: {KNOWN}"),
         ("ekf,ukf,ekf", "--filter ekf,ukf,ekf: 'ekf' stands twice; delete one"),
     ],

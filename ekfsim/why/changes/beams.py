@@ -171,7 +171,8 @@ class OfItsNoise(Sensor):
 
     def R(self, x: Array) -> Array:
         """(ratio · true range)² : (…, 1, 1)"""
-        R = np.broadcast_to(_beside(self.variance, x), x.shape[:-1])
+        variance = _beside(self.variance, x)  # a filter about a plan asks of one state for all runs
+        R = np.broadcast_to(variance, np.broadcast_shapes(variance.shape, x.shape[:-1]))
         return R[..., None, None]
 
     def of_run(self, run: tuple[int, ...]) -> Sensor:
