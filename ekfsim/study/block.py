@@ -65,7 +65,6 @@ def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
         some = max(MOST_PARTICLES // scene.tuning.particles, 1)
     if is_smoothed(scene.filter):
         some = min(some, max(MOST_KEPT // (length_of(scene) + 1), 1))
-    some = max(MOST_PARTICLES // scene.tuning.particles, 1) if scene.filter in CROWDS else runs
     return [(run, min(some, first + runs - run)) for run in range(first, first + runs, some)]
 
 

@@ -11,6 +11,7 @@ from ekfsim.filters.place import absolute, label, parts, stem, with_smoothed
 from ekfsim.localization import play
 from ekfsim.records import Step
 from ekfsim.smoothing import smooth, smoothed
+from ekfsim.study import block
 
 MEDIAN = 2.366  # of χ² with three degrees of freedom
 
@@ -59,3 +60,16 @@ def test_a_run_that_fails_is_smoothed_up_to_there() -> None:
     ]
     with pytest.raises(StepError, match="step 9"):
         next(coming)
+
+
+@pytest.mark.parametrize("name", ["ekf-smoothed", "pf-smoothed", "pf"])
+def test_what_is_kept_fits_the_memory(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The runs of a block come in portions, whose steps and particles are few enough; none is left
+    out.
+    """
+    monkeypatch.setattr(block, "MOST_KEPT", 31 * 10)  # the tour has 30 steps behind its start
+    monkeypatch.setattr(block, "MOST_PARTICLES", 1000 * 12)
+    scene = load_scene("tour").with_(filter=name)
+    portions = block.at_once(scene, 5, 25)
+    most = 12 if name == "pf" else 10
+    assert portions == [(5 + k, min(most, 25 - k)) for k in range(0, 25, most)]
