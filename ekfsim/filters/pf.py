@@ -64,7 +64,10 @@ class PF:
         _, F, G, M, Q = motion.linearize(crowd.mean, u)
         each = u[..., None, :]
         noise = self._normals(M, crowd.mean)
-        states = motion.f(crowd.states, each) + np.matvec(motion.G(crowd.states, each), noise)
+        G_each = motion.G(crowd.states, each)
+        states = motion.f(crowd.states, each) + sum(
+            G_each[..., j] * noise[..., j, None] for j in range(noise.shape[-1])
+        )
         if np.ndim(Q):
             states = states + self._normals(np.asarray(Q), crowd.mean)
         return self._summed(wrapped(states, self.headings), crowd.weights), Prediction(F, G)
@@ -187,11 +190,12 @@ class PF:
         (…, n)
         """
         m = covariance.shape[-1]
-        drawn = np.stack(
-            [generator.standard_normal((self.count, m)) for generator in self.generators]
-        )
+        drawn = np.empty((len(self.generators), self.count, m))
+        for generator, of_run in zip(self.generators, drawn, strict=True):
+            generator.standard_normal(out=of_run)
         drawn = drawn.reshape(*x.shape[:-1], self.count, m)
-        noise: Array = np.matvec(square_root(covariance)[..., None, :, :], drawn)
+        # each column of L by each number drawn; a product of matrices, for there are many
+        noise: Array = (square_root(covariance) @ drawn.mT).mT
         return noise
 
     def _uniforms(self, x: Array) -> Array:
