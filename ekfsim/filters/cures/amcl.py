@@ -5,9 +5,9 @@ them drawn anew from anywhere when readings cannot be explained.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 
 import numpy as np
 
@@ -92,18 +92,16 @@ class Roaming(Particles):
             weights.reshape(*axes, p), self.number, self.slow, self.fast,
         )  # fmt: skip
 
-    def one(self, row: int) -> "Roaming":
-        """The crowd of one run, without those that are none."""
-        n, p = self.mean.shape[-1], int(self.number.reshape(-1)[row])
-        return Roaming(
-            self.mean.reshape(-1, n)[row],
-            self.covariance.reshape(-1, n, n)[row],
-            self.states.reshape(-1, *self.states.shape[-2:])[row, :p],
-            self.weights.reshape(-1, self.weights.shape[-1])[row, :p],
-            self.number.reshape(-1)[row],
-            self.slow.reshape(-1)[row],
-            self.fast.reshape(-1)[row],
-        )
+
+class Source(NamedTuple):
+    """What the particles of one run are drawn from."""
+
+    ends: Array  # (p,) the weights laid end to end
+    mean: Array  # (n,)
+    away: Array  # (p, n) where the particles are from the mean
+    L: Array  # (n, n) the root of their covariance
+    wide: float  # the largest of their standard deviations, in widths of the widest kernel
+    astray: float  # the share that is drawn from anywhere
 
 
 @dataclass(frozen=True)
@@ -215,9 +213,10 @@ class AMCL(PF):
             return crowd
         axes, n = crowd.mean.shape[:-1], crowd.mean.shape[-1]
         N, number = math.prod(axes), crowd.number.reshape(-1).copy()
+        rows = np.flatnonzero(anew)
         drawn = dict[int, Array]()
-        for row in np.flatnonzero(anew).tolist():
-            drawn[row] = self._one_redrawn(self.generators[row], crowd.one(row))
+        for row, source in zip(rows.tolist(), self._sources(crowd, rows), strict=True):
+            drawn[row] = self._one_redrawn(self.generators[row], source)
             number[row] = len(drawn[row])
         p = int(number.max())
         states, weights = np.zeros((N, p, n)), np.zeros((N, p))
@@ -238,37 +237,52 @@ class AMCL(PF):
             x[rows[these]], P[rows[these]] = summed.mean[these], summed.covariance[these]
         return replace(made, mean=x.reshape(*axes, n), covariance=P.reshape(*axes, n, n))
 
-    def _one_redrawn(self, generator: "Generator", crowd: Roaming) -> Array:
+    def _sources(self, crowd: Roaming, rows: Integers) -> Iterator[Source]:
+        """What the particles of these runs are drawn from, one run after another."""
+        n, P = crowd.mean.shape[-1], crowd.covariance.reshape(-1, *crowd.covariance.shape[-2:])
+        mean, numbers = crowd.mean.reshape(-1, n)[rows], crowd.number.reshape(-1)[rows].tolist()
+        states = crowd.states.reshape(-1, *crowd.states.shape[-2:])[rows]
+        away = wrapped(states - mean[:, None], self.headings)
+        ends = np.cumsum(crowd.weights.reshape(-1, crowd.weights.shape[-1])[rows], axis=-1)
+        σ = np.sqrt(np.maximum(np.diagonal(P[rows], axis1=-2, axis2=-1), 0.0))
+        wide, astray = np.max(σ / (NEAR * self.bins(n)), axis=-1), crowd.astray.reshape(-1)[rows]
+        roots = square_root(P[rows])
+        for i, p in enumerate(numbers):
+            if not ends[i, p - 1] > 0:
+                weights = crowd.weights.reshape(-1, crowd.weights.shape[-1])[rows[i]]
+                first = int(np.argmin(weights > 0))
+                raise ValueError(f"particle {first + 1} has the weight {weights[first]}")
+            yield Source(
+                ends[i, :p], mean[i], away[i, :p], roots[i], float(wide[i]), float(astray[i])
+            )
+
+    def _one_redrawn(self, generator: "Generator", source: Source) -> Array:
         """The particles of one run : (p', n), all of one weight."""
-        ends = np.cumsum(crowd.weights)
-        if not ends[-1] > 0:
-            first = int(np.argmin(crowd.weights > 0))
-            raise ValueError(f"particle {first + 1} has the weight {crowd.weights[first]}")
-        n, σ = len(crowd.mean), np.sqrt(np.maximum(np.diagonal(crowd.covariance), 0.0))
-        away = wrapped(crowd.states - crowd.mean, self.headings)
-        L, bins, astray = square_root(crowd.covariance), self.bins(n), float(crowd.astray)
-        portions, found = list[Array](), list[Integers]()
-        wanted = FEWEST
-        while (there := sum(map(len, portions))) < min(wanted, self.count):
+        ends, n, bins = source.ends, len(source.mean), self.bins(len(source.mean))
+        portions, found = list[Array](), set[int]()
+        there, wanted = 0, FEWEST
+        while there < min(wanted, self.count):
             p = min(max(there, FEWEST), max(wanted, FEWEST) - there, self.count - there)
             b = (4 / ((n + 2) * p)) ** (1 / (n + 4))  # Silverman's rule, as in pf.py
-            b /= np.max(b * σ / (NEAR * bins), initial=1.0)
+            b /= max(b * source.wide, 1.0)
             u = (np.arange(p) + generator.random()) / p
             hit = np.minimum(np.searchsorted(ends, u * ends[-1], side="right"), len(ends) - 1)
-            drawn = crowd.mean + math.sqrt(1 - b * b) * away[hit]
-            drawn += b * generator.standard_normal((p, n)) @ L.T
-            if astray > 0:
-                lost = generator.random(p) < astray
+            drawn = source.mean + math.sqrt(1 - b * b) * source.away[hit]
+            drawn += b * generator.standard_normal((p, n)) @ source.L.T
+            if source.astray > 0:
+                lost = generator.random(p) < source.astray
                 assert self.anywhere is not None
                 drawn[lost] = self.anywhere(generator, int(np.count_nonzero(lost)))
             portions.append(drawn)
-            found.append(cells(drawn, bins))
-            wanted = enough(len(np.unique(np.concatenate(found))))
+            found.update(cells(drawn, bins).tolist())
+            there, wanted = there + p, enough(len(found))
         return wrapped(np.concatenate(portions), self.headings)
 
     def bins(self, n: int) -> Array:
         """How wide a bin is in each of n entries of the state : (n,)"""
-        return np.where(np.isin(np.arange(n), self.headings), BIN_ANGLE, BIN)
+        widths = np.full(n, BIN)
+        widths[list(self.headings)] = BIN_ANGLE
+        return widths
 
 
 def enough(k: int) -> int:
