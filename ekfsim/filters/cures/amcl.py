@@ -213,10 +213,10 @@ class AMCL(PF):
             return crowd
         axes, n = crowd.mean.shape[:-1], crowd.mean.shape[-1]
         N, number = math.prod(axes), crowd.number.reshape(-1).copy()
-        rows = np.flatnonzero(anew)
+        rows, bins = np.flatnonzero(anew), self.bins(n)
         drawn = dict[int, Array]()
         for row, source in zip(rows.tolist(), self._sources(crowd, rows), strict=True):
-            drawn[row] = self._one_redrawn(self.generators[row], source)
+            drawn[row] = self._one_redrawn(self.generators[row], source, bins)
             number[row] = len(drawn[row])
         p = int(number.max())
         states, weights = np.zeros((N, p, n)), np.zeros((N, p))
@@ -226,6 +226,7 @@ class AMCL(PF):
         for row, of_run in drawn.items():
             states[row], states[row, : len(of_run)] = of_run[0], of_run
             weights[row], weights[row, : len(of_run)] = 0.0, 1 / len(of_run)
+        states = wrapped(states, self.headings)
         made = Roaming(
             crowd.mean, crowd.covariance, states.reshape(*axes, p, n), weights.reshape(*axes, p),
             number.reshape(axes), crowd.slow, crowd.fast,
@@ -256,9 +257,9 @@ class AMCL(PF):
                 ends[i, :p], mean[i], away[i, :p], roots[i], float(wide[i]), float(astray[i])
             )
 
-    def _one_redrawn(self, generator: "Generator", source: Source) -> Array:
-        """The particles of one run : (p', n), all of one weight."""
-        ends, n, bins = source.ends, len(source.mean), self.bins(len(source.mean))
+    def _one_redrawn(self, generator: "Generator", source: Source, bins: Array) -> Array:
+        """The particles of one run : (p', n), all of one weight; their headings are not wrapped."""
+        ends, n = source.ends, len(source.mean)
         portions, found = list[Array](), set[int]()
         there, wanted = 0, FEWEST
         while there < min(wanted, self.count):
@@ -276,7 +277,7 @@ class AMCL(PF):
             portions.append(drawn)
             found.update(cells(drawn, bins).tolist())
             there, wanted = there + p, enough(len(found))
-        return wrapped(np.concatenate(portions), self.headings)
+        return np.concatenate(portions)
 
     def bins(self, n: int) -> Array:
         """How wide a bin is in each of n entries of the state : (n,)"""
@@ -300,10 +301,9 @@ def enough(k: int) -> int:
 
 def cells(states: Array, bins: Array) -> Integers:
     """In which bin each of the particles (p, n) lies, as one number : (p,)"""
-    numbers = np.floor(states / bins).astype(np.int64)
-    number: Integers = numbers[:, 0]
-    for i in range(1, numbers.shape[1]):
-        number = MIXED * number + numbers[:, i]  # may overflow: it only tells bins apart
+    digits = np.floor(states / bins).astype(np.int64)
+    # may overflow: it only tells bins apart
+    number: Integers = digits @ np.multiply.accumulate(np.full(len(bins), MIXED))
     return number
 
 
