@@ -47,7 +47,9 @@ def main() -> None:
             times = [(timed(theirs, 1), timed(ours, 1)) for _ in range(3 if given.quick else 9)]
             it, us = (median(column) for column in zip(*times, strict=True))
             ratio = median(b / a for a, b in times)
-            print(f"{name:8s} {beside:10s} {runs:6d} {it:7.2f}s {us:7.2f}s {ratio:5.2f} {reach:5.2f}")
+            print(
+                f"{name:8s} {beside:10s} {runs:6d} {it:7.2f}s {us:7.2f}s {ratio:5.2f} {reach:5.2f}"
+            )
 
 
 if __name__ == "__main__":

@@ -35,6 +35,8 @@ UNEXPLAINED = 1e-3  # a reading that is less probable than this is not wholly ex
 SLOW, FAST = 0.01, 0.5  # how quickly the two averages of Table 8.3 follow
 NEAR = 3  # bins: σ of the kernel that parts particles, at most
 
+ONE, NOWHERE = np.ones(1), np.zeros((1, 1))  # of a Gaussian: one particle, at its mean
+
 Groups = list[tuple[Integers, int]]  # the rows of runs, and how many particles are theirs
 
 
@@ -102,6 +104,7 @@ class Source(NamedTuple):
     L: Array  # (n, n) the root of their covariance
     wide: float  # the largest of their standard deviations, in widths of the widest kernel
     astray: float  # the share that is drawn from anywhere
+    b: float | None = None  # how wide the kernel is; None: by how many are drawn
 
 
 @dataclass(frozen=True)
@@ -197,15 +200,30 @@ class AMCL(PF):
         return PF(generators, self.gate, self.headings, count)
 
     def _crowd(self, belief: Belief) -> Roaming:
-        """The belief as a crowd whose number may vary."""
+        """The belief as a crowd whose number may vary; of a Gaussian as many are drawn as the bins
+        ask for, and they stand for its own mean and covariance.
+        """
         if isinstance(belief, Roaming):
             return belief
-        plain = super()._crowd(belief)
-        axes = plain.mean.shape[:-1]
-        return Roaming(
-            plain.mean, plain.covariance, plain.states, plain.weights,
-            np.full(axes, plain.weights.shape[-1]), np.ones(axes), np.ones(axes),
-        )  # fmt: skip
+        axes, n = belief.mean.shape[:-1], belief.mean.shape[-1]
+        if isinstance(belief, Particles):
+            x, P, states, weights = *belief, belief.states, belief.weights
+            number = np.full(axes, weights.shape[-1])
+        else:
+            (x, P), bins = belief, self.bins(n)
+            roots = square_root(P).reshape(-1, n, n)
+            drawn = [
+                self._one_drawn(generator, Source(ONE, mean, NOWHERE, L, 0.0, 0.0, 1.0), bins)
+                for generator, mean, L in zip(self.generators, x.reshape(-1, n), roots, strict=True)
+            ]
+            number = np.array([len(of_run) for of_run in drawn]).reshape(axes)
+            p = int(number.max())
+            states = np.stack(
+                [of_run[np.minimum(np.arange(p), len(of_run) - 1)] for of_run in drawn]
+            )
+            states = wrapped(states, self.headings).reshape(*axes, p, n)
+            weights = (np.arange(p) < number[..., None]) / number[..., None]
+        return Roaming(x, P, states, weights, number, np.ones(axes), np.ones(axes))
 
     def _redrawn(self, crowd: Roaming, anew: Booleans) -> Roaming:
         """The crowd, drawn anew in those runs : (…), one by one: each draws as many as it needs."""
@@ -216,7 +234,7 @@ class AMCL(PF):
         rows, bins = np.flatnonzero(anew), self.bins(n)
         drawn = dict[int, Array]()
         for row, source in zip(rows.tolist(), self._sources(crowd, rows), strict=True):
-            drawn[row] = self._one_redrawn(self.generators[row], source, bins)
+            drawn[row] = self._one_drawn(self.generators[row], source, bins)
             number[row] = len(drawn[row])
         p = int(number.max())
         states, weights = np.zeros((N, p, n)), np.zeros((N, p))
@@ -257,15 +275,19 @@ class AMCL(PF):
                 ends[i, :p], mean[i], away[i, :p], roots[i], float(wide[i]), float(astray[i])
             )
 
-    def _one_redrawn(self, generator: "Generator", source: Source, bins: Array) -> Array:
-        """The particles of one run : (p', n), all of one weight; their headings are not wrapped."""
+    def _one_drawn(self, generator: "Generator", source: Source, bins: Array) -> Array:
+        """Particles of one run : (p', n), as many as it needs, all of one weight, their headings not
+        wrapped.
+        """
         ends, n = source.ends, len(source.mean)
         portions, found = list[Array](), set[int]()
         there, wanted = 0, FEWEST
         while there < min(wanted, self.count):
             p = min(max(there, FEWEST), max(wanted, FEWEST) - there, self.count - there)
-            b = (4 / ((n + 2) * p)) ** (1 / (n + 4))  # Silverman's rule, as in pf.py
-            b /= max(b * source.wide, 1.0)
+            b = source.b
+            if b is None:
+                b = (4 / ((n + 2) * p)) ** (1 / (n + 4))  # Silverman's rule, as in pf.py
+                b /= max(b * source.wide, 1.0)
             u = (np.arange(p) + generator.random()) / p
             hit = np.minimum(np.searchsorted(ends, u * ends[-1], side="right"), len(ends) - 1)
             drawn = source.mean + math.sqrt(1 - b * b) * source.away[hit]

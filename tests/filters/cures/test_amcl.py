@@ -148,7 +148,7 @@ def test_a_first_belief_is_a_crowd_that_stands_for_itself():
     first, _, motion = classroom(np.random.default_rng(2))
     moved, made = begun("amcl", first).predict(first, motion, np.zeros(2))
     assert moved.mean == pytest.approx(first.mean, abs=0.05)
-    assert int(moved.number) == 1000
+    assert 100 <= int(moved.number) < 1000
     assert pytest.approx(np.eye(3)) == made.F
 
 
