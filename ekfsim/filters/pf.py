@@ -99,16 +99,26 @@ class PF:
         ), told
 
     def _weighed(
-        self, crowd: Particles, sensor: Sensor, z: Array, skip: Booleans | bool
+        self,
+        crowd: Particles,
+        sensor: Sensor,
+        z: Array,
+        skip: Booleans | bool,
+        about: Array | None = None,
     ) -> tuple[Array, Booleans, Correction]:
         """The weights after a reading : (…, p), where it could be used : (…, 1), and what is told
         of it.
+
+        about : (…, n, n), the covariance of the states about its own that a particle stands for,
+        which makes the reading H C Hᵀ less sure; None: for none but its own
         """
-        h, _, R = sensor.linearize(crowd.states)
+        h, H, R = sensor.linearize(crowd.states)
         R = np.broadcast_to(R, (*h.shape, h.shape[-1]))
         told, spread = self._told(crowd, sensor, z, h, R, skip)
         share = KEPT / self._number(crowd)
         grain = spread * (share ** (2 / min(h.shape[-1], crowd.mean.shape[-1])))[..., None]
+        if about is not None:
+            R = R + H @ about[..., None, :, :] @ H.mT
         log = _log_likelihood(sensor.residual(z[..., None, :], h), R, grain)
         seen = np.where(crowd.weights > 0, log, -np.inf)
         best = seen.max(axis=-1, keepdims=True)
@@ -161,16 +171,14 @@ class PF:
         """Particles of equal weight in place of a weighted crowd : (…, p, n), no two of them the
         same.
 
-        x' = x̄ + √(1 − b²) (x − x̄) + b e      e ~ N(0, P)
-        b = (4/((n + 2) p))^(1/(n + 4)), Silverman's rule
+        x' = x̄ + √(1 − b²) (x − x̄) + b e      e ~ N(0, P)      b by Silverman's rule
 
         Copies alone would leave few different particles after a sharp reading. A kernel of the
         crowd's own shape parts them; moved towards the mean by as much, they keep mean and
         covariance: Musso, Oudjane & Le Gland, 2001, and Liu & West, 2001, in: Doucet et al.,
         Sequential Monte Carlo Methods in Practice, chapters 12 and 10.
         """
-        p, n = crowd.states.shape[-2:]
-        b = (4 / ((n + 2) * p)) ** (1 / (n + 4))
+        b = float(silverman(*crowd.states.shape[-2:]))
         hit = systematic(crowd.weights, self._uniforms(crowd.mean))
         x_mean = crowd.mean[..., None, :]
         away = wrapped(
@@ -201,6 +209,14 @@ class PF:
     def _uniforms(self, x: Array) -> Array:
         """One number in [0, 1) for each run : (…)"""
         return np.array([generator.random() for generator in self.generators]).reshape(x.shape[:-1])
+
+
+def silverman(p: Integers | int, n: int) -> Array:
+    """b = (4/((n + 2) p))^(1/(n + 4)) : (…), how wide a kernel parts p particles of n dimensions,
+    by the standard deviations of the crowd: Silverman's rule. p : (…)
+    """
+    b: Array = (4 / ((n + 2) * np.asarray(p, float))) ** (1 / (n + 4))
+    return b
 
 
 def systematic(weights: Array, u: Array) -> Integers:

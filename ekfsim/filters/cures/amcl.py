@@ -16,7 +16,7 @@ from ekfsim.filters.arithmetic.algebra import wrapped
 from ekfsim.filters.arithmetic.chi_square import survival
 from ekfsim.filters.arithmetic.square_root import square_root
 from ekfsim.filters.belief import Belief, Correction, Particles, Prediction, Refused
-from ekfsim.filters.pf import PF
+from ekfsim.filters.pf import PF, silverman
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.protocols import Motion, Sensor
@@ -33,7 +33,7 @@ KLD = 0.05  # how far the crowd may be from what it stands for, in nats …
 Z_99 = 2.3263478740408408  # … in 99 % of draws: the normal quantile
 UNEXPLAINED = 1e-3  # a reading that is less probable than this is not wholly explained
 SLOW, FAST = 0.01, 0.5  # how quickly the two averages of Table 8.3 follow
-NEAR = 3  # bins: σ of the kernel that parts particles, at most
+NEAR = 1.5  # bins: σ of the kernel that parts particles, at most
 
 ONE, NOWHERE = np.ones(1), np.zeros((1, 1))  # of a Gaussian: one particle, at its mean
 
@@ -171,7 +171,8 @@ class AMCL(PF):
         groups = crowd.groups(self.count)
         for rows, p in groups:
             alike, of_them = crowd.part(rows, p), self._of(rows, p)
-            weights, were, told = of_them._weighed(alike, sensor, z[rows], skip[rows])
+            about = self._about(alike, crowd.number.reshape(N)[rows])
+            weights, were, told = of_them._weighed(alike, sensor, z[rows], skip[rows], about)
             used[rows] = were[..., 0]
             weighted = of_them._summed(alike.states, weights)
             x, P = np.where(were, weighted.mean, alike.mean), weighted.covariance
@@ -183,6 +184,23 @@ class AMCL(PF):
         counted = 1 / np.sum(seen.weights**2, axis=-1)
         few = (counted < seen.number / 2) | (seen.astray > 1 / self.count)
         return self._redrawn(seen, used.reshape(axes) & few), told
+
+    def _about(self, crowd: Particles, number: Integers) -> Array | None:
+        """C = b² P : (N, n, n), the covariance of the states that each particle stands for in
+        crowds so wide that their kernels are narrowed, 0 in all others; None where all are such.
+
+        Of a robot that may be anywhere no particle is as near to the truth as the beam is sharp.
+        Weighed as if it stood for itself alone, one of the wrong place would be taken for the
+        nearest.
+        """
+        n = crowd.mean.shape[-1]
+        b = silverman(number, n)
+        σ = np.sqrt(np.maximum(np.diagonal(crowd.covariance, axis1=-2, axis2=-1), 0.0))
+        wide = b * np.max(σ / (NEAR * self.bins(n)), axis=-1)
+        if not np.any(wide > 1):
+            return None
+        share = np.where(wide > 1, b / np.maximum(wide, 1.0), 0.0)
+        return np.square(share)[:, None, None] * crowd.covariance
 
     def _averaged(self, crowd: Roaming, used: Booleans, told: Correction, k: int) -> Roaming:
         """The crowd with its two averages after a reading of k numbers; what the gate refused was
@@ -276,8 +294,8 @@ class AMCL(PF):
             )
 
     def _one_drawn(self, generator: "Generator", source: Source, bins: Array) -> Array:
-        """Particles of one run : (p', n), as many as it needs, all of one weight, their headings not
-        wrapped.
+        """Particles of one run : (p', n), as many as it needs, all of one weight. Their headings
+        are not wrapped.
         """
         ends, n = source.ends, len(source.mean)
         portions, found = list[Array](), set[int]()
@@ -286,7 +304,7 @@ class AMCL(PF):
             p = min(max(there, FEWEST), max(wanted, FEWEST) - there, self.count - there)
             b = source.b
             if b is None:
-                b = (4 / ((n + 2) * p)) ** (1 / (n + 4))  # Silverman's rule, as in pf.py
+                b = float(silverman(p, n))
                 b /= max(b * source.wide, 1.0)
             u = (np.arange(p) + generator.random()) / p
             hit = np.minimum(np.searchsorted(ends, u * ends[-1], side="right"), len(ends) - 1)

@@ -14,6 +14,7 @@ from ekfsim.errors import InputError, UsageError
 from ekfsim.files.packaged import packaged
 from ekfsim.filters.belief import Gaussian, Particles, Refused
 from ekfsim.filters.cures.amcl import AMCL, FAST, KLD, SLOW, UNEXPLAINED, cells, enough, followed
+from ekfsim.filters.pf import PF
 from ekfsim.filters.protocol import Beginning
 from ekfsim.localization import belief_of, play
 from ekfsim.models.sensors.laser import Laser
@@ -145,11 +146,44 @@ def test_weights_that_say_nothing_are_an_error_not_a_draw(weight):
 
 
 def test_a_first_belief_is_a_crowd_that_stands_for_itself():
+    """Of as many particles as its bins ask for."""
     first, _, motion = classroom(np.random.default_rng(2))
-    moved, made = begun("amcl", first).predict(first, motion, np.zeros(2))
-    assert moved.mean == pytest.approx(first.mean, abs=0.05)
-    assert 100 <= int(moved.number) < 1000
-    assert pytest.approx(np.eye(3)) == made.F
+    numbers = []
+    for smaller in (1e-4, 0.03, 1.0):
+        start = Gaussian(first.mean, smaller * first.covariance)
+        moved, made = begun("amcl", start).predict(start, motion, np.zeros(2))
+        assert moved.mean == pytest.approx(first.mean, abs=0.05)
+        assert pytest.approx(np.eye(3)) == made.F
+        numbers.append(int(moved.number))
+    assert 100 == numbers[0] < numbers[1] < numbers[2] == 1000
+
+
+def test_a_sparse_particle_stands_for_those_about_it():
+    """Where the robot may be anywhere, R becomes R + H C Hᵀ, C being what parts copies: each
+    particle is weighed by the mean of what those about it say; and nothing is added of a crowd that
+    is dense."""
+    laser, z = Laser(ROOM, 0.0, 0.02), np.array([3.0])
+    filter = one(count=400)
+    generator = np.random.default_rng(7)
+    states = anywhere(generator, 400)
+    for σ, wide in ((None, True), (0.02, False)):
+        if σ is not None:
+            states = np.array([5.0, 4.0, 0.3]) + generator.normal(size=(400, 3)) * σ
+        alike = filter._summed(states[None], np.full((1, 400), 1 / 400))
+        C = filter._about(alike, np.array([400]))
+        assert (C is not None) == wide
+        if C is None:
+            continue
+        widths = np.sqrt(np.diagonal(C[0])) / filter.bins(3)
+        assert widths.max() == pytest.approx(1.5)
+        weights, _, _ = PF(filter.generators, count=400)._weighed(
+            alike, laser, z[None], np.array([False]), C
+        )
+        h, H, R = laser.linearize(states)
+        spread = np.var(h)
+        S = R[:, 0, 0] + (H @ C @ H.mT)[:, 0, 0] + spread * (10 / 400) ** 2
+        expected = norm.pdf(z, h[:, 0], np.sqrt(S))
+        assert weights[0] == pytest.approx(expected / expected.sum(), rel=1e-6)
 
 
 def lost_at_first(filter="amcl", count=4000):
