@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 Told = TypeVar("Told", Prediction, Correction)
 
 MIXED = 1_000_003  # more than there are bins along any axis
-FEWEST = 100  # particles, however sure they are
+FEWEST = 300  # particles, however sure they are
 BIN, BIN_ANGLE = 0.2, math.radians(5.0)  # m, rad: what KLD sampling counts as another place
 KLD = 0.05  # how far the crowd may be from what it stands for, in nats …
 Z_99 = 2.3263478740408408  # … in 99 % of draws: the normal quantile
@@ -307,9 +307,11 @@ class AMCL(PF):
                 b = float(silverman(p, n))
                 b /= max(b * source.wide, 1.0)
             u = (np.arange(p) + generator.random()) / p
-            hit = np.minimum(np.searchsorted(ends, u * ends[-1], side="right"), len(ends) - 1)
-            drawn = source.mean + math.sqrt(1 - b * b) * source.away[hit]
-            drawn += b * generator.standard_normal((p, n)) @ source.L.T
+            hit = np.searchsorted(ends, u * ends[-1], side="right")
+            # beyond the last end, by rounding, is the last particle
+            drawn = math.sqrt(1 - b * b) * source.away.take(hit, axis=0, mode="clip")
+            drawn = drawn + generator.standard_normal((p, n)) @ (b * source.L.T)
+            drawn += source.mean
             if source.astray > 0:
                 lost = generator.random(p) < source.astray
                 assert self.anywhere is not None
@@ -331,7 +333,7 @@ def enough(k: int) -> int:
     1)): Fox, 2003, eq. 7
 
     >>> enough(1), enough(10), enough(100)
-    (100, 217, 1347)
+    (300, 300, 1347)
     """
     if k <= 1:
         return FEWEST
