@@ -159,7 +159,7 @@ def test_a_first_belief_is_a_crowd_that_stands_for_itself():
     """Of as many particles as its bins ask for."""
     first, _, motion = classroom(np.random.default_rng(2))
     numbers = []
-    for smaller in (1e-4, 0.1, 1.0):
+    for smaller in (1e-4, 0.3, 1.0):
         start = Gaussian(first.mean, smaller * first.covariance)
         moved, made = begun("amcl", start).predict(start, motion, np.zeros(2))
         assert moved.mean == pytest.approx(first.mean, abs=0.05)
