@@ -2,6 +2,7 @@
 
     rts.py       Steps → the same Steps, smoothed: Rauch-Tung-Striebel
     passing.py   how much of what is learnt of a state is told to the one before a motion
+    shares.py    how honest a filter was at all steps of a run together
 
 The smoother asks no filter: what it needs stands in the Steps.
 """

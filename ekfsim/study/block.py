@@ -30,7 +30,8 @@ from ekfsim.study.tally import AtSteps, OfRuns, Tally, dtype_of
 from ekfsim.twins import Way, taken, taking, twinned
 
 MOST_PARTICLES = 2_000_000  # of all runs that are watched at once: they take some 400 bytes each
-MOST_KEPT = 1_000_000  # steps of all runs that are smoothed at once, at some 500 bytes each
+# of all steps and runs that are smoothed at once: entries of a covariance, at some 80 bytes each
+MOST_KEPT = 4_000_000
 MOST_STEPS = 1000  # of a longer run so many are told of, evenly spaced, and the last
 
 
@@ -64,7 +65,8 @@ def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
     if forward(scene.filter) in CROWDS:
         some = max(MOST_PARTICLES // scene.tuning.particles, 1)
     if is_smoothed(scene.filter):
-        some = min(some, max(MOST_KEPT // (length_of(scene) + 1), 1))
+        kept = (length_of(scene) + 1) * len(scene.world.layout.names) ** 2
+        some = min(some, max(MOST_KEPT // kept, 1))
     return [(run, min(some, first + runs - run)) for run in range(first, first + runs, some)]
 
 

@@ -12,3 +12,5 @@ def test_both_have_a_row(asked):
     rows = [line for line in said.out.splitlines() if line.startswith(("ekf  ", "ekf-smoothed "))]
     assert len(rows) == (4 if asked[0] == "study" else 2)
     assert ("Over all steps" in said.out) == (asked[0] == "study")
+    assert ("NEES above its χ² median, of all steps" in said.out) == (asked[0] == "run")
+    assert "differ from step" not in said.out

@@ -1,17 +1,21 @@
 """A filter and the same smoothed, side by side: in commands, and of a run that fails."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from ekfsim import load_scene
-from ekfsim.errors import StepError
+from ekfsim.errors import StepError, UsageError
 from ekfsim.filters.place import absolute, label, parts, stem, with_smoothed
 from ekfsim.localization import play
-from ekfsim.records import Step
+from ekfsim.records import Nees, Step
 from ekfsim.smoothing import smooth, smoothed
-from ekfsim.study import block
+from ekfsim.smoothing.shares import Shares
+from ekfsim.study.block import at_once
+from ekfsim.views.driving.course import Course
+from ekfsim.views.playback.playback import together
 
 MEDIAN = 2.366  # of χ² with three degrees of freedom
 
@@ -62,14 +66,38 @@ def test_a_run_that_fails_is_smoothed_up_to_there() -> None:
         next(coming)
 
 
-@pytest.mark.parametrize("name", ["ekf-smoothed", "pf-smoothed", "pf"])
-def test_what_is_kept_fits_the_memory(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The runs of a block come in portions, whose steps and particles are few enough; none is left
-    out.
-    """
-    monkeypatch.setattr(block, "MOST_KEPT", 31 * 10)  # the tour has 30 steps behind its start
-    monkeypatch.setattr(block, "MOST_PARTICLES", 1000 * 12)
-    scene = load_scene("tour").with_(filter=name)
-    portions = block.at_once(scene, 5, 25)
-    most = 12 if name == "pf" else 10
-    assert portions == [(5 + k, min(most, 25 - k)) for k in range(0, 25, most)]
+def test_runs_that_are_kept_or_of_particles_are_watched_in_portions() -> None:
+    """As many at once as the memory holds: of a filter that keeps nothing, all."""
+    scene = load_scene("tour")
+    assert at_once(scene, 0, 1024) == [(0, 1024)]
+    many = scene.with_("filter.particles", 10_000, filter="pf-smoothed")
+    assert at_once(many, 5, 1000)[:2] == [(5, 200), (205, 200)]
+    drive = load_scene("gnss").with_(filter="ekf-smoothed")
+    portions = at_once(drive, 0, 1024)
+    assert len(portions) > 10
+    assert sum(runs for _, runs in portions) == 1024
+
+
+def test_shares_count_what_is_judged() -> None:
+    """A certain belief says nothing; an impossible one is beyond every bound."""
+    shares, start = Shares(), next(play(load_scene("tour")))
+    for value, dof, impossible in ((0.0, 0, False), (2.3, 3, False), (2.4, 3, False),
+                                   (17.0, 3, False), (np.nan, 3, True)):  # fmt: skip
+        nees = Nees(np.array(value), np.array(dof), np.array(impossible))
+        shares.take(replace(start, nees=nees))
+    assert (shares.judged, shares.above, shares.lost) == (4, 3, 2)
+
+
+def test_nobody_drives_what_is_known_at_the_end() -> None:
+    """A filter that is smoothed waits for the last reading."""
+    with pytest.raises(UsageError, match="ekf-smoothed knows what it believes when"):
+        Course(load_scene("tour").with_(filter="ekf-smoothed"))
+
+
+def test_where_a_smoothed_filter_parts_is_not_told() -> None:
+    """It is meant to; between two filters it still is."""
+    scene = load_scene("tour")
+    names = "ekf", "ekf-smoothed", "iekf"
+    runs = [play(scene.with_(filter=name)) for name in names]
+    view = next(iter(together(runs[0], runs[1:], names)))
+    assert [apart.names for apart in view.apart] == [("ekf", "iekf")]

@@ -52,7 +52,7 @@ def filter_names() -> list[str]:
 
 def known_filters(schema: dict[str, Any]) -> None:
     """Let the schema list the filters, and say how a place of another is written."""
-    schema["anyOf"] = [{"enum": filter_names()}, {"pattern": PLACE}]
+    schema["anyOf"] = [{"enum": filter_names()}, {"pattern": PLACE}, {"pattern": "-smoothed$"}]
 
 
 def is_filter(name: str) -> bool:

@@ -12,6 +12,7 @@ from ekfsim.commands import Command, Expanded, Move, Sense, expand, first
 from ekfsim.diagnostics.summary import Summary
 from ekfsim.errors import StepError, UsageError
 from ekfsim.filters import FILTERS
+from ekfsim.filters.place import forward, is_smoothed, label
 from ekfsim.filters.protocol import Filter
 from ekfsim.filters.tuning import CROWDS
 from ekfsim.localization import advance, belief_of, filter_of
@@ -241,7 +242,14 @@ class Watch:
 
 
 def refuse_what_is_not_driven(scene: Scene) -> None:
-    """Raise UsageError where the robot of a scene obeys no commands."""
+    """Raise UsageError where the robot of a scene obeys no commands, or a filter waits for the end
+    of its run.
+    """
+    for name in (scene.filter, *scene.beside):
+        if is_smoothed(name):
+            wrong = f"{label(name)} knows what it believes when the run is over"
+            right = f"play what you have driven with --filter {label(forward(name))} --smooth"
+            raise UsageError(f"{scene.commands_source}: cannot be driven: {wrong}; {right}")
     if scene.log is not None:
         raise refusal(scene.commands_source, RECORDED)
     if not scene.commanded:

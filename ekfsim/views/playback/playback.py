@@ -9,6 +9,7 @@ from ekfsim.commands import Move, Untold
 from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.errors import StepError
 from ekfsim.filters.belief import Belief
+from ekfsim.filters.place import is_smoothed
 from ekfsim.models.layout import Layout
 from ekfsim.records import Control, Entry, Nees, Reading, Step
 from ekfsim.views.playback.kept import kept
@@ -76,11 +77,13 @@ def together(
 ) -> Iterator[View]:
     """Every view of a run, with what other filters make of the same entries.
 
-    names : of the filters, as the scene has them; told where they part
+    names : of the filters, as the scene has them; told where they part, but of a smoothed one,
+    which is meant to
     """
-    partings = [Parting(names[0], name) for name in names[1:]]
+    every = [None if is_smoothed(name) else Parting(names[0], name) for name in names[1:]]
+    partings = [parting for parting in every if parting is not None]
     first = views(kept(steps, [parting.take for parting in partings]))
-    held = itertools.zip_longest(others, partings)
+    held = itertools.zip_longest(others, every)
     beside = [views(each if p is None else kept(each, [p.hold])) for each, p in held]
     for view, *same in zip(first, *beside, strict=True):
         yield side_by_side(view, same, partings) if same else view

@@ -11,6 +11,7 @@ from ekfsim.filters.arithmetic.chi_square import band, quantile
 from ekfsim.filters.belief import Refused
 from ekfsim.records import Nees
 from ekfsim.scene import Scene
+from ekfsim.smoothing.shares import Shares
 from ekfsim.views.playback.parting import Apart
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.numbers import between, figure, number, turn
@@ -47,9 +48,11 @@ def conclude_all(
     summaries: Sequence[Summary],
     quiet: bool = False,
     parted: Sequence[Apart] = (),
+    shares: Sequence[Shares] = (),
 ) -> str:
     """The same where several filters watched:
     side by side, where they parted, and a verdict on each unless it is to be quiet.
+    shares : of the steps of each, where one is smoothed: at the last it is what it is smoothed from
     """
     if len(summaries) == 1:
         return conclude(summaries[0])
@@ -59,6 +62,7 @@ def conclude_all(
         f"{len(names)} filters side by side (RMSE in m, degrees):",
         *_table(names, summaries),
         *(apart.told for apart in parted),
+        *_on_the_way(names, shares),
     ]
     told = (
         f"{name}: {sentence(summary.evidence)}"
@@ -66,6 +70,18 @@ def conclude_all(
     )
     said = [*lines, *_cause(summaries)] if quiet else [*lines, "", *told, *_cause(summaries)]
     return "".join(f"{line}\n" for line in said)
+
+
+def _on_the_way(names: Sequence[str], shares: Sequence[Shares]) -> list[str]:
+    """How honest each filter was at all steps together, in a line."""
+    told = (
+        f"{name} {100 * share.above / share.judged:.0f} %"
+        + (f" ({share.lost} beyond 99.9 %)" if share.lost else "")
+        for name, share in zip(names, shares, strict=False)
+        if share.judged
+    )
+    joined = ", ".join(told)
+    return [f"NEES above its χ² median, of all steps (half is right): {joined}"] if joined else []
 
 
 def _cause(summaries: Sequence[Summary]) -> list[str]:

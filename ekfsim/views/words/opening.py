@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Any
 
 from ekfsim.filters.choice import kind_of
-from ekfsim.filters.place import label
+from ekfsim.filters.place import forward, label
 from ekfsim.filters.tuning import reads
 from ekfsim.models.sensors.mounted import Mount
 from ekfsim.provenance import told_in_a_line
@@ -47,7 +47,7 @@ def opening(scene: Scene) -> str:
     if remark := kind_of(scene.filter).remark:
         told.append(f"The filter {label(scene.filter)}: {remark}")
     if reads(scene.filter, "particles"):
-        most = "at most " if scene.filter == "amcl" else ""
+        most = "at most " if forward(scene.filter) == "amcl" else ""
         told.append(f"The filter {scene.filter}: {most}{scene.tuning.particles} particles")
     if scene.world.told.start_unknown:
         told.append(NO_IDEA)
@@ -57,9 +57,9 @@ def opening(scene: Scene) -> str:
             "judged by the mean and covariance of all, and a reading's numbers are those of the "
             "heaviest"
         )
-    if scene.gate is not None and scene.filter in WEIGHING:
+    if scene.gate is not None and forward(scene.filter) in WEIGHING:
         told.append(BOTH)
-    if scene.world.perfect_beam and scene.filter in LINEARISED:
+    if scene.world.perfect_beam and forward(scene.filter) in LINEARISED:
         told.append(PERFECT)
     if scene.reading != "corrected":
         told.append(_followed(scene))

@@ -3,6 +3,7 @@
 import re
 from dataclasses import dataclass, replace
 
+from ekfsim.filters.place import forward
 from ekfsim.scene import Scene
 from ekfsim.systems import system_of
 
@@ -108,8 +109,9 @@ A_FILE = Origins(
 
 def origins(scene: Scene) -> Origins:
     """Those of the filter that watches."""
-    own = BY_FILTER.get(scene.filter, A_FILE)
-    if system_of(scene.world.system).by_listing(scene.filter, scene.reading):
+    filter = forward(scene.filter)
+    own = BY_FILTER.get(filter, A_FILE)
+    if system_of(scene.world.system).by_listing(filter, scene.reading):
         before = "where the robot stood before the last motion"
         own = replace(own, predicted=f"h(x), x {before}", derivatives=f"H {before}")
     if scene.tuning.range_variance == "reading":

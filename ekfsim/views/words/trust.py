@@ -4,6 +4,7 @@ import math
 
 from ekfsim.filters.belief import Correction
 from ekfsim.filters.cures.huber import limit
+from ekfsim.filters.place import forward
 from ekfsim.scene import Scene
 from ekfsim.views.words.long_form import SHORT, Form
 from ekfsim.views.words.numbers import number
@@ -21,7 +22,7 @@ def trusted(c: Correction, scene: Scene, form: Form) -> str:
     """A line of its own; nothing of a filter that weighs no reading, or of one that is not used."""
     if c.trust is None or math.isnan(w := float(c.trust)):
         return ""
-    told = _weight(c, scene, w) if scene.filter == "huber" else _beta(w)
+    told = _weight(c, scene, w) if forward(scene.filter) == "huber" else _beta(w)
     origin = "" if form is SHORT else f"   ({_formula(c, scene)})"
     return f"{told}{origin}\n"
 
@@ -52,7 +53,7 @@ def _beta(β: float) -> str:
 def _formula(c: Correction, scene: Scene) -> str:
     numbers, own = len(c.innovation), scene.tuning
     R = "C_v" if scene.commanded else "R"
-    if scene.filter != "huber":
+    if forward(scene.filter) != "huber":
         power, unit = ("", "per m or rad") if numbers == 1 else (f"^{numbers}", "per m or rad each")
         if scene.commanded:
             unit = "per m"
