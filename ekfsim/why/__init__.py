@@ -2,6 +2,7 @@
 
 records.py     Change, Tried, Mechanism, Shares, Explanation: what is asked and what was found
 explaining.py  explain: the changes tried, the smallest set that cures, and its name
+recorded.py    explain_log: what a recorded log tells of its filter
 changes/       what can be put right, each alone; suspects: which mechanism each takes away
 trying/        a scene with changes → its Steps; one run within a budget, many runs side by side;
                which suspects it was, by both; the smallest set that cures

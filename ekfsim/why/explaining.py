@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ekfsim.errors import UsageError
 from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.why.changes.beams import AMBIGUOUS
@@ -40,7 +39,11 @@ def explain(
     most; heard : is told how many of these are done, and the budget
     """
     if scene.log is not None:
-        raise UsageError(f"{scene.commands_source}: why explains runs, and no recorded logs")
+        from ekfsim.why.recorded import explain_log  # of no use to a simulation
+
+        steps_at_once = max(len(scene.log.entries), 1)
+        limit = max(LEAST_BUDGET, STEPS_REPLAYED // steps_at_once)
+        return explain_log(scene, min(budget, limit), heard)
     steps = tuple(Trials.first(scene))
     if not scene.commanded:  # its runs are long
         budget = min(budget, max(LEAST_BUDGET, STEPS_REPLAYED // len(steps)))

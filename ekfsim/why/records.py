@@ -21,6 +21,7 @@ Kind = Literal[
     "wall",  # no beam is predicted to meet another wall than it does
     "linear",  # nothing is made linear
     "reading",  # one reading left out
+    "guess",  # of a recorded log: another noise, a bias, a scale or a clock put right by so much
     "move",  # one move made exact: the filter is given what truly happened
 ]
 Outcome = Literal["consistent", "lost", "over-cautious", "over-confident", "recorded"]
@@ -54,6 +55,7 @@ class Mechanism(Enum):
     SENSOR_DISTRUSTED = "sensor distrusted"
     SENSOR_BIAS = "sensor bias"
     OUTLIERS = "outliers"
+    MISPLACED_LANDMARK = "misplaced landmark"
     LATE_READINGS = "late readings"
     MOTION_BIAS = "motion bias"
     WRONG_ROBOT = "wrong numbers of the robot"

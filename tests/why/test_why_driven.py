@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import systems_scenes
+from wrong_drives import faulty, of_sensor, slower, told_robot, told_sensor, told_start
 
 from ekfsim.records import Control
-from ekfsim.systems.faults import DriveFaults, SensorFaults
 from ekfsim.views.why.answer import answer
 from ekfsim.why import Mechanism, explain
 from ekfsim.why.changes.groups import exact_inputs, groups_of
@@ -16,37 +16,6 @@ from ekfsim.why.trying.replaying import ending, replayed
 from ekfsim.why.trying.trials import Trials
 
 RUNS = 20  # as few as speak at all
-
-
-def faulty(scene, **faults):
-    return replace(scene, world=replace(scene.world, drive_faults=DriveFaults(**faults)))
-
-
-def of_sensor(scene, **faults):
-    called = scene.world.instruments[0].called
-    return faulty(scene, sensors={called: SensorFaults(**faults)})
-
-
-def told_sensor(scene, **numbers):
-    (one,) = scene.world.instruments
-    told = replace(scene.world.told, instruments=(replace(one, **numbers),))
-    return replace(scene, world=replace(scene.world, told=told))
-
-
-def told_robot(scene, **numbers):
-    told = replace(scene.world.told, robot=replace(scene.world.robot, **numbers))
-    return replace(scene, world=replace(scene.world, told=told))
-
-
-def told_start(scene, *off):
-    told = replace(scene.world.told, start=scene.world.start + np.array(off))
-    return replace(scene, world=replace(scene.world, told=told))
-
-
-def slower(scene, rate):
-    """With so many motion inputs a second: cheaper runs."""
-    robot = replace(scene.world.robot, rate=rate)
-    return replace(scene, world=replace(scene.world, robot=robot))
 
 
 ranges = slower(systems_scenes.ranges(), 4.0)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from ekfsim.printable import in_a_line
 from ekfsim.views.why.changes import all_of, joined, named, put_right
 from ekfsim.views.why.mechanisms import LASER, because, told_noise
+from ekfsim.views.why.recorded import of_log
 from ekfsim.views.why.tried import table
 from ekfsim.views.words.judgement import count
 from ekfsim.views.words.text_table import folded
@@ -47,6 +48,8 @@ def cause(explanation: Explanation) -> str:
 
 def sentence(explanation: Explanation) -> str:
     """Why the run ended as it did, with the evidence, in plain sentences."""
+    if explanation.scene.log is not None:
+        return " ".join(f"{one}." for one in of_log(explanation))
     return " ".join(f"{one}." for one in _sentences(explanation))
 
 

@@ -18,6 +18,7 @@ PLURALS: dict[Kind, str] = {
     "linear": "ways not to make it linear",
     "reading": "readings, each left out",
     "move": "moves, each made exact",
+    "guess": "guesses, each put right",
 }
 
 

@@ -14,6 +14,7 @@ CLAUSES = {
     Mechanism.MOTION_BIAS: "The robot misreads its motion by the same each time, which is no noise",
     Mechanism.SENSOR_BIAS: "Each reading is wrong by the same, which is no noise",
     Mechanism.OUTLIERS: "Some readings are far more wrong than the filter is told",
+    Mechanism.MISPLACED_LANDMARK: "One landmark is not where the filter is told that it stands",
     Mechanism.LATE_READINGS: "The readings are older than the filter takes them to be",
     Mechanism.WRONG_ROBOT: "The filter is told a robot that is not this one",
     Mechanism.WRONG_SENSOR: "The filter is told an instrument that is not this one",

@@ -23,8 +23,10 @@ MOST = 10  # changes that cure, in the table
 def table(explanation: Explanation, width: int | None = None) -> list[str]:
     """Those that cure, and the others by their kinds where they are many."""
     rows = [("", "change", "NEES", "ends")]
+    steps = explanation.lost_steps
+    judged = not explanation.scene.log or any(step.nees is not None for step in steps)
     cures = [one for one in explanation.tried if one.cures]
-    rows += [_row(one, "cures") for one in cures[:MOST]]
+    rows += [_row(one, "cures", judged) for one in cures[:MOST]]
     left = len(cures) - MOST
     notes = [f"{left} more cure as well"] if left > 0 else []
     others = sorted(
@@ -33,9 +35,9 @@ def table(explanation: Explanation, width: int | None = None) -> list[str]:
     for kind, some in groupby(others, key=lambda one: one.change.kind):
         each = list(some)
         if len(each) <= TOLD:
-            rows += [_row(one, "") for one in each]
+            rows += [_row(one, "", judged) for one in each]
         else:
-            rows.append(("", f"{len(each)} {PLURALS[kind]}", *_range(each)))
+            rows.append(("", f"{len(each)} {PLURALS[kind]}", *_range(each, judged)))
     lines = [*aligned_rows(rows, width)]
     return [*lines, *(line for note in notes for line in folded(note, width))]
 
@@ -49,15 +51,17 @@ def aligned_rows(rows: Sequence[tuple[str, str, str, str]], width: int | None) -
     return aligned(rows, 2, width)
 
 
-def _row(one: Tried, mark: str) -> tuple[str, str, str, str]:
+def _row(one: Tried, mark: str, judged: bool) -> tuple[str, str, str, str]:
     obvious = one.change.kind in ("reading", "move")  # what becomes of them is always the same
     told = f" ({one.change.told})" if one.change.told and not obvious else ""
-    at_end = NONE if one.outcome == "recorded" else nees(one.nees_end)
+    at_end = NONE if one.outcome == "recorded" or not judged else nees(one.nees_end)
     return mark, in_a_line(f"{named(one.change)}{told}"), at_end, ends(one)
 
 
-def _range(each: Sequence[Tried]) -> tuple[str, str]:
+def _range(each: Sequence[Tried], judged: bool) -> tuple[str, str]:
     """The NEES of many, from the least to the most, and that none of them cures."""
+    if not judged:
+        return NONE, "none cures"
     known = [one.nees_end for one in each if not math.isnan(one.nees_end)]
     span = f"{figure(min(known))} … {figure(max(known))}" if known else "impossible"
     return span, "none cures"

@@ -4,6 +4,7 @@ told.py      the told noise, start and sigma made true      maps.py   the told m
 faults.py    each fault, slip and kidnap taken out          beams.py  beams left out, or held to
 singles.py   single readings left out, moves made exact               what they truly meet
 suspects.py  which mechanism each takes away                alike.py  walls in a row
+guesses.py   what may be wrong with a log's filter       recorded.py each guess put right
 driven.py    all of it of a robot that is driven            groups.py its readings and motions, many
                                                                       at a time
 """
