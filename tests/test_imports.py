@@ -33,7 +33,6 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"simulation"},
     {"smoothing"},
     {"localization"},
-    {"smoothing"},
     {"fitting"},
     {"study"},
     {"fast"},

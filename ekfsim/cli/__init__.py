@@ -13,18 +13,21 @@ from ekfsim.late import Table
 from ekfsim.version import VERSION
 
 MODULES = {
-    "runs": ("play", "render", "plot", "run", "record"),
-    "driving": ("drive",),
-    "files": ("check", "schema", "list_packaged", "show", "new", "figures"),
-    "maps": ("world",),
-    "studies": ("study", "compare"),
-    "hunting": ("hunt",),
-    "gallery": ("gallery",),
-    "comparing": ("diff",),
-    "explaining": ("why",),
-    "students": ("mutants", "worksheet"),
-    "grading": ("grade", "autograder"),
-    "tuning": ("tune",),
+    "runs.playing": ("play",),
+    "runs.driving": ("drive",),
+    "runs.drawing": ("render", "plot"),
+    "runs.narrating": ("run",),
+    "runs.recording": ("record",),
+    "runs.explaining": ("why",),
+    "studies.studies": ("study", "compare"),
+    "studies.hunting": ("hunt",),
+    "studies.tuning": ("tune",),
+    "studies.gallery": ("gallery",),
+    "files.files": ("check", "schema", "list_packaged", "show", "new", "figures"),
+    "files.maps": ("world",),
+    "students.comparing": ("diff",),
+    "students.students": ("mutants", "worksheet"),
+    "students.grading": ("grade", "autograder"),
 }
 PLACES = {
     name.removesuffix("_packaged"): f"ekfsim.cli.{module}:{name}"

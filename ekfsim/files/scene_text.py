@@ -16,8 +16,8 @@ import numpy as np
 
 from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.errors import UsageError
-from ekfsim.files.keys.commands import TuningKeys
 from ekfsim.files.keys.fields import aliases
+from ekfsim.files.keys.filters import TuningKeys
 from ekfsim.files.looking import is_file, read_from
 from ekfsim.files.packaged import folder, packaged
 from ekfsim.files.scenes.settings import kind_of, setting

@@ -81,8 +81,8 @@ def _noises(world: World, read: set[str]) -> Iterator[NoiseNumber]:
             value = getattr(world.told.noise, name)
             yield NoiseNumber(f"noise.{alias}", name, "noise", value, False)
         return
-    from ekfsim.files.keys.system import ToldRobotKeys
-    from ekfsim.files.keys.told import ToldSensorsKeys
+    from ekfsim.files.keys.worlds.robot import ToldRobotKeys
+    from ekfsim.files.keys.worlds.told import ToldSensorsKeys
 
     own = robot.robot if isinstance(robot, Estimating) else robot
     yield from _of_part(own, ToldRobotKeys, "robot", "robot")

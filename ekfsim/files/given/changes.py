@@ -11,8 +11,8 @@ from ekfsim.errors import UsageError
 from ekfsim.files.given.given import Given
 from ekfsim.files.given.tree import NOWHERE, written
 from ekfsim.files.keys.commands import CommandsKeys
-from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.scenes.checking.filter_checks import check_filter_settings, refuse_unread
+from ekfsim.files.scenes.checking.sound import Sound
 from ekfsim.files.scenes.load import overruled
 from ekfsim.files.scenes.logged import LogGiven, read_into
 from ekfsim.files.scenes.overruling import idle_on_log, of_log, refusal

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ekfsim.files.given.given import Given
-from ekfsim.files.keys.world import NoiseKeys
+from ekfsim.files.keys.worlds.world import NoiseKeys
 from ekfsim.world import Noise, Obstacle, RoundObstacle, WallLine, World
 
 OF = "World.of"  # how messages name what was handed over

@@ -6,7 +6,7 @@ from pydantic import ConfigDict, Discriminator, Field, Tag
 from pydantic.config import JsonDict
 
 from ekfsim.files.keys.fields import FAR, Degrees, Metres, PartKeys, Positive, Strict
-from ekfsim.files.keys.system import degrees
+from ekfsim.files.keys.worlds.documents import degrees
 from ekfsim.systems.drives import Circle, Spiral, Square
 
 MAX_STEPS = 1_000_000

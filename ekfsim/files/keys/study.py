@@ -5,8 +5,8 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, ConfigDict, Field, WithJsonSchema, field_validator
 from pydantic_core import PydanticCustomError
 
-from ekfsim.files.keys.commands import filter_names, is_filter, known_filters
 from ekfsim.files.keys.fields import Name, Seed, Strict, Text
+from ekfsim.files.keys.filters import filter_names, is_filter, known_filters
 from ekfsim.printable import quoted
 
 MAX_RUNS = 1_000_000_000

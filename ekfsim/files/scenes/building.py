@@ -9,14 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 import numpy as np
 
 from ekfsim.files.keys.fields import PartKeys, Pose, aliases, keys_of_kind
-from ekfsim.files.keys.world import (
-    BeliefKeys,
-    BelievedStartKeys,
-    LineKeys,
-    ObstacleKeys,
-    SigmaKeys,
-    WorldKeys,
-)
+from ekfsim.files.keys.worlds.floor import LineKeys, ObstacleKeys
+from ekfsim.files.keys.worlds.world import BeliefKeys, BelievedStartKeys, SigmaKeys, WorldKeys
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.systems.faults import DriveFaults, SensorFaults
@@ -37,9 +31,9 @@ from ekfsim.world import (
 )
 
 if TYPE_CHECKING:
-    from ekfsim.files.keys.faults import FaultKeys, FaultySensorsKeys
-    from ekfsim.files.keys.sensors import SensorKeys
-    from ekfsim.files.keys.told import ToldSensorsKeys
+    from ekfsim.files.keys.worlds.faults import FaultKeys, FaultySensorsKeys
+    from ekfsim.files.keys.worlds.sensors import SensorKeys
+    from ekfsim.files.keys.worlds.told import ToldSensorsKeys
 
 P = TypeVar("P", Robot, Instrument)
 NO_NOISE = Noise(0.0, 0.0, 0.0, 0.0, 0.0)  # of the classroom's robot, where another one drives
@@ -179,7 +173,7 @@ def _of_record(
 
 def instrument_of(item: "SensorKeys") -> Instrument:
     """A sensor, each number the document's where the file tells no other."""
-    from ekfsim.files.keys.sensors import SENSORS
+    from ekfsim.files.keys.worlds.sensors import SENSORS
 
     keys = item.part()
     return changed(SENSORS[type(keys)](), keys)

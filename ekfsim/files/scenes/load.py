@@ -13,10 +13,9 @@ from ekfsim.files.keys.commands import (
     CommandsKeys,
 )
 from ekfsim.files.keys.recorded.recording import WITH_LANDMARKS, RecordingKeys
-from ekfsim.files.keys.world import WorldKeys
+from ekfsim.files.keys.worlds.world import WorldKeys
 from ekfsim.files.packaged import packaged, resolve, source_name, world_beside
 from ekfsim.files.scenes.building import world_of
-from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.scenes.checking.doubts import kidnap_warnings, perfect_beam_warnings
 from ekfsim.files.scenes.checking.drive_checks import check_fit
 from ekfsim.files.scenes.checking.filter_checks import (
@@ -25,6 +24,7 @@ from ekfsim.files.scenes.checking.filter_checks import (
     filter_warnings,
     missing,
 )
+from ekfsim.files.scenes.checking.sound import Sound
 from ekfsim.files.scenes.checking.system_checks import system_warnings
 from ekfsim.files.scenes.logged import CLASSROOM, brought, with_log, world_of_log
 from ekfsim.files.scenes.one_file import File, Loaded, in_order_of_place, read

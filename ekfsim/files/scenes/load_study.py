@@ -9,7 +9,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from ekfsim.errors import MOST_TOLD, InputError, Mistake, Place, UsageError
-from ekfsim.files.keys.commands import is_filter
+from ekfsim.files.keys.filters import is_filter
 from ekfsim.files.keys.study import StudyKeys
 from ekfsim.files.looking import is_file
 from ekfsim.files.packaged import packaged, resolve

@@ -11,7 +11,7 @@ from ekfsim.files.given.given import Given
 from ekfsim.files.keys.recorded.recording import ANY, BAG, OF_ANY_ROBOT, LogFormat, RecordingKeys
 from ekfsim.files.looking import is_folder, read_from
 from ekfsim.files.packaged import source_name
-from ekfsim.files.scenes.checking.checks import Sound
+from ekfsim.files.scenes.checking.sound import Sound
 from ekfsim.files.scenes.one_file import File, Loaded
 from ekfsim.scene import Scene
 

@@ -12,11 +12,13 @@ from ekfsim.files.foreign import of_text
 from ekfsim.files.given.given import Given
 from ekfsim.files.keys.commands import WAYS
 from ekfsim.files.keys.fields import aliases
-from ekfsim.files.keys.world import WorldKeys
-from ekfsim.files.scenes.checking.checks import Sound, check_commands, check_world
+from ekfsim.files.keys.worlds.world import WorldKeys
+from ekfsim.files.scenes.checking.command_checks import check_commands
 from ekfsim.files.scenes.checking.doubts import angle_warnings
 from ekfsim.files.scenes.checking.drive_checks import check_ways
+from ekfsim.files.scenes.checking.sound import Sound
 from ekfsim.files.scenes.checking.system_checks import check_system
+from ekfsim.files.scenes.checking.world_checks import check_world
 from ekfsim.files.scenes.overruling import overruled, pinned, remark
 from ekfsim.files.scenes.settings import Setting
 from ekfsim.files.source import as_written

@@ -46,7 +46,7 @@ CANNOT_OF: dict[Kind, tuple[str, ...]] = {
     ),
 }
 MODELS: dict[Kind, tuple[str, str]] = {  # where the keys of each stand
-    "world": ("ekfsim.files.keys.world", "WorldKeys"),
+    "world": ("ekfsim.files.keys.worlds.world", "WorldKeys"),
     "commands": ("ekfsim.files.keys.commands", "CommandsKeys"),
     "study": ("ekfsim.files.keys.study", "StudyKeys"),
     "homework": ("ekfsim.files.keys.homework", "HomeworkKeys"),

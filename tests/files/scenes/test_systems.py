@@ -4,7 +4,9 @@ mistakes."""
 
 import dataclasses
 import math
+from importlib import import_module
 from pathlib import Path
+from pkgutil import walk_packages
 from typing import get_args
 
 import numpy as np
@@ -12,18 +14,16 @@ import pytest
 
 from ekfsim.cli.program import options
 from ekfsim.errors import InputError, UsageError
-from ekfsim.files.keys import commands as commands_file
+from ekfsim.files import keys as all_keys
 from ekfsim.files.keys import drive as drive_file
 from ekfsim.files.keys import fields
-from ekfsim.files.keys import sensors as sensor_file
-from ekfsim.files.keys import system as system_file
-from ekfsim.files.keys import world as world_file
-from ekfsim.files.keys.faults import FaultySensorsKeys
 from ekfsim.files.keys.fields import SystemName, aliases, whole
 from ekfsim.files.keys.recorded.recording import OF_ANY_ROBOT, SYSTEM_OF, LogFormat
-from ekfsim.files.keys.sensors import SENSORS, SensorKeys
-from ekfsim.files.keys.system import RobotKeys, fields_of, robot_fields
-from ekfsim.files.keys.told import ToldSensorsKeys
+from ekfsim.files.keys.worlds.documents import fields_of, robot_fields
+from ekfsim.files.keys.worlds.faults import FaultySensorsKeys
+from ekfsim.files.keys.worlds.robot import RobotKeys
+from ekfsim.files.keys.worlds.sensors import SENSORS, SensorKeys
+from ekfsim.files.keys.worlds.told import ToldSensorsKeys
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.building import instrument_of
 from ekfsim.files.scenes.load import check, load_scene, load_world, read_scene
@@ -195,12 +195,12 @@ def test_the_schema_tells_the_document_s_numbers_of_each_robot():
 
 
 @pytest.mark.parametrize(
-    "module", [commands_file, drive_file, fields, sensor_file, system_file, world_file]
+    "name", [one.name for one in walk_packages(all_keys.__path__, f"{all_keys.__name__}.")]
 )
-def test_the_examples_of_the_schema_are_right(module):
+def test_the_examples_of_the_schema_are_right(name):
     models = [
         one
-        for one in vars(module).values()
+        for one in vars(import_module(name)).values()
         if isinstance(one, type) and issubclass(one, fields.Strict)
     ]
     for model in models:

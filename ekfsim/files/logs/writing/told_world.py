@@ -6,7 +6,7 @@ from dataclasses import fields
 
 from ekfsim.errors import UsageError
 from ekfsim.files.keys.fields import PartKeys, aliases, keys_of_kind
-from ekfsim.files.keys.world import NoiseKeys
+from ekfsim.files.keys.worlds.world import NoiseKeys
 from ekfsim.files.logs.degrees import degrees
 from ekfsim.files.scenes.checking.polygons import FloorPlan
 from ekfsim.geometry import Array
@@ -93,7 +93,8 @@ def _floor(floor: Map) -> Iterator[str]:
 
 def _robot(robot: Robot) -> dict[str, str]:
     """The keys of a robot, and of what its filter is to find out."""
-    from ekfsim.files.keys.system import EstimateKeys, RobotKeys
+    from ekfsim.files.keys.worlds.estimated import EstimateKeys
+    from ekfsim.files.keys.worlds.robot import RobotKeys
 
     if not isinstance(robot, Estimating):
         return _part(robot, RobotKeys)
@@ -106,8 +107,8 @@ def _robot(robot: Robot) -> dict[str, str]:
 
 def _instrument(instrument: Instrument) -> dict[str, str]:
     """The keys of a sensor; of its name, mount and delay those that it has."""
-    from ekfsim.files.keys.instruments import MountKeys
-    from ekfsim.files.keys.sensors import SENSORS
+    from ekfsim.files.keys.worlds.carried import MountKeys
+    from ekfsim.files.keys.worlds.sensors import SENSORS
 
     keys = next(keys for keys, kind in SENSORS.items() if kind is type(instrument))
     own = _part(instrument, keys)

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator
 
 from ekfsim.errors import Mistake
-from ekfsim.files.scenes.checking.checks import Sound
 from ekfsim.files.scenes.checking.polygons import FloorPlan
+from ekfsim.files.scenes.checking.sound import Sound
 from ekfsim.files.yaml.telling import at
 from ekfsim.printable import short
 from ekfsim.world import Map, World

@@ -10,7 +10,7 @@ from ekfsim.errors import Mistake
 from ekfsim.files.keys.commands import WAYS, CommandsKeys
 from ekfsim.files.keys.fields import aliases
 from ekfsim.files.keys.recorded.recording import OF_ANY_ROBOT, OWN_KEYS, misfit
-from ekfsim.files.scenes.checking.checks import Sound
+from ekfsim.files.scenes.checking.sound import Sound
 from ekfsim.files.scenes.playing import drive_of
 from ekfsim.files.yaml.telling import meant
 from ekfsim.systems.drive import Drive
@@ -35,7 +35,7 @@ def check_path(file: Sound) -> Iterator[Mistake]:
     if path is None or drive is None:
         return
     from ekfsim.files.keys.drive import MAX_ROUNDS, PathKeys
-    from ekfsim.files.keys.system import fields_of
+    from ekfsim.files.keys.worlds.documents import fields_of
     from ekfsim.systems.drives import DRIVES, Spiral
 
     names = aliases(PathKeys)

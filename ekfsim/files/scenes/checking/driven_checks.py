@@ -9,19 +9,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from ekfsim.errors import Mistake
-from ekfsim.files.keys.faults import FaultKeys, FaultySensorsKeys
 from ekfsim.files.keys.fields import aliases, keys_of_kind
-from ekfsim.files.keys.sensors import SensorKeys
-from ekfsim.files.keys.system import (
-    ODOMETRY,
-    EstimateKeys,
-    RobotKeys,
-    ToldRobotKeys,
-    not_carried,
-    robot_fields,
-)
-from ekfsim.files.keys.told import ToldSensorsKeys
-from ekfsim.files.scenes.checking.checks import Sound, check_items
+from ekfsim.files.keys.worlds.documents import ODOMETRY, not_carried, robot_fields
+from ekfsim.files.keys.worlds.estimated import EstimateKeys
+from ekfsim.files.keys.worlds.faults import FaultKeys, FaultySensorsKeys
+from ekfsim.files.keys.worlds.robot import RobotKeys, ToldRobotKeys
+from ekfsim.files.keys.worlds.sensors import SensorKeys
+from ekfsim.files.keys.worlds.told import ToldSensorsKeys
+from ekfsim.files.scenes.checking.command_checks import check_items
+from ekfsim.files.scenes.checking.sound import Sound
 from ekfsim.files.yaml.marked import Path
 from ekfsim.files.yaml.telling import nearest, one_of, quoted
 from ekfsim.systems import SYSTEMS

@@ -7,11 +7,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from ekfsim.errors import Mistake, UsageError
-from ekfsim.files.keys.commands import CommandsKeys, TuningKeys
+from ekfsim.files.keys.commands import CommandsKeys
 from ekfsim.files.keys.fields import aliases
+from ekfsim.files.keys.filters import TuningKeys
 from ekfsim.files.looking import is_file as is_there
 from ekfsim.files.looking import read_from
-from ekfsim.files.scenes.checking.checks import Sound
+from ekfsim.files.scenes.checking.sound import Sound
 from ekfsim.files.scenes.settings import FILTER_SETTINGS, Setting, path_of
 from ekfsim.filters import FILTERS
 from ekfsim.filters.place import absolute, is_file, label, parts, stem

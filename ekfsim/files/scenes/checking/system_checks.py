@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import fields
 
 from ekfsim.errors import Mistake
-from ekfsim.files.scenes.checking.checks import Sound
+from ekfsim.files.scenes.checking.sound import Sound
 from ekfsim.files.yaml.marked import Path
 from ekfsim.files.yaml.schema import schema_at
 from ekfsim.files.yaml.telling import at, example, meant

@@ -1,63 +1,22 @@
-"""What no single key can tell: polygons, names, places to stand, how many commands there are.
+"""What no single key can tell of a world file: polygons, names, places to stand.
 
 The checks read the raw tree and skip whatever a model has found wrong, so that all mistakes of a
 file are told at once.
 """
 
 from collections.abc import Iterator
-from typing import Any
 
 from ekfsim.errors import MOST_TOLD, Mistake
-from ekfsim.files.keys.commands import MAX_COMMANDS, CommandKeys
-from ekfsim.files.keys.world import SHAPES, ObstacleKeys
+from ekfsim.files.keys.worlds.floor import SHAPES, ObstacleKeys
 from ekfsim.files.scenes.checking import polygons
 from ekfsim.files.scenes.checking.polygons import Circle, FloorPlan, Points
-from ekfsim.files.yaml.marked import Node, Path
-from ekfsim.files.yaml.telling import at, nearest
+from ekfsim.files.scenes.checking.sound import Sound
+from ekfsim.files.yaml.marked import Path
+from ekfsim.files.yaml.telling import nearest
 from ekfsim.printable import quoted, some
 from ekfsim.world import BOUNDARY, wall_name
 
 WALLED, UNWALLED = ("obstacle or wall", "obstacles and walls"), ("obstacle", "obstacles")
-COMMANDS = list(CommandKeys.model_fields)
-
-
-class Sound:
-    """A file without what is known to be wrong with it."""
-
-    def __init__(self, file: str, root: Node, wrong: set[Path]) -> None:
-        self.file = file
-        self.root = root
-        self.wrong: set[Path] = set()  # what is wrong itself
-        self.around: set[Path] = set()  # what holds something wrong
-        for path in wrong:
-            self.give_up(path)
-
-    def give_up(self, path: Path) -> None:
-        """Know the value at a path as wrong, and whatever holds it or lies in it."""
-        self.wrong.add(path)
-        self.around.update(path[:length] for length in range(len(path)))
-
-    def value(self, *path: str | int) -> Any:
-        """The plain value at a path,
-        None where there is none, or where a mistake lies in it or around it.
-        """
-        node = self.root.at(path)
-        if (
-            node is None
-            or path in self.around
-            or any(path[: length + 1] in self.wrong for length in range(len(path)))
-        ):
-            return None
-        return node.plain()
-
-    def count(self, *path: str | int) -> int:
-        """The length of a list, right or wrong; 0 where there is none."""
-        node = self.root.at(path)
-        return len(node.value) if node and isinstance(node.value, list) else 0
-
-    def mistake(self, path: Path, wrong: str, right: str) -> Mistake:
-        """A mistake in the value at a path."""
-        return at(self.file, self.root.nearest(path).mark, path, wrong, right)
 
 
 def check_world(file: Sound) -> Iterator[Mistake]:
@@ -261,49 +220,3 @@ def check_unknown_start(file: Sound) -> Iterator[Mistake]:
     elif not (file.root.at(("boundary",)) or (belief and belief.at(("boundary",)))):
         right = "add a boundary, or write a pose"
         yield file.mistake(where, "no boundary says where the robot may be", right)
-
-
-def check_commands(file: Sound) -> Iterator[Mistake]:
-    """Mistakes of a commands file that lie between its keys."""
-    yield from check_items(file, ("commands",), COMMANDS, "command")
-    count = expanded(file, ("commands",))
-    if count > MAX_COMMANDS:
-        number = (
-            f"{count:,}".replace(",", " ")
-            if count < 10**12
-            else f"about {float(min(count, 10**300)):.0e}"
-        )
-        wrong = f"the commands expand to {number}, more than 1 000 000"
-        yield file.mistake(("commands",), wrong, "repeat fewer times")
-
-
-def check_items(file: Sound, path: Path, known: list[str], what: str) -> Iterator[Mistake]:
-    """Items that hold none of the known keys, or two."""
-    for index in range(file.count(*path)):
-        item = file.root.at((*path, index))
-        if item is None or not isinstance(item.value, dict):
-            continue
-        held = [key for key in item.keys if key in known]
-        if len(held) > 1:
-            wrong = f"{' and '.join(repr(key) for key in held)} stand in one item"
-            yield file.mistake(
-                (*path, index), wrong, f"begin each {what} with '- ' on a line of its own"
-            )
-        elif not item.keys:
-            yield file.mistake(
-                (*path, index), f"the {what} is missing", f"write one of {', '.join(known)}"
-            )
-        yield from check_items(file, (*path, index, "repeat", "commands"), known, what)
-
-
-def expanded(file: Sound, path: Path) -> int:
-    """How many commands a list expands to, as far as it is right."""
-    total = 0
-    for index in range(file.count(*path)):
-        repeat = (*path, index, "repeat")
-        if file.root.at(repeat) is None:
-            total += 1
-        else:
-            times = file.value(*repeat, "times")
-            total += (times if times is not None else 1) * expanded(file, (*repeat, "commands"))
-    return total

@@ -1,66 +1,23 @@
-"""The commands that play one run: play, render, plot, run, record."""
+"""The commands that draw a run: render, plot."""
 
 import sys
-from contextlib import ExitStack, redirect_stderr
-from functools import partial
+from contextlib import redirect_stderr
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from ekfsim.cli.program.asked import files_of, scene_of
-from ekfsim.cli.program.kinds import Area, Pace, Result, StepNumber, Whole, Word
-from ekfsim.cli.program.options import DPI, EXPLAIN, FORCE, SIZE, scene_options
+from ekfsim.cli.program.asked import scene_of
+from ekfsim.cli.program.kinds import Area, Result, StepNumber, Whole
+from ekfsim.cli.program.options import DPI, FORCE, SIZE, scene_options
 from ekfsim.cli.program.process import heed, say, warn
 from ekfsim.errors import UsageError
 from ekfsim.printable import in_a_line
-from ekfsim.views.terminal.keys.help import HELP
 
 if TYPE_CHECKING:
     from ekfsim.scene import Scene
     from ekfsim.views.picture.look import Look
-
-
-@click.command(
-    help=f"Step through COMMANDS with single keys.\n\n\b\n{HELP}",
-    short_help="Step through COMMANDS with single keys.",
-)
-@scene_options
-@click.option("--show", type=Word(["auto", "window", "image", "text", "files"]),
-              default="auto", show_default=True,
-              help="Draw in a window, as an image in a terminal that has them (kitty, iTerm2, "
-                   "sixel), as text in any, or into one file rewritten in place. auto: in the "
-                   "first that there is of window, image and text.")  # fmt: skip
-@click.option("--out", "-o", type=Result(), default=Path("out"), show_default=True,
-              help="Folder for the pictures of --show files and of the key s.")  # fmt: skip
-@click.option(
-    "--conditional",
-    is_flag=True,
-    help="Draw the ellipse for the heading at either edge of its cone, too.",
-)
-@click.option("--auto", type=Pace(), metavar="SECONDS",
-              help="Go on by itself, a view every so many seconds.")  # fmt: skip
-@click.option("--watch", is_flag=True,
-              help="Read commands, world and a filter FILE.py again whenever they are saved, and "
-                   "stay at the step.")  # fmt: skip
-@EXPLAIN
-@FORCE
-def play(
-    show: str, out: Path, conditional: bool, auto: float | None, watch: bool, explain: bool,
-    force: bool, confidence: float, **chosen: Any
-) -> None:  # fmt: skip
-    """Begin at the first view; the keys do the rest."""
-    from ekfsim.views.picture.look import Look
-    from ekfsim.views.terminal.interactive import play_interactively
-
-    scene, look, watching = scene_of(**chosen), Look(confidence, conditional), None
-    if watch:
-        from ekfsim.views.terminal.watching import Watch
-
-        files = partial(files_of, chosen["commands"])
-        watching = Watch(scene, partial(scene_of, **chosen), files)
-    play_interactively(scene, show, out, look, force, explain, auto, watching)
 
 
 @click.command()
@@ -248,110 +205,3 @@ def plot(
     for remark in remarks(runs):
         say(remark)
     click.echo(f"{in_a_line(out)}: {', '.join(map(in_a_line, scene.watching))} over {runs[0].span}")
-
-
-@click.command()
-@scene_options
-@click.option("--trace", type=Result(), help="Write every number of every step, as JSON lines.")
-@click.option(
-    "--tum", type=Result(), help="Folder for estimate.tum and, where it is known, truth.tum."
-)
-@click.option("--csv", type=Result(), help="Write a flat table.")
-@click.option("--summary", type=Result(), help="Write the closing summary as JSON.")
-@click.option("--quiet", "-q", is_flag=True, help="Only the closing summary, no narrative.")
-@EXPLAIN
-@FORCE
-def run(
-    trace: Path | None, tum: Path | None, csv: Path | None, summary: Path | None, quiet: bool,
-    explain: bool,
-    force: bool, confidence: float, **chosen: Any,
-) -> None:  # fmt: skip
-    """Narrate COMMANDS from the first step to the last, and sum up."""
-    from itertools import zip_longest
-
-    from ekfsim.diagnostics.summary import Summary
-    from ekfsim.files.results.outputs import Outputs
-    from ekfsim.filters.place import is_smoothed
-    from ekfsim.localization import play as steps_of
-    from ekfsim.smoothing.shares import Shares
-    from ekfsim.views.playback.kept import kept
-    from ekfsim.views.playback.playback import together
-    from ekfsim.views.words.closing import conclude_all
-    from ekfsim.views.words.narrative import narrate
-
-    scene = scene_of(**chosen)
-    alone, outputs = scene.alone(), Outputs(trace, tum, csv, summary, force)
-    results = [Summary.of(one) for one in alone]
-    smoothed = any(map(is_smoothed, scene.watching))
-    shares = [Shares() for _ in alone] if smoothed else []
-    with ExitStack() as stack:
-        runs = []
-        every = zip_longest(alone, results, outputs.for_each(scene), shares)
-        for one, result, files, share in every:
-            sinks = stack.enter_context(files.open(one, confidence, result))
-            if (unknown := files.unknown_truth(one)) is not None:
-                say(f"{unknown}: left out, for the log does not tell the truth")
-            takers = [*(sink.write for sink in sinks), *([share.take] if share else [])]
-            runs.append(kept(result.following(steps_of(one)), takers))
-        for view in together(runs[0], runs[1:], (scene.filter, *scene.beside)):
-            heed()
-            if not quiet:
-                sys.stdout.write(narrate(view, scene, confidence, explain))
-    told = conclude_all(scene, results, quiet, view.apart, shares)
-    (sys.stderr if outputs.on_stdout() else sys.stdout).write(told)
-
-
-@click.command(short_help="Write the simulated run of COMMANDS as a recorded log.")
-@scene_options
-@click.option(
-    "--out", "-o", type=Result(), required=True, help="A folder for the files of the log."
-)
-@click.option(
-    "--truth",
-    "with_truth",
-    is_flag=True,
-    help="Of a classroom, write the true poses and what made the log, too.",
-)
-@click.option(
-    "--format",
-    type=Word(["log", "own", "mower", "gnss", "pylon", "pioneer", "classroom"]),
-    help="log (usual): tables with named columns, for every robot that drives. own, or its name "
-    "(mower, gnss, pylon, pioneer): as the robot's own logs are. A classroom has its own alone.",
-)
-@FORCE
-def record(
-    out: Path, force: bool, with_truth: bool, format: str | None, confidence: float, **chosen: Any
-) -> None:
-    """Write the simulated run of COMMANDS as the files of a recorded log.
-
-    Of a robot that drives they are a folder of the format log: motion.csv, readings.csv, truth.csv,
-    landmarks.csv where there are some, and world.yaml with all as the filter is told. Run upon it,
-    the filter makes the same numbers.
-
-    Of a classroom they are what a program in any language needs: the odometry and the ranges, and
-    the map and the ratios as the filter is told them. Without --truth nothing in them tells the
-    scene, the seed and the run, which would give the truth away: they are printed, and no more.
-    """
-    from ekfsim.files.logs.writing.written import format_of, write_log
-    from ekfsim.provenance import told_in_a_line
-    from ekfsim.simulation import simulate
-
-    scene = scene_of(**chosen)
-    for remark in write_log(scene, simulate(scene), out, force, with_truth, format):
-        say(f"{out}: {remark}")
-    told = _read_again(scene, format_of(scene, format), out)
-    click.echo(f"{in_a_line(out)}: {in_a_line(told)}")
-    if scene.commanded and not with_truth:
-        click.echo(f"Only here it is told what made it: {told_in_a_line(scene)}")
-
-
-def _read_again(scene: "Scene", format: str, out: Path) -> str:
-    """What was written, and how it is read."""
-    from shlex import quote
-
-    if format != "log":
-        return f"a {format} log; run the filter on it with --log"
-    filter = f" --filter {scene.filter}" if scene.filter != "ekf" else ""
-    gate = "off" if scene.gate is None else f"{scene.gate:.12g}"
-    own = f"--log {quote(str(out))}{filter} --gate {gate}"
-    return f"a log; run the filter on it with: ekfsim run log {own}"

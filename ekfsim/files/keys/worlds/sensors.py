@@ -4,7 +4,7 @@ from pydantic import ConfigDict, Field
 from pydantic.config import JsonDict
 
 from ekfsim.files.keys.fields import MARKERS, PartKeys, Strict
-from ekfsim.files.keys.instruments import (
+from ekfsim.files.keys.worlds.instruments import (
     BearingKeys,
     CompassKeys,
     GnssKeys,

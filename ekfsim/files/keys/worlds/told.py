@@ -13,7 +13,8 @@ from ekfsim.files.keys.fields import (
     Strict,
     Turn,
 )
-from ekfsim.files.keys.instruments import CarriedKeys, known_colour, known_colours
+from ekfsim.files.keys.worlds.carried import CarriedKeys
+from ekfsim.files.keys.worlds.instruments import known_colour, known_colours
 
 SEE = "See sensors."
 

@@ -1,0 +1,5 @@
+"""Commands of files.
+
+files.py   check, schema, list, show, new, figures
+maps.py    world
+"""

@@ -1,0 +1,6 @@
+"""Commands of a course.
+
+comparing.py   diff
+students.py    mutants, worksheet
+grading.py     grade, autograder
+"""
