@@ -26,13 +26,14 @@ from matplotlib.figure import Figure
 from timing import optional, ratios
 
 from ekfsim.commands import Move, Sense
+from ekfsim.floor import Map, Obstacle
 from ekfsim.localization import play
 from ekfsim.scene import Scene
 from ekfsim.views.picture.extent import scope
 from ekfsim.views.picture.frames import Frame, Picture
 from ekfsim.views.picture.look import STANDARD
 from ekfsim.views.playback.playback import views
-from ekfsim.world import Map, Noise, Obstacle, Told, World
+from ekfsim.world import Noise, Told, World
 
 SIDE = 10.0  # m
 DESKS = [(0.8 + 1.5 * (i % 6), 0.8 + 1.7 * (i // 6)) for i in range(30)]  # lower left corners, in m

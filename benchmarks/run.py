@@ -18,13 +18,14 @@ from timing import optional, ratios
 
 from ekfsim.commands import Move, Repeat, Sense
 from ekfsim.diagnostics.summary import Summary
+from ekfsim.floor import Map, Obstacle
 from ekfsim.geometry import Array
 from ekfsim.localization import play
 from ekfsim.scene import Scene
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.closing import conclude
 from ekfsim.views.words.narrative import narrate
-from ekfsim.world import Map, Noise, Obstacle, Told, World
+from ekfsim.world import Noise, Told, World
 
 COMMANDS = 1000
 NOISE = Noise(0.01, 0.01, 0.002, 0.002, 0.01)

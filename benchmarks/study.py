@@ -31,6 +31,7 @@ from ekfsim.fast.one.angles import wrap_one
 from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.ekf import EKF
+from ekfsim.floor import Map, Obstacle
 from ekfsim.geometry import Array
 from ekfsim.localization import localize, play
 from ekfsim.models.motions.move_turn import MoveTurn
@@ -38,7 +39,7 @@ from ekfsim.models.sensors.landmarks import RangeOnly
 from ekfsim.records import Control, Entry, Log, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.study.block import run_block, watched
-from ekfsim.world import Map, Noise, Obstacle, Told, World
+from ekfsim.world import Noise, Told, World
 
 RUNS, STEPS = 1000, 100
 NOISE = Noise(0.01, 0.01, 0.02, 0.02, 0.01)

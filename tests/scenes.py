@@ -6,17 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
+from ekfsim.floor import Map, Obstacle, RoundObstacle, WallLine
 from ekfsim.scene import Scene
-from ekfsim.world import (
-    Faults,
-    Map,
-    Noise,
-    Obstacle,
-    RoundObstacle,
-    Told,
-    WallLine,
-    World,
-)
+from ekfsim.world import Faults, Noise, Told, World
 
 NOISE = Noise(0.05, 0.04, 0.02, 0.03, 0.01)
 SILENT = Noise(0.0, 0.0, 0.0, 0.0, 0.0)

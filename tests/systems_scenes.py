@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 from scenes import SILENT
 
+from ekfsim.floor import Map, Obstacle
 from ekfsim.scene import Scene
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.drives import Circle, Square
 from ekfsim.systems.instrument import Landmark
 from ekfsim.systems.instruments import Bearings, Compass, Gyro, Infrared, Ultrasonic
-from ekfsim.world import Map, Obstacle, Told, World
+from ekfsim.world import Told, World
 
 FIELD = tuple(
     Landmark(i, float(x), float(y))

@@ -25,6 +25,7 @@ ROOMS = (  # each imports only from those above it, and from its own
     {"commands"},
     {"records"},
     {"systems"},  # below the records: a system says which of them its authors' filter is given
+    {"floor"},
     {"world"},
     {"scene"},
     {"diagnostics"},
@@ -61,6 +62,7 @@ CORE = {
     "models",
     "filters",
     "systems",
+    "floor",
     "world",
     "commands",
     "records",

@@ -7,7 +7,8 @@ import numpy as np
 
 from ekfsim import load_world
 from ekfsim.commands import Command, Move, Repeat, Sense
-from ekfsim.world import Map, Noise, World
+from ekfsim.floor import Map
+from ekfsim.world import Noise, World
 
 NOISE = Noise(0.02, 0.02, 0.01, 0.02, 0.02)
 SQUARELY = (0.0, 90.0, 180.0, -90.0)

@@ -6,7 +6,8 @@ from functools import partial
 
 import numpy as np
 
-from ekfsim.world import Map, World
+from ekfsim.floor import Map
+from ekfsim.world import World
 
 from .cases import Case, case, map_told, noise_told, start_told
 from .rooms import (

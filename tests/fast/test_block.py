@@ -11,10 +11,11 @@ from ekfsim.commands import Kidnap, Move, Repeat, Say, Sense
 from ekfsim.files.packaged import packaged
 from ekfsim.files.scenes.load import check
 from ekfsim.filters.tuning import Tuning
+from ekfsim.floor import Map
 from ekfsim.study import block as study_block
 from ekfsim.study.block import watched
 from ekfsim.twins import taking
-from ekfsim.world import Faults, Map, Noise
+from ekfsim.world import Faults, Noise
 
 block = pytest.importorskip("ekfsim.fast.compiled.block", exc_type=ImportError)
 CLOSE = 1e-7  # relative: runs that are lost make much of what rounding leaves

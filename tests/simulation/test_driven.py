@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from ekfsim.floor import Map
 from ekfsim.geometry.angles import wrap
 from ekfsim.records import Control, Reading
 from ekfsim.scene import Scene
@@ -17,7 +18,7 @@ from ekfsim.systems.instrument import Landmark
 from ekfsim.systems.instruments import Bearings, Gnss, Markers, RangeBearings, Ranges, Ultrasonic
 from ekfsim.systems.robot import Tick
 from ekfsim.systems.robots import Mower
-from ekfsim.world import Map, Noise, Told, World
+from ekfsim.world import Noise, Told, World
 
 ROOM = Map(np.array([[-3, -3], [3, -3], [3, 3], [-3, 3.0]]))
 MARKS = (Landmark(0, 2.5, 0.2), Landmark(4, -1.0, -2.0), Landmark(7, 0.3, 2.0))

@@ -7,7 +7,8 @@ import numpy as np
 
 from ekfsim.files.given.given import Given
 from ekfsim.files.keys.worlds.world import NoiseKeys
-from ekfsim.world import Noise, Obstacle, RoundObstacle, WallLine, World
+from ekfsim.floor import Obstacle, RoundObstacle, WallLine
+from ekfsim.world import Noise, World
 
 OF = "World.of"  # how messages name what was handed over
 POSE = ("x", "y", "theta")

@@ -11,24 +11,13 @@ import numpy as np
 from ekfsim.files.keys.fields import PartKeys, Pose, aliases, keys_of_kind
 from ekfsim.files.keys.worlds.floor import LineKeys, ObstacleKeys
 from ekfsim.files.keys.worlds.world import BeliefKeys, BelievedStartKeys, SigmaKeys, WorldKeys
+from ekfsim.floor import Map, Obstacle, RoundObstacle, WallLine, wall_name
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.systems.faults import DriveFaults, SensorFaults
 from ekfsim.systems.instrument import Carried, Instrument
 from ekfsim.systems.robot import Robot
-from ekfsim.world import (
-    Axes,
-    Faults,
-    Landmark,
-    Map,
-    Noise,
-    Obstacle,
-    RoundObstacle,
-    Told,
-    WallLine,
-    World,
-    wall_name,
-)
+from ekfsim.world import Axes, Faults, Landmark, Noise, Told, World
 
 if TYPE_CHECKING:
     from ekfsim.files.keys.worlds.faults import FaultKeys, FaultySensorsKeys

@@ -11,6 +11,7 @@ from matplotlib.backend_bases import RendererBase
 from matplotlib.legend import Legend
 from matplotlib.transforms import Bbox, ScaledTranslation
 
+from ekfsim.floor import Map
 from ekfsim.geometry.ellipse import outline
 from ekfsim.records import Step
 from ekfsim.scene import Scene
@@ -25,7 +26,6 @@ from ekfsim.views.picture.written.names import Names
 from ekfsim.views.picture.written.samples import Handle
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.captions import watching
-from ekfsim.world import Map
 
 POINTS = 8.0  # of the legend's letters
 GAP, AXIS = 6.0, 40.0  # points, between picture and legend: beside it, and beneath its axis

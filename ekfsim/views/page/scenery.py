@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ekfsim.floor import Map, WallLine
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import cone_factor, radius_factor
 from ekfsim.printable import in_a_line
@@ -21,7 +22,6 @@ from ekfsim.views.picture.look import Look
 from ekfsim.views.picture.sight_artists import FIX, OTHERWISE, recorded_fixes
 from ekfsim.views.picture.written.lettering import shortened
 from ekfsim.views.words.captions import conditioned_label, cone_label, ellipse_label
-from ekfsim.world import Map, WallLine
 
 if TYPE_CHECKING:
     from shapely import Polygon

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Sequence
 
+from ekfsim.floor import BOUNDARY
 from ekfsim.why.records import Change, Kind, Tried
-from ekfsim.world import BOUNDARY
 
 PLURALS: dict[Kind, str] = {
     "noise": "told noises, each made true",

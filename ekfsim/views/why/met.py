@@ -6,13 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ekfsim.filters.belief import Refused, posed
+from ekfsim.floor import BOUNDARY
 from ekfsim.geometry import Array
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.picture.written.lettering import shortened
 from ekfsim.views.words.numbers import length
-from ekfsim.world import BOUNDARY
 
 NAME = 30  # signs of a wall's name
 

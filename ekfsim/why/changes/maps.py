@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from ekfsim.floor import Map, Obstacle, RoundObstacle, WallLine
 from ekfsim.geometry import Array
 from ekfsim.geometry.angles import wrap
 from ekfsim.raycast.walls import BOUNDARY
 from ekfsim.why.changes.told import told_change
 from ekfsim.why.records import Change
-from ekfsim.world import Map, Obstacle, RoundObstacle, WallLine, World
+from ekfsim.world import World
 
 Thing = Obstacle | RoundObstacle | WallLine
 SAME = 1e-9  # m, rad

@@ -8,7 +8,7 @@ import pytest
 
 import ekfsim
 from ekfsim.errors import InputError, UsageError
-from ekfsim.world import Obstacle, RoundObstacle, WallLine
+from ekfsim.floor import Obstacle, RoundObstacle, WallLine
 
 RATIOS = ("executionDst", "executionAng", "odometryDst", "odometryAng", "range")
 NOISE = {f"{name}SigmaRatio": 0.02 for name in RATIOS}

@@ -10,12 +10,13 @@ from scenes import SILENT
 from ekfsim.files.keys.recorded.recording import SYSTEM_OF, RecordingKeys
 from ekfsim.files.logs import read_log
 from ekfsim.filters.belief import posed
+from ekfsim.floor import Map
 from ekfsim.geometry.angles import wrap
 from ekfsim.localization import play
 from ekfsim.scene import Scene
 from ekfsim.systems import SYSTEMS
 from ekfsim.systems.instrument import Landmark
-from ekfsim.world import Map, Told, World
+from ekfsim.world import Told, World
 
 SHARED = Path(__file__).resolve().parents[3] / ".." / "shared" / "data"
 PYLON = (Landmark(1, 5.0, -5.0),)

@@ -14,6 +14,7 @@ from PIL import Image
 from scenes import DESK, NOISE, ROOM, SILENT, START, rich, scene, told, unbounded
 
 from ekfsim.commands import Kidnap, Move, Say, Sense
+from ekfsim.floor import Map, RoundObstacle, WallLine
 from ekfsim.geometry.ellipse import conditioned, radius_factor
 from ekfsim.localization import play
 from ekfsim.views.notebook.drawing import draw
@@ -25,7 +26,6 @@ from ekfsim.views.picture.look import Look, Paper
 from ekfsim.views.picture.panels import close_width
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.beams.beam import beam
-from ekfsim.world import Map, RoundObstacle, WallLine
 
 HOOK = np.array([[7.0, 4], [7, 6], [9, 6]])
 SIGMA = (0.3, 0.1, 0.2)

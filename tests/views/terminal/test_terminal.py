@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from ekfsim.commands import Command, Kidnap, Move, Say, Sense
 from ekfsim.filters.belief import Gaussian
+from ekfsim.floor import Map, Obstacle
 from ekfsim.localization import play
 from ekfsim.records import Entry
 from ekfsim.scene import Scene
@@ -18,7 +19,7 @@ from ekfsim.views.playback.playback import Playback
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.braille import cells
 from ekfsim.views.terminal.drawing import draw
-from ekfsim.world import Landmark, Map, Noise, Obstacle, Told, World
+from ekfsim.world import Landmark, Noise, Told, World
 
 LIMITS = (0.0, 10.0, 0.0, 8.0)
 SIZE = (80, 24)

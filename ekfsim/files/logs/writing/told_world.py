@@ -9,6 +9,7 @@ from ekfsim.files.keys.fields import PartKeys, aliases, keys_of_kind
 from ekfsim.files.keys.worlds.world import NoiseKeys
 from ekfsim.files.logs.degrees import degrees
 from ekfsim.files.scenes.checking.polygons import FloorPlan
+from ekfsim.floor import Map, Obstacle, RoundObstacle
 from ekfsim.geometry import Array
 from ekfsim.models.sensors.mounted import AT_THE_POSE
 from ekfsim.scene import Scene
@@ -16,7 +17,7 @@ from ekfsim.systems.estimating import Estimating
 from ekfsim.systems.instrument import Carried, Instrument
 from ekfsim.systems.robot import Robot
 from ekfsim.version import VERSION
-from ekfsim.world import Map, Obstacle, RoundObstacle, Told
+from ekfsim.world import Told
 
 NAME = "classroom"  # of the world: its own may tell what is wrong in it
 AXES = ("x", "y", "theta")

@@ -7,8 +7,9 @@ from ekfsim.errors import Mistake
 from ekfsim.files.scenes.checking.polygons import FloorPlan
 from ekfsim.files.scenes.checking.sound import Sound
 from ekfsim.files.yaml.telling import at
+from ekfsim.floor import Map
 from ekfsim.printable import short
-from ekfsim.world import Map, World
+from ekfsim.world import World
 
 
 def angle_warnings(file: Sound) -> Iterator[Mistake]:

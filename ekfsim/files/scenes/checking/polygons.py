@@ -8,9 +8,9 @@ from typing import Any, Self
 import numpy as np
 import shapely
 
+from ekfsim.floor import Map, Obstacle
 from ekfsim.geometry import Array
 from ekfsim.printable import quoted
-from ekfsim.world import Map, Obstacle
 
 Points = Sequence[Sequence[float]] | Array
 Circle = tuple[float, float, float]  # x, y, radius in m

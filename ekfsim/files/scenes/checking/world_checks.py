@@ -13,8 +13,8 @@ from ekfsim.files.scenes.checking.polygons import Circle, FloorPlan, Points
 from ekfsim.files.scenes.checking.sound import Sound
 from ekfsim.files.yaml.marked import Path
 from ekfsim.files.yaml.telling import nearest
+from ekfsim.floor import BOUNDARY, wall_name
 from ekfsim.printable import quoted, some
-from ekfsim.world import BOUNDARY, wall_name
 
 WALLED, UNWALLED = ("obstacle or wall", "obstacles and walls"), ("obstacle", "obstacles")
 

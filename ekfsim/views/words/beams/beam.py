@@ -13,6 +13,7 @@ import shapely
 
 from ekfsim.diagnostics.ambiguity import BeamSensor, Sighting, sighting_of
 from ekfsim.filters.belief import Refused
+from ekfsim.floor import BOUNDARY, Map
 from ekfsim.geometry import Array
 from ekfsim.models.sensors.laser import Laser
 from ekfsim.models.sensors.mounted import bare
@@ -22,7 +23,6 @@ from ekfsim.views.picture.sights import beam_length
 from ekfsim.views.picture.written.lettering import shortened
 from ekfsim.views.words.beams.told import elsewhere, origin, others_met
 from ekfsim.views.words.numbers import length
-from ekfsim.world import BOUNDARY, Map
 
 IN_METRES = re.compile(r"([\d.e-]+) m\b")
 TOUCHING = 1e-9  # of the range: what rounding makes of an end on the wall
