@@ -7,5 +7,6 @@ innovations.py  the innovations of a run, by sensor and target, in units of thei
 whiteness.py  whether those of one sensor are white around zero
 chances.py    of χ², of Beta variables and of coins
 verdict.py    what one run says: ΣNIS against its band, lost or not
+shutting_out.py  whether a filter that weighs its readings believes them no more, and since when
 summary.py    what is left of one run: errors, NIS, dead reckoning, the verdict
 """

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Self
 
 from ekfsim.diagnostics.innovations import Innovations
+from ekfsim.diagnostics.shutting_out import ShutOut, Weighing
 from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.filters.belief import Refused
 from ekfsim.geometry import Array
@@ -106,6 +107,7 @@ class Summary(Shown):
     layout: Layout = POSE
     expected_path: Array | None = None  # (n, 2) m, the outline that was to be driven
     start_known: bool = True  # False of a log whose truth does not tell where it begins
+    weighing: Weighing | None = None  # of a filter that weighs its readings
     steps: int = 0
     inputs: int = 0
     updates: int = 0
@@ -132,7 +134,12 @@ class Summary(Shown):
     def of(cls, scene: Scene) -> Self:
         """An empty summary for a run of this scene."""
         known = scene.log is None or scene.log.start_known
-        return cls(scene.world.layout, scene.world.expected_path, known)
+        return cls(scene.world.layout, scene.world.expected_path, known, Weighing.of(scene))
+
+    @property
+    def shut_out(self) -> ShutOut | None:
+        """Whether its filter believes its readings no more; None where it does, or weighs none."""
+        return self.evidence.trusts.shut_out(self.weighing)
 
     @property
     def readings(self) -> int:

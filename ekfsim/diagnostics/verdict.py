@@ -4,9 +4,10 @@ Of many runs more can be said: `ekfsim.study.verdict`.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
+from ekfsim.diagnostics.shutting_out import Trusts
 from ekfsim.filters.arithmetic.chi_square import band, quantile
 from ekfsim.filters.belief import Refused
 from ekfsim.records import Nees, Step
@@ -55,10 +56,12 @@ class Evidence:
     first_sum: float = 0.0
     first_dof: int = 0
     first_refused: int = 0
+    trusts: Trusts = field(default_factory=Trusts)  # of a filter that weighs its readings
 
     def add(self, step: Step) -> None:
         """Take one more step into account."""
         correction = step.correction
+        self.trusts.add(step)
         if correction is not None and not math.isnan(nis := float(correction.nis)):
             self.nis_sum += nis
             self.nis_dof += correction.innovation.shape[-1]

@@ -18,7 +18,7 @@ def scene_of(
     filter_name: str | None = None, gate: float | Literal["off"] | None = None,
     guard: str | None = None,
     log: str | None = None, reading: str = "corrected", settings: tuple[str, ...] = (),
-    particles: int | None = None, smooth: bool = False,
+    particles: int | None = None, hypotheses: int | None = None, smooth: bool = False,
 ) -> "Scene":  # fmt: skip
     """The scene of a commands file, or of what one would hold, overruled by the options that were
     given.
@@ -30,13 +30,13 @@ def scene_of(
     from ekfsim.files.packaged import resolve
     from ekfsim.files.scenes.checking.filter_checks import refuse_unread
     from ekfsim.files.scenes.load import read_scene
-    from ekfsim.files.scenes.settings import filters_in, particles_of, setting
+    from ekfsim.files.scenes.settings import filters_in, numbers_of, setting
     from ekfsim.filters.place import with_smoothed
 
     names = () if filter_name is None else filters_in(filter_name)
     world_file = None if world is None else resolve(world, "worlds")
     read = resolve(commands, "commands") if isinstance(commands, str) else commands
-    overruling = [*(setting(text) for text in settings), *particles_of(particles)]
+    overruling = [*(setting(text) for text in settings), *numbers_of(particles, hypotheses)]
     found = read_scene(read, world_file, log, cast("DocumentReading", reading), overruling)
     scene = found.get()
     warn(found.warnings)

@@ -13,6 +13,7 @@ from ekfsim.twins import taking
 MOST = 2**63 - 1  # of runs' numbers
 MOST_RUNS = 10**9  # of a study
 MOST_PARTICLES = 10**6  # of a run
+MOST_HYPOTHESES = 64  # of a run
 LEAST_SIDE, MOST_SIDE = 200, 10_000  # px, of a picture
 # of a document; told here again, so that --help need not load them
 READINGS = ("printed", "coded", "corrected")
@@ -102,6 +103,12 @@ PARTICLES = click.option(
     metavar="N",
     help="Of each run's particle filter, of amcl at most; short for --set filter.particles=N.",
 )
+HYPOTHESES = click.option(
+    "--hypotheses",
+    type=Whole(1, MOST_HYPOTHESES),
+    metavar="N",
+    help="Gaussians that mhekf keeps at most; short for --set filter.hypotheses=N.",
+)
 GATE = click.option(
     "--gate",
     type=Gate(),
@@ -146,6 +153,7 @@ PLAYED = (  # which run of which file
 SETTINGS = (  # what overrules the files in every run of a study
     SET,
     PARTICLES,
+    HYPOTHESES,
     GATE,
     GUARD,
     click.option(
@@ -194,6 +202,7 @@ WATCHED = (  # by whom a run is watched
     GUARD,
     SET,
     PARTICLES,
+    HYPOTHESES,
     click.option(
         "--confidence",
         type=Probability(),

@@ -17,6 +17,7 @@ from ekfsim.cli.program.options import (
     FORCE,
     GATE,
     GUARD,
+    HYPOTHESES,
     MOST_RUNS,
     PARTICLES,
     PLAIN,
@@ -84,6 +85,7 @@ OPTIONS = (
     ),
     SET,
     PARTICLES,
+    HYPOTHESES,
     GATE,
     GUARD,
     click.option(
@@ -159,8 +161,8 @@ def _expose(task: "Asked", out: Path, force: bool) -> None:
 
 def _asked(
     place: str, out: Path, fast: bool, world: str | None, hunted: str | None, goal: str | None,
-    settings: tuple[str, ...], seed: int | None, particles: int | None, gate: Any,
-    guard: str | None, **numbers: Any,
+    settings: tuple[str, ...], seed: int | None, particles: int | None,
+    hypotheses: int | None, gate: Any, guard: str | None, **numbers: Any,
 ) -> "Asked":  # fmt: skip
     """What is hunted for. Raises UsageError or InputError where that is nothing."""
     from ekfsim.hunting.hunt import Asked
@@ -171,7 +173,7 @@ def _asked(
         raise UsageError("--fast needs Numba; install it with: pip install 'ekfsim[fast]'")
     scene = scene_of_place(
         place, out, world, seed=seed, filter_name=hunted, settings=settings,
-        particles=particles, gate=gate, guard=guard,
+        particles=particles, hypotheses=hypotheses, gate=gate, guard=guard,
     )  # fmt: skip
     if not scene.commanded or scene.log is not None:
         raise UsageError(f"{place}: only the classroom's robot obeys commands; hunt in a room")

@@ -41,7 +41,7 @@ def tune(out: Path, keys: str | None, force: bool, confidence: float, **chosen: 
     from ekfsim.files.packaged import resolve
     from ekfsim.files.results.outputs import refuse_the_scene_itself
     from ekfsim.files.results.writing import refuse_existing, whole_file, whole_text
-    from ekfsim.files.scenes.settings import particles_of, setting
+    from ekfsim.files.scenes.settings import numbers_of, setting
     from ekfsim.fitting.trial import tried
     from ekfsim.fitting.written import commands_text, is_recorded, world_text
     from ekfsim.views.fitting.picture import picture, told
@@ -58,7 +58,8 @@ def tune(out: Path, keys: str | None, force: bool, confidence: float, **chosen: 
         refuse_the_scene_itself(file, scene)
     if scene.beside:
         raise UsageError("--filter: numbers are fitted for one filter; name one")
-    settings = [*map(setting, chosen["settings"]), *particles_of(chosen["particles"])]
+    numbers = numbers_of(chosen["particles"], chosen["hypotheses"])
+    settings = [*map(setting, chosen["settings"]), *numbers]
     hidden = not sys.stderr.isatty()
     with click.progressbar(length=200, label="trials", file=sys.stderr, hidden=hidden) as bar:
 

@@ -19,7 +19,7 @@ from ekfsim.files.scenes.settings import (
     Setting,
     fault_of,
     filters_in,
-    particles_of,
+    numbers_of,
     repeated,
     setting,
     swept,
@@ -99,6 +99,7 @@ def asked(
     sweeps: Sequence[str],
     settings: Sequence[str], gate: float | str | None, guard: str | None,
     reading: DocumentReading | None, fast: bool, particles: int | None = None,
+    hypotheses: int | None = None,
     log: str | None = None, smooth: bool = False,
 ) -> Request:  # fmt: skip
     """What the command line asks for:
@@ -114,7 +115,7 @@ def asked(
         *(setting(text) for text in settings),
         *(Setting(k, str(v), f"--{k} {v}") for k, v in set_apart),
     ]
-    own += particles_of(particles)
+    own += numbers_of(particles, hypotheses)
     request = request.overruled(tuple(own), tuple(map(swept, sweeps)))
     watching = request.filters if filters is None else filters_in(filters)
     return replace(

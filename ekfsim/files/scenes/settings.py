@@ -50,12 +50,13 @@ def setting(text: str, option: str = "--set") -> Setting:
     return made
 
 
-def particles_of(number: int | None) -> tuple[Setting, ...]:
-    """The setting that --particles is short for; none where it was not given."""
-    return (
-        ()
-        if number is None
-        else (Setting("filter.particles", str(number), f"--particles {number}"),)
+def numbers_of(particles: int | None, hypotheses: int | None) -> tuple[Setting, ...]:
+    """What --particles and --hypotheses are short for; none where they were not given."""
+    given = {"particles": particles, "hypotheses": hypotheses}
+    return tuple(
+        Setting(f"filter.{key}", str(number), f"--{key} {number}")
+        for key, number in given.items()
+        if number is not None
     )
 
 

@@ -76,7 +76,7 @@ def notes(
     parted = (apart.told for apart in view.apart if apart.since is not None)
     said = [
         losing(view, watching(scene)),
-        meaning(view),
+        meaning(view, scene),
         *parted,
         *_notes(view, scene, read, probability),
     ]

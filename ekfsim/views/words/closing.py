@@ -5,6 +5,7 @@ what was done, how far off it ended, and one plain verdict with its evidence.
 import math
 from collections.abc import Sequence
 
+from ekfsim.diagnostics.shutting_out import Weighing
 from ekfsim.diagnostics.summary import Errors, Summary
 from ekfsim.diagnostics.verdict import BAND, FIRST, LOST, Evidence, Verdict
 from ekfsim.filters.arithmetic.chi_square import band, quantile
@@ -16,6 +17,7 @@ from ekfsim.views.playback.parting import Apart
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.numbers import between, figure, number, turn
 from ekfsim.views.words.text_table import aligned
+from ekfsim.views.words.trust import shut_briefly, shutting_out
 from ekfsim.views.words.whiteness import sentence as whiteness
 
 REASONS = {
@@ -39,7 +41,7 @@ def conclude(summary: Summary) -> str:
         lines += [f"Distance to the expected path: {_metres(summary.path)}"]
     if summary.innovations.of:
         lines += [f"Innovations: {whiteness(summary.innovations.found())}"]
-    lines += [f"Verdict: {sentence(summary.evidence)}", *_cause([summary])]
+    lines += [f"Verdict: {sentence(summary.evidence)}", *_cause([summary]), *_shut_out(summary)]
     return "".join(f"{line}\n" for line in lines)
 
 
@@ -64,11 +66,17 @@ def conclude_all(
         *(apart.told for apart in parted),
         *_on_the_way(names, shares),
     ]
-    told = (
+    verdicts = (
         f"{name}: {sentence(summary.evidence)}"
         for name, summary in zip(names, summaries, strict=True)
     )
-    said = [*lines, *_cause(summaries)] if quiet else [*lines, "", *told, *_cause(summaries)]
+    shut = [
+        f"{name}: {told[:1].lower()}{told[1:]}"
+        for name, summary in zip(names, summaries, strict=True)
+        for told in _shut_out(summary)
+    ]
+    said = lines if quiet else [*lines, "", *verdicts]
+    said += [*_cause(summaries), *shut]
     return "".join(f"{line}\n" for line in said)
 
 
@@ -97,6 +105,16 @@ def _cause(summaries: Sequence[Summary]) -> list[str]:
         f"first {few}; say where it is with --set start.x=… (y, theta), and how surely with "
         "--set belief.sigma.x=… (y, theta)"
     ]
+
+
+def _shut_out(summary: Summary) -> list[str]:
+    """That the filter believes its readings no more, where it is so: of one that weighs them it is
+    the way to get lost.
+    """
+    if (found := summary.shut_out) is None:
+        return []
+    lost = summary.evidence.lost_from is not None
+    return [f"{'How it was lost' if lost else 'Doubted'}: {shutting_out(found, lost)}"]
 
 
 def _table(names: Sequence[str], summaries: Sequence[Summary]) -> list[str]:
@@ -191,7 +209,7 @@ def sentence(evidence: Evidence) -> str:
             )
 
 
-def meaning(view: View) -> str:
+def meaning(view: View, scene: Scene) -> str:
     """What the verdict on the run comes to, in its last view: whether to believe the filter, and
     since when not. Nothing in any other, nor where several filters watch.
     """
@@ -200,7 +218,11 @@ def meaning(view: View) -> str:
         return ""
     match evidence.verdict:
         case Verdict.LOST:
-            return f"not to be believed: lost since step {evidence.lost_from}{_shown(evidence)}"
+            since = f"lost since step {evidence.lost_from}"
+            shut = evidence.trusts.shut_out(Weighing.of(scene))
+            if shut is not None:
+                return f"not to be believed: {since}; {shut_briefly(shut)}"
+            return f"not to be believed: {since}{_shown(evidence)}"
         case Verdict.OVER_CONFIDENT:
             return _but_for_refused(evidence) or (
                 f"not to be believed since step {evidence.nis_outside_from}: "

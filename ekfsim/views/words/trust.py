@@ -1,7 +1,9 @@
 """How far a filter that weighs its readings believed one: why, by which formula, and the value."""
 
 import math
+from statistics import NormalDist
 
+from ekfsim.diagnostics.shutting_out import ShutOut
 from ekfsim.filters.belief import Correction
 from ekfsim.filters.cures.huber import limit
 from ekfsim.filters.place import forward
@@ -32,6 +34,43 @@ def believed(c: Correction) -> str:
     if c.trust is None or not float(c.trust) < 1:
         return ""
     return f"believed to {number(float(f'{float(c.trust):.2g}'))}"
+
+
+def shutting_out(found: ShutOut, lost: bool) -> str:
+    """That a filter believes its readings no more, and what comes of it. lost : the run is"""
+    of, weighing = f"{found.doubted} of the {found.readings} readings", found.weighing
+    since = f"since step {found.since}"
+    if weighing.name == "huber":
+        limit = f"{number(sigmas(weighing.rare))} sigma"
+        seldom = f"where 1 in {1 / weighing.rare:.3g} would"
+        beyond = f"{of} {since} lay beyond {limit} of what huber expected, {seldom}"
+        end = ", and together they could not call it back" if lost else ""
+        return f"{beyond}; each pulled no harder than one at {limit}{end}"
+    little = f"beta was below {number(weighing.little)} in {of} {since}"
+    if not lost:
+        told = f"{number(100 * weighing.rare)} %"
+        return f"{little}: pdaf took them for clutter, of which it expects {told}"
+    return (
+        f"{little}: pdaf took them for clutter, for its own ellipse was too small, and so they "
+        "could not call it back"
+    )
+
+
+def shut_briefly(found: ShutOut) -> str:
+    """The same for a picture."""
+    of = f"{found.doubted} of {found.readings} readings since step {found.since}"
+    if found.weighing.name == "huber":
+        return f"{of} lay beyond {number(sigmas(found.weighing.rare))}σ"
+    return f"it took {of} for clutter"
+
+
+def sigmas(rare: float) -> float:
+    """Beyond how many σ an innovation lies with that probability.
+
+    >>> round(sigmas(math.erfc(2 / math.sqrt(2))), 12)
+    2.0
+    """
+    return NormalDist().inv_cdf(1 - rare / 2)
 
 
 def _weight(c: Correction, scene: Scene, w: float) -> str:

@@ -1,4 +1,6 @@
-"""Numbers of a filter's own: in a commands file, by --set filter.NAME=VALUE, by --particles."""
+"""Numbers of a filter's own: in a commands file, by --set filter.NAME=VALUE, by
+--particles and --hypotheses.
+"""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -134,8 +136,9 @@ def test_settings_that_the_files_own_filter_does_not_read_are_told_by_check_alon
     assert read_scene(tmp_path / "c.yaml").warnings == []  # --filter may name another
 
 
-def request(filters="pf", sweeps=(), particles=None):
-    return asked("tour", None, 3, 1, filters, sweeps, (), None, None, None, False, particles)
+def request(filters="pf", sweeps=(), particles=None, hypotheses=None, settings=()):
+    numbers = particles, hypotheses
+    return asked("tour", None, 3, 1, filters, sweeps, settings, None, None, None, False, *numbers)
 
 
 def test_a_study_sweeps_a_number_of_the_filter_and_its_runs_can_be_played():
@@ -217,3 +220,19 @@ def test_dropping_is_around_whatever_filter_there_is():
     made = filter_of(scene)
     assert isinstance(made, ShadowsAlone)
     assert made.filter.alpha == 0.7
+
+
+def test_hypotheses_are_set_by_an_option_of_their_own():
+    scene = scene_of("tour", filter_name="mhekf", hypotheses=3)
+    assert filter_of(scene).hypotheses == 3
+    most = max(np.count_nonzero(step.posterior.weights) for step in play(scene) if step.correction)
+    assert 1 < most <= 3
+    assert Plan.of(request("mhekf,ekf", hypotheses=3)).cases[0].scene.tuning.hypotheses == 3
+    with pytest.raises(UsageError) as told:
+        scene_of("tour", hypotheses=3)
+    refusal = "--hypotheses 3: no filter here (ekf) reads it; name one that does: --filter mhekf"
+    assert str(told.value) == refusal
+    with pytest.raises(UsageError, match=r"^--hypotheses 3: no filter here \(ekf, ukf\) reads it"):
+        Comparison.of(with_sides(request("ekf", hypotheses=3), "filter=ekf", "filter=ukf"))
+    with pytest.raises(UsageError, match=r"'filter.hypotheses' is told already by --set"):
+        request("mhekf", hypotheses=3, settings=("filter.hypotheses=4",))

@@ -124,10 +124,10 @@ def test_a_filter_is_not_condemned_for_what_it_refused(guard):
     total = sum(float(s.correction.nis) for s in used)
     low, high = chi2.interval(0.99, len(used))
     if guard == "warn":
-        assert meaning(last).startswith("not to be believed: lost since step 13; ")
+        assert meaning(last, run).startswith("not to be believed: lost since step 13; ")
         return
     assert len(used) < sum(s.correction is not None for s in steps)
-    assert meaning(last) == (
+    assert meaning(last, run) == (
         f"to be believed but for what it refused: ΣNIS of the {len(used)} readings that it used is "
         f"{total:.3g}, within {low:.3g} to {high:.3g}"
     )

@@ -126,7 +126,7 @@ class Layout:
         several = 2 if view.others and rows - len(lines) > 1 else 1  # lines: each has its own
         room = several * (self.columns - len(sign))
         judged = sign + judgement(view, self.scene, self.probability, room)
-        for told in (judged, losing(view, self.scene.watching) or meaning(view)):
+        for told in (judged, losing(view, self.scene.watching) or meaning(view, self.scene)):
             if told and len(lines) < rows:
                 told = printable(told.translate(PLAIN), True) if ascii else printable(told)
                 more = within(told, self.columns, rows - len(lines), ascii)
