@@ -133,7 +133,7 @@ def filter_of(scene: Scene, runs: Integers | None = None) -> Filter:
         first_belief(scene), scene.world.layout.headings, scene.gate,
         lambda: particle_generators(scene.seed, numbers), scene.tuning,
         lambda: nominal_trajectory(scene), scene.world.anywhere, places_of(scene),
-        runs,
+        runs, scene.world.layout.places,
     )  # fmt: skip
     name = forward(scene.filter)
     return system_of(scene.world.system).filter(name, scene.reading, beginning)

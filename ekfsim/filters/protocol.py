@@ -32,6 +32,7 @@ class Beginning:
     # so many of them : (p, n), the same for all runs of a seed; None as above
     places: Callable[[int], Array] | None = None
     runs: Integers | None = None  # (N,) the numbers of runs side by side; None of one alone
+    pose: tuple[int, int, int] = (0, 1, 2)  # which entries of the state are x, y and θ
 
 
 class Filter(Protocol):

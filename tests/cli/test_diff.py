@@ -240,7 +240,8 @@ def test_a_log_is_compared_too(folder):
         (
             ("--filter", "mine.py", "--against", "pf"),
             "ekfsim: --against pf: does not go on from a mean and a covariance alone; "
-            "known: kf, ekf, iekf, ukf, ukf-augmented, huber, pdaf, or one of your own: FILE.py\n",
+            "known: kf, ekf, iekf, ukf, ukf-augmented, huber, pdaf, invariant, or one of your own: "
+            "FILE.py\n",
         ),
         (
             ("--filter", "mine.py", "--provided", "f,k"),

@@ -451,18 +451,18 @@ def test_no_filter_is_given_the_equations_of_another(filter):
     text = "".join(narrate(view, made, explain=True) for view in views(play(made)))
     tangents, at_estimate = (
         filter in ("kf", "kf-nominal"),
-        filter in ("ekf", "iekf", "huber", "pdaf"),
+        filter in ("ekf", "iekf", "huber", "pdaf", "invariant"),
     )
     weighing = filter in ("huber", "pdaf")
     assert filter in BY_FILTER
     assert (
         ("J_x P J_x' is:" in text)
-        == ("(eq 12: (I - K J_H) P)" in text or weighing)
+        == ("(eq 12: (I - K J_H) P" in text or weighing)
         == (tangents or at_estimate)
     )
     assert ("(eq 4: f(x, u))" in text) == ("(eq 8: h(x))" in text) == at_estimate
     assert ("(eq 10: x + K r)" in text) == (
-        filter not in ("iekf", "pf", "amcl", "huber", "pdaf", "mhekf")
+        filter not in ("iekf", "pf", "amcl", "huber", "pdaf", "mhekf", "invariant")
     )
     assert ("J_u P_u J_u' is:" in text) == (filter not in ("pf", "amcl", "ukf-augmented"))
     assert ("x0 the first state estimate" in text) == (filter == "kf")

@@ -53,7 +53,8 @@ def tally_of(scene: Scene, runs: int, pupil: Pupil) -> Tally:
 
 def _block(scene: Scene, numbers: Integers, pupil: Pupil) -> Tally:
     """The same of some runs side by side."""
-    beginning = Beginning(first_belief(scene), scene.world.layout.headings)
+    layout = scene.world.layout
+    beginning = Beginning(first_belief(scene), layout.headings, pose=layout.places)
     filter = OwnFilter.around(pupil.new_caller, beginning, pupil.together)
     first = first_belief(scene, numbers.shape)
     steps = localize(entries_of(scene, numbers), filter, first, scene.guard, scene.world.layout)
