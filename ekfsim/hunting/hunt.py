@@ -79,11 +79,6 @@ class Hunted:
     against: Result | None  # the same of the other filter
     needed: tuple[Needed, ...] = ()  # where a told number is changed: each, the smallest first
 
-    @property
-    def is_barer(self) -> bool:
-        """Whether its world is another than the one that was asked of."""
-        return self.scene.world is not self.asked.scene.world
-
 
 def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]) -> Hunted:
     """The best that can be found. What `heed` raises ends the search with the best so far, or

@@ -13,6 +13,7 @@ from ekfsim.files.scenes.settings import setting
 from ekfsim.localization import localize, play
 from ekfsim.records import Control, Reading
 from ekfsim.simulation import simulate
+from ekfsim.smoothing import smooth
 from ekfsim.systems.instruments import Gnss, Ultrasonic
 from ekfsim.twins import taking
 from ekfsim.views.picture.sights import sight
@@ -245,3 +246,27 @@ def test_what_is_recorded_with_a_delay_reads_back_as_it_was(tmp_path):
     again, ran = list(play(load_scene(told))), list(play(scene))
     assert len(again) == len(ran)
     np.testing.assert_allclose(again[-1].posterior.mean, ran[-1].posterior.mean, atol=1e-9)
+
+
+@pytest.mark.parametrize("place", [0, 7, 99])
+def test_a_reading_that_is_older_than_the_start_is_left_out_before_anything_is_kept(
+    tmp_path, place
+):
+    """And said; whatever comes after it is as in a run that never had it, smoothed as well."""
+    scene = scene_of(tmp_path, GNSS + TWO)
+    prompt = [Sample(e.t, e.given) for e in simulate(scene) if isinstance(e.given, Reading)]
+    old = Sample(0.2, prompt[3].reading, delay=0.5)
+    runs, told = [], list[str]()
+    for samples in (prompt, [*prompt[:place], old, *prompt[place:]]):
+        log = timeline(scene, samples).recorded(scene.world, "corrected", told).log
+        steps = list(localize(log.entries, filter_of(scene), log.first, "warn", scene.world.layout))
+        runs.append((log, steps, smooth(steps)))
+    (without, *_), (log, *_) = runs
+    assert (
+        len([one for one in told if "1 reading lies before or after the motion: left" in one]) == 1
+    )
+    assert [e.t for e in log.entries] == [e.t for e in without.entries]
+    for steps, others in zip(runs[0][1:], runs[1][1:], strict=True):
+        for one, other in zip(steps, others, strict=True):
+            assert one.posterior.mean.tolist() == other.posterior.mean.tolist()
+            assert one.posterior.covariance.tolist() == other.posterior.covariance.tolist()

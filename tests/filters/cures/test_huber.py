@@ -105,3 +105,15 @@ def test_the_narrative_tells_the_weight():
     )
     assert "Huber's weight is 0.622155: sqrt(NIS) is 3.21463, and beyond 2 a reading" in short
     assert "(w = min(1, k / sqrt(NIS)), k = 2; the reading acts as if C_v + " in long
+
+
+@pytest.mark.parametrize(
+    ("name", "gate", "told"),
+    [("huber", 0.99, True), ("pdaf", 0.9, True), ("huber", None, False), ("ekf", 0.99, False)],
+)
+def test_a_gate_beside_a_weight_is_never_without_saying_so(name, gate, told):
+    """Rule 31."""
+    from ekfsim.views.words.opening import opening
+
+    scene = replace(load_scene("diverge-11-short-returns"), filter=name, gate=gate)
+    assert ("A gate and a weight judge each reading" in opening(scene)) == told

@@ -9,7 +9,19 @@ from numpy.testing import assert_allclose
 
 from ekfsim.diagnostics.verdict import lost
 from ekfsim.files.scenes.load import load_scene
-from ekfsim.filters.mixture.relocating import FEWEST, MOST, ODDS, SURPRISE, Memory, sought, span
+from ekfsim.filters.belief import Gaussian
+from ekfsim.filters.mixture.mhekf import MHEKF
+from ekfsim.filters.mixture.places import mixed
+from ekfsim.filters.mixture.relocating import (
+    FEWEST,
+    MOST,
+    ODDS,
+    SURPRISE,
+    Found,
+    Memory,
+    sought,
+    span,
+)
 from ekfsim.localization import play
 from ekfsim.models.motions.move_turn import MoveTurn
 from ekfsim.models.sensors.laser import Laser
@@ -80,6 +92,21 @@ def test_a_place_is_found_by_what_is_read_there():
     found = sought(memory.last(8, np.array([True])), places, (2,))
     best = int(found.log[0].argmax())
     assert_allclose(found.means[0, best], x, atol=0.02)
+
+
+@pytest.mark.parametrize("doubt", [-1.0, 0.0, 2.0])
+def test_places_that_are_found_weigh_as_much_as_the_doubt(doubt):
+    """As log odds: e to the doubt times as much as all that was believed before, in one run."""
+    before = mixed(Gaussian(np.zeros((1, 3)), 0.01 * np.eye(3)[None]))
+    log = np.log([[3.0, 1.0]])
+    means = np.array([[[5.0, 0, 0], [9.0, 0, 0]]])
+    found = Found(means, np.broadcast_to(0.01 * np.eye(3), (1, 2, 3, 3)), log)
+    after = MHEKF()._with(found, np.array([doubt]), before)
+    each = zip(after.means[0, :, 0].tolist(), after.weights[0].tolist(), strict=True)
+    weights = {x: w for x, w in each if w > 0}
+    share = math.exp(doubt) / (1 + math.exp(doubt))
+    assert weights[0.0] == pytest.approx(1 - share)
+    assert (weights[5.0], weights[9.0]) == pytest.approx((share * 3 / 4, share / 4))
 
 
 def test_a_robot_that_is_carried_away_is_found_again():
