@@ -96,8 +96,14 @@ class Sensor(Protocol):
 class OfRuns(Protocol):
     """A sensor that holds something of each of N runs side by side."""
 
-    def of_run(self, run: tuple[int, ...]) -> Sensor:
-        """The sensor of one of them."""
+    def of_run(self, run: tuple[int | Integers, ...]) -> Sensor:
+        """The sensor of one of them; of some of them, where the index is an array."""
+
+
+def of_rows(sensor: Sensor, rows: Integers) -> Sensor:
+    """The sensor of some of N runs. rows : (m,)"""
+    of_run = getattr(sensor, "of_run", None)  # a protocol would take far longer to be asked
+    return sensor if of_run is None else of_run((rows,))
 
 
 @runtime_checkable

@@ -13,6 +13,7 @@ from ekfsim.why.changes.singles import singles
 from ekfsim.why.changes.suspects import FEW, Suspect, suspects_of
 from ekfsim.why.changes.told import ratios, starts
 from ekfsim.why.records import Change, Explanation, Mechanism
+from ekfsim.why.trying.chance import by_chance
 from ekfsim.why.trying.crowd import Crowd
 from ekfsim.why.trying.minimal import SpentError, minimal
 from ekfsim.why.trying.naming import named
@@ -60,9 +61,11 @@ def explain(
     suspects = suspects_of(scene, steps) if scene.commanded else suspects_of_drive(scene)
     _try_all(scene, suspects, trials)
     few = max(min(runs, FEWEST), min(runs, PARTICLE_STEPS // (FEW * len(steps))))
-    guilty, shares = named(
-        suspects, trials, Crowd(scene, runs, was.outcome), Crowd(scene, few, was.outcome)
-    )
+    crowd = Crowd(scene, runs, was.outcome)
+    guilty, shares = named(suspects, trials, crowd, Crowd(scene, few, was.outcome))
+    mechanisms = tuple(one.mechanism for one in guilty)
+    if not guilty and (luck := by_chance(steps, crowd, was.outcome)) is not None:
+        mechanisms, shares = (Mechanism.CHANCE,), luck
     cure = _cure(guilty, trials)
     cured = tuple(trials.again(cure)) if cure else ()
     return Explanation(
@@ -73,8 +76,8 @@ def explain(
         cure,
         tuple(one.change for one in trials.tried if one.cures and one.change not in cure),
         parted(steps, cured),
-        guilty[0].mechanism if len(guilty) == 1 else None,
-        tuple(one.mechanism for one in guilty) if len(guilty) > 1 else (),
+        mechanisms[0] if len(mechanisms) == 1 else None,
+        mechanisms if len(mechanisms) > 1 else (),
         trials.replays,
         budget,
         shares,

@@ -61,6 +61,7 @@ class Mechanism(Enum):
     WRONG_ROBOT = "wrong numbers of the robot"
     WRONG_SENSOR = "wrong numbers of a sensor"
     WRONG_EQUATIONS = "wrong equations"
+    CHANCE = "chance"  # nothing: by its own bound one run in so many is beyond it
     NO_DIRECTION_SEEN = "no direction is seen"  # of a run that did not diverge
 
 
@@ -102,7 +103,8 @@ class Tried:
 @dataclass(frozen=True)
 class Shares:
     """Of how many of the same runs something holds, as they stand and with a change: as a share,
-    and the 95 % interval of its difference (Newcombe 1998, method 10).
+    and the 95 % interval of its difference (Newcombe 1998, method 10). Without a change the
+    interval is that of the share (Wilson).
     """
 
     runs: int
@@ -110,7 +112,7 @@ class Shares:
     lost_with: float  # with the change
     low: float  # of lost_with − lost
     high: float
-    change: Change  # as a rule of a whole class: "such beams left out"
+    change: Change | None  # as a rule of a whole class: "such beams left out"
     of: Outcome = "lost"  # what is counted
 
 

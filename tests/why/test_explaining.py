@@ -9,7 +9,6 @@ from ekfsim.localization import play
 from ekfsim.study.block import run_block
 from ekfsim.why import Mechanism, explain
 from ekfsim.why.explaining import parted
-from ekfsim.why.trying.crowd import Crowd
 
 RUNS = 200
 
@@ -49,14 +48,6 @@ def test_two_causes_are_told_as_two():
     assert found.mechanism is None
     assert set(found.causes) == {Mechanism.LASER_OVERTRUSTED, Mechanism.TURN_SCALE}
     assert len(found.cure) == 2
-
-
-def test_bad_luck_has_no_name():
-    """Of the control four runs in a thousand are lost: by chance, so no change names a cause."""
-    scene = load_scene("diverge-00-control")
-    unlucky = int(np.flatnonzero(Crowd(scene, 1000, "lost").bad())[0])
-    found = explain(replace(scene, run=unlucky), 1000)
-    assert (found.outcome, found.mechanism, found.causes) == ("lost", None, ())
 
 
 def test_the_budget_is_kept_and_told():

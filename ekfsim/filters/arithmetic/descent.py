@@ -8,7 +8,7 @@ from ekfsim.filters.arithmetic.algebra import wrapped
 from ekfsim.filters.arithmetic.square_root import conditioned, slope
 from ekfsim.filters.arithmetic.tolerances import CONVERGED, ROUNDING
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.models.protocols import Sensor
+from ekfsim.models.protocols import Sensor, of_rows
 from ekfsim.twins import twinned
 
 SHORTEST = 2.0**-10  # a step that must be shortened so much before it leads down leads nowhere
@@ -70,7 +70,7 @@ class Search:
             tries -= 1
             w_t = w[going] + share[going, None] * step[going]
             x_t = wrapped(self.x[going] + np.matvec(self.L[going], w_t), self.headings)
-            h_t, H_t, _ = self.sensor.linearize(x_t)
+            h_t, H_t, _ = of_rows(self.sensor, going).linearize(x_t)
             ν_t = self.sensor.residual(self.z[going], h_t)
             J_t, slack = self._cost(going, w_t, ν_t, h_t)
             down = J_t <= J[going] + slack

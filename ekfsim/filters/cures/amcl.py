@@ -19,7 +19,7 @@ from ekfsim.filters.belief import Belief, Correction, Particles, Prediction, Ref
 from ekfsim.filters.pf import PF, silverman
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.models.protocols import Motion, Sensor
+from ekfsim.models.protocols import Motion, Sensor, of_rows
 
 if TYPE_CHECKING:
     from numpy.random import Generator
@@ -172,7 +172,8 @@ class AMCL(PF):
         for rows, p in groups:
             alike, of_them = crowd.part(rows, p), self._of(rows, p)
             about = self._about(alike, crowd.number.reshape(N)[rows])
-            weights, were, told = of_them._weighed(alike, sensor, z[rows], skip[rows], about)
+            theirs = of_rows(sensor, rows)
+            weights, were, told = of_them._weighed(alike, theirs, z[rows], skip[rows], about)
             used[rows] = were[..., 0]
             weighted = of_them._summed(alike.states, weights)
             x, P = np.where(were, weighted.mean, alike.mean), weighted.covariance

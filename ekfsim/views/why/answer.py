@@ -149,6 +149,11 @@ def shares(found: Shares, deed: str | None = None) -> str:
     """
     low, high = sorted(100 * edge for edge in (found.low, found.high))
     what = found.of
+    if found.change is None:
+        return (
+            f"Of {found.runs} runs {percent(found.lost)} are {what} [{low:.1f} to {high:.1f} %], "
+            "no more than that"
+        )
     change = 100 * (found.lost_with - found.lost)
     numbers = f"{change:+.1f} points, {low:+.1f} to {high:+.1f}".replace("-", "−")
     return (

@@ -7,6 +7,7 @@ import numpy as np
 
 from ekfsim.commands import Kidnap, Move
 from ekfsim.diagnostics.ambiguity import sighting_of
+from ekfsim.diagnostics.verdict import BAND, LOST
 from ekfsim.filters.belief import posed
 from ekfsim.records import Reading, Step
 from ekfsim.scene import Scene
@@ -26,7 +27,7 @@ OF_NO_BEAM = (  # what no single beam has done
     *(Mechanism.LASER_OVERTRUSTED, Mechanism.LASER_DISTRUSTED),
     *(Mechanism.ODOMETRY_OVERTRUSTED, Mechanism.ODOMETRY_DISTRUSTED),
     *(Mechanism.WHEEL_SCALE, Mechanism.TURN_SCALE, Mechanism.SLIP, Mechanism.KIDNAP),
-    *(Mechanism.WRONG_START, Mechanism.HEADING_SPREAD),
+    *(Mechanism.WRONG_START, Mechanism.HEADING_SPREAD, Mechanism.CHANCE),
 )
 NUMBERS = {2: "twice", 3: "three times", 4: "four times", 5: "five times", 10: "ten times"}
 PARTS = {2: "half", 3: "a third of", 4: "a quarter of", 5: "a fifth of", 10: "a tenth of"}
@@ -80,12 +81,24 @@ def because(explanation: Explanation, mechanism: Mechanism) -> str:
             return _repeated(explanation)
         case Mechanism.CLOSE_TO_THE_WALL:
             return _close(explanation)
+        case Mechanism.CHANCE:
+            return by_chance(explanation)
         case Mechanism.NO_DIRECTION_SEEN:
             return (
                 "No beam measures along one direction, and the estimate says so: its ellipse grows "
                 "there"
             )
     return f"What there is of it: {mechanism.value}"
+
+
+def by_chance(explanation: Explanation) -> str:
+    """That a bound has runs beyond it of every filter."""
+    if explanation.outcome == "lost":
+        many, beyond = 1 / (1 - LOST), f"beyond the {100 * LOST:g} % bound of its NEES"
+    else:
+        side = "above" if explanation.outcome == "over-confident" else "below"
+        many, beyond = 2 / (1 - BAND), f"{side} the {100 * BAND:g} % band of its NIS"
+    return f"Bad luck: of an honest filter, too, one run in {many:.0f} ends {beyond}"
 
 
 def culprit(explanation: Explanation) -> Step | None:

@@ -78,7 +78,8 @@ class OfItsWall(Sensor):
         """∂r/∂p = −n / n·d      ∂r/∂θ = −r n·d⊥ / n·d : (…, 1, 3), 0 where h is nan"""
         r, n, d, n_d = self._met(x)
         aside = np.stack([-d[..., 1], d[..., 0]], axis=-1)
-        rows = np.stack([n[..., 0], n[..., 1], r * np.vecdot(n, aside)], axis=-1)
+        across = r * np.vecdot(n, aside)
+        rows = np.stack(np.broadcast_arrays(n[..., 0], n[..., 1], across), axis=-1)
         known = ~np.isnan(r)[..., None]
         H = np.where(known, -rows / np.where(known, n_d[..., None], 1.0), 0.0)
         return np.asarray(H)[..., None, :]
@@ -87,7 +88,7 @@ class OfItsWall(Sensor):
         """(ratio · r)² : (…, 1, 1)"""
         return np.square(self.range_ratio * self.h(x))[..., None]
 
-    def of_run(self, run: tuple[int, ...]) -> Sensor:
+    def of_run(self, run: tuple[int | Integers, ...]) -> Sensor:
         """With the wall that is met in that run."""
         return replace(self, place=_one(self.place, run, 1), normal=_one(self.normal, run, 1))
 
@@ -131,12 +132,12 @@ class OnItsWall(Sensor):
         """That of the laser : (…, 1, 1)"""
         return self.laser.R(x)
 
-    def of_run(self, run: tuple[int, ...]) -> Sensor:
+    def of_run(self, run: tuple[int | Integers, ...]) -> Sensor:
         """With the line that is met in that run."""
         return replace(self, line=self.line[run] if self.line.ndim else self.line)
 
 
-def _one(of_runs: Array, run: tuple[int, ...], inner: int = 0) -> Array:
+def _one(of_runs: Array, run: tuple[int | Integers, ...], inner: int = 0) -> Array:
     """What is one run's; what is the same for all has no axes but its `inner` ones."""
     return np.asarray(of_runs[run]) if of_runs.ndim > inner else of_runs
 
@@ -175,7 +176,7 @@ class OfItsNoise(Sensor):
         R = np.broadcast_to(variance, np.broadcast_shapes(variance.shape, x.shape[:-1]))
         return R[..., None, None]
 
-    def of_run(self, run: tuple[int, ...]) -> Sensor:
+    def of_run(self, run: tuple[int | Integers, ...]) -> Sensor:
         """With the noise of that run's range."""
         return replace(self, variance=_one(self.variance, run))
 
