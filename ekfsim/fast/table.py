@@ -118,7 +118,7 @@ TWINS: tuple[Twin, ...] = (
     Twin(
         of="ekfsim.study.block:watched",
         form="ekfsim.fast.compiled.block:watched",
-        when="commands of the classroom, an EKF as it comes, no guard that looks about",
+        when="commands of the classroom; ekf, huber or pdaf as it comes; no guard that looks about",
         compiled=True,
     ),
     Twin(

@@ -24,6 +24,7 @@ from ekfsim.scene import Scene
 from ekfsim.simulation.draws import BLOCK
 from ekfsim.study.block import run_block
 from ekfsim.study.code import digests, of_same_code
+from ekfsim.study.running.whole_runs import by_parts
 from ekfsim.study.tally import Tally
 from ekfsim.twins import Way, compiles, taken
 from ekfsim.version import VERSION
@@ -75,7 +76,9 @@ class Plan:
                 f"{request.commands_name}: a recording is one run only; sweep its settings with "
                 "`ekfsim study`"
             )
-        return cls(request, *cases_of(request))
+        cases, warnings = cases_of(request)
+        parts = by_parts(case.scene for case in cases) if request.fast else ()
+        return cls(request, cases, (*warnings, *parts))
 
     @property
     def keys(self) -> tuple[str, ...]:

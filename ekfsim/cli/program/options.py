@@ -47,7 +47,8 @@ FAST = click.option(
     "--fast",
     is_flag=True,
     callback=_one_way,
-    help="Calculate with code that Numba compiles (the extra `fast`).",
+    help="Calculate with code that Numba compiles (the extra `fast`): whole runs of ekf, huber and "
+    "pdaf in the classroom, of all else beams and matrices.",
 )
 PLAIN = click.option(
     "--plain",

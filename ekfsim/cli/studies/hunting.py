@@ -26,7 +26,7 @@ from ekfsim.cli.program.options import (
     WORLD,
     with_options,
 )  # fmt: skip
-from ekfsim.cli.program.process import heed, part_with, shown, width
+from ekfsim.cli.program.process import heed, part_with, shown, warn, width
 from ekfsim.errors import RunError, UsageError
 from ekfsim.filters.place import label
 
@@ -167,6 +167,7 @@ def _asked(
     """What is hunted for. Raises UsageError or InputError where that is nothing."""
     from ekfsim.hunting.hunt import Asked
     from ekfsim.student.comparing.sides import comparable
+    from ekfsim.study.running.whole_runs import by_parts
     from ekfsim.twins import compiles, taken
 
     if fast and not compiles():
@@ -193,6 +194,9 @@ def _asked(
         what = f"--change {numbers['change']}"
         raise UsageError(f"{what}: name COMMANDS that are to be lost, and no other goal than runs")
     plain = replace(scene, beside=())
+    if fast:
+        watching = {scene.filter, *([against] if against else [])}
+        warn(by_parts(replace(plain, filter=name) for name in sorted(watching)))
     return Asked(plain, goal=chosen, against=against, way=way, **numbers)
 
 

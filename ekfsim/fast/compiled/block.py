@@ -1,4 +1,5 @@
-"""Runs of the classroom side by side, watched by the EKF, from their draws to what is counted.
+"""Runs of the classroom side by side, watched by ekf, huber or pdaf, from their draws to what is
+counted.
 
 The text makes a Step of arrays of every command, and judges it. Here a block is the state of its
 runs and what is counted of them, and a command takes three or four calls of compiled code. The
@@ -18,6 +19,7 @@ from ekfsim.fast.compiled.models import normals_met
 from ekfsim.fast.many.nees import CLEAR
 from ekfsim.filters.arithmetic import tolerances
 from ekfsim.filters.arithmetic.chi_square import quantile
+from ekfsim.filters.cures import huber, pdaf
 from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
 from ekfsim.geometry.ellipse import cone_factor, radius_factor
@@ -30,6 +32,7 @@ from ekfsim.scene import Scene
 from ekfsim.simulation.draws import Draws, true_start
 from ekfsim.study.block import Readings, Watched, length_of, steps_told
 from ekfsim.study.counting import COVERAGE, Ends, Judged, by_rank
+from ekfsim.study.running.whole_runs import is_whole
 from ekfsim.study.tally import AtSteps
 
 UPPER = np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2])  # P's upper half: rows, columns
@@ -39,7 +42,7 @@ ASKED = 0.5, 0.95, LOST  # the quantiles of χ² that a step's NEES is held agai
 
 def watched(scene: Scene, first: int, runs: int) -> Watched | None:
     """The runs first … first + runs − 1, each told apart at its end."""
-    if not knows(scene):
+    if not is_whole(scene):
         return None
     block = Block(scene, np.arange(first, first + runs), steps_told(length_of(scene)))
     block.judge()
@@ -55,11 +58,14 @@ def watched(scene: Scene, first: int, runs: int) -> Watched | None:
     return block.watched()
 
 
-def knows(scene: Scene) -> bool:
-    """Whether the twin may stand in: for an EKF as it comes, without probes, in the classroom."""
-    tuning = scene.tuning
-    as_it_comes = tuning.range_variance == "prediction" and tuning.cross_covariances == "kept"
-    return scene.commanded and scene.filter == "ekf" and scene.guard != "skip" and as_it_comes
+def trust(scene: Scene) -> tuple[float, float]:
+    """Which filter it is, in the numbers of `trusting.weighed`."""
+    own, limit, ln_clutter = scene.tuning, math.inf, -math.inf
+    if scene.filter == "huber":
+        limit = huber.limit(own.huber, 1)
+    if scene.filter == "pdaf":
+        ln_clutter = pdaf.ln_clutter(own.clutter, own.clutter_density, 1)
+    return limit, ln_clutter
 
 
 class Block:
@@ -73,7 +79,8 @@ class Block:
         start, sigma = scene.world.told.start, scene.world.told.sigma
         self.x = np.repeat(start[:, None].astype(float), N, axis=1)
         self.P = np.repeat(np.diag(sigma**2)[UPPER][:, None], N, axis=1)
-        self.gate = math.inf if scene.gate is None else quantile(scene.gate, 1)
+        gate = math.inf if scene.gate is None else quantile(scene.gate, 1)
+        self.refusal = gate, *trust(scene)
         self.nis, self.nis_dof, self.readings = np.zeros(N), np.zeros(N, np.int64), 0
         self.e, self.nees = np.empty((3, N)), np.empty(N)
         self.rank, self.impossible = np.empty(N, np.int64), np.empty(N, bool)
@@ -134,8 +141,8 @@ class Block:
         n, wall = normals_met(walls, Hit(h, wall), self.x[:2], self.x[2] + bearing)
         self.readings += steps.read(
             self.x, self.P, np.maximum(z, 0.0), h, wall, way, n,
-            self.world.told.noise.range, ALONG, tolerances.SHARP, tolerances.ROUNDING, self.gate,
-            self.nis, self.nis_dof,
+            self.world.told.noise.range, ALONG, tolerances.SHARP, tolerances.ROUNDING,
+            *self.refusal, self.nis, self.nis_dof,
         )  # fmt: skip
 
     def judge(self, changed: bool = True) -> None:

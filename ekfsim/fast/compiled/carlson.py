@@ -7,18 +7,19 @@ P : (6, N) is the upper half of each run's covariance, row after row.
 import math
 
 from ekfsim.fast.compiled.angles import wrapped
+from ekfsim.fast.compiled.trusting import weighed
 from ekfsim.geometry import Array
 from ekfsim.twins import compiled
 
 
 @compiled
 def carlson(
-    x: Array, P: Array, n: int, H: Array, R: float, h: float, ν: float, gate: float,
-    rounding: float, L: Array,
+    x: Array, P: Array, n: int, H: Array, R: float, h: float, ν: float,
+    gate: float, limit: float, ln_clutter: float, rounding: float, L: Array,
 ) -> float:  # fmt: skip
     """Revise x and P of run n by a reading of z = h + ν, and tell its NIS; nan where S = 0.
 
-    H : (3,); L : (3, 3), room for the square root
+    H : (3,); L : (3, 3), room for the square root; limit, ln_clutter : see `weighed`
     """
     _square_root(P, n, H, L, rounding)
     H0, H1, H2 = H[0], H[1], H[2]
@@ -41,14 +42,24 @@ def carlson(
     nis = ν * ν / s
     if nis > gate:
         return nis
-    P[0, n] = min(_dot(L, 0, 0), P[0, n])
-    P[3, n] = min(_dot(L, 1, 1), P[3, n])
-    P[5, n] = min(_dot(L, 2, 2), P[5, n])
-    P[1, n], P[2, n], P[4, n] = _dot(L, 0, 1), _dot(L, 0, 2), _dot(L, 1, 2)
-    x[0, n] += b0 / s * ν
-    x[1, n] += b1 / s * ν
-    x[2, n] = wrapped(x[2, n] + b2 / s * ν)
+    w, v = weighed(nis, s, limit, ln_clutter)
+    spread = (w - v) / s
+    _mix(P, n, 0, min(_dot(L, 0, 0), P[0, n]), w, spread * b0 * b0)
+    _mix(P, n, 3, min(_dot(L, 1, 1), P[3, n]), w, spread * b1 * b1)
+    _mix(P, n, 5, min(_dot(L, 2, 2), P[5, n]), w, spread * b2 * b2)
+    _mix(P, n, 1, _dot(L, 0, 1), w, spread * b0 * b1)
+    _mix(P, n, 2, _dot(L, 0, 2), w, spread * b0 * b2)
+    _mix(P, n, 4, _dot(L, 1, 2), w, spread * b1 * b2)
+    x[0, n] += b0 / s * w * ν
+    x[1, n] += b1 / s * w * ν
+    x[2, n] = wrapped(x[2, n] + b2 / s * w * ν)
     return nis
+
+
+@compiled
+def _mix(P: Array, n: int, k: int, after: float, w: float, more: float) -> None:
+    """An entry of P where a reading that leaves `after` of it is believed to the share w."""
+    P[k, n] = after if w == 1 else (1 - w) * P[k, n] + w * after + more
 
 
 @compiled

@@ -1,4 +1,5 @@
-"""What a command of the classroom makes of many runs, compiled by Numba: robot and EKF.
+"""What a command of the classroom makes of many runs, compiled by Numba: robot, and EKF, huber or
+pdaf.
 
 All arrays have their entries in front and the runs behind: truth, x : (3, N). Of P its upper half
 is kept, row after row: (6, N), P_xx P_xy P_xθ P_yy P_yθ P_θθ.
@@ -10,6 +11,7 @@ import numpy as np
 
 from ekfsim.fast.compiled.angles import directions, wrapped
 from ekfsim.fast.compiled.carlson import carlson
+from ekfsim.fast.compiled.trusting import weighed
 from ekfsim.geometry import Array, Integers
 from ekfsim.twins import compiled
 
@@ -49,13 +51,14 @@ def move(
 @compiled
 def read(
     x: Array, P: Array, z: Array, h: Array, wall: Integers, way: Array, normals: Array,
-    range_ratio: float, along: float, sharp: float, rounding: float, gate: float,
-    nis: Array, dof: Integers,
+    range_ratio: float, along: float, sharp: float, rounding: float,
+    gate: float, limit: float, ln_clutter: float, nis: Array, dof: Integers,
 ) -> int:  # fmt: skip
     """Revise x and P by readings of walls, add up NIS, and tell how many readings had one.
 
-    The twin of `Laser.linearize` and `EKF.update`. z : (N,), read; h, wall : (N,), predicted;
-    way : (2, N), the direction of the beam; normals : (W, 2)
+    The twin of `Laser.linearize` and `update` of EKF, Huber and PDAF. z : (N,), read; h, wall :
+    (N,), predicted; way : (2, N), the direction of the beam; normals : (W, 2); limit, ln_clutter :
+    which of the filters it is, see `weighed`
     """
     known = 0
     H, L = np.empty(3), np.empty((3, 3))
@@ -70,10 +73,10 @@ def read(
         R, ν = (range_ratio * h[n]) ** 2, z[n] - h[n]
         noise = sharp * (H0 * H0 * P[0, n] + H1 * H1 * P[3, n] + H2 * H2 * P[5, n])
         if noise < R:
-            square = _revise(x, P, n, H0, H1, H2, R, ν, gate)
+            square = _revise(x, P, n, H0, H1, H2, R, ν, gate, limit, ln_clutter)
         else:
             H[0], H[1], H[2] = H0, H1, H2
-            square = carlson(x, P, n, H, R, h[n], ν, gate, rounding, L)
+            square = carlson(x, P, n, H, R, h[n], ν, gate, limit, ln_clutter, rounding, L)
         if not math.isnan(square):
             nis[n] += square
             dof[n] += 1
@@ -83,22 +86,26 @@ def read(
 
 @compiled
 def _revise(
-    x: Array, P: Array, n: int, H0: float, H1: float, H2: float, R: float, ν: float, gate: float
-) -> float:
-    """K = P⁻ Hᵀ/S      x = x⁻ + K ν      P = P⁻ − P⁻ Hᵀ H P⁻/S          of run n, and its NIS"""
+    x: Array, P: Array, n: int, H0: float, H1: float, H2: float, R: float, ν: float,
+    gate: float, limit: float, ln_clutter: float,
+) -> float:  # fmt: skip
+    """K = P⁻ Hᵀ/S      x = x⁻ + w K ν      P = P⁻ − v P⁻ Hᵀ H P⁻/S      of run n, and its NIS"""
     PH0 = P[0, n] * H0 + P[1, n] * H1 + P[2, n] * H2
     PH1 = P[1, n] * H0 + P[3, n] * H1 + P[4, n] * H2
     PH2 = P[2, n] * H0 + P[4, n] * H1 + P[5, n] * H2
-    per_S = 1 / (H0 * PH0 + H1 * PH1 + H2 * PH2 + R)
+    S = H0 * PH0 + H1 * PH1 + H2 * PH2 + R
+    per_S = 1 / S
     nis: float = ν * ν * per_S
     if nis > gate:
         return nis
-    P[0, n] -= PH0 * PH0 * per_S
-    P[1, n] -= PH0 * PH1 * per_S
-    P[2, n] -= PH0 * PH2 * per_S
-    P[3, n] -= PH1 * PH1 * per_S
-    P[4, n] -= PH1 * PH2 * per_S
-    P[5, n] -= PH2 * PH2 * per_S
+    w, v = weighed(nis, S, limit, ln_clutter)
+    ν, less = w * ν, v * per_S
+    P[0, n] -= PH0 * PH0 * less
+    P[1, n] -= PH0 * PH1 * less
+    P[2, n] -= PH0 * PH2 * less
+    P[3, n] -= PH1 * PH1 * less
+    P[4, n] -= PH1 * PH2 * less
+    P[5, n] -= PH2 * PH2 * less
     x[0, n] += PH0 * per_S * ν
     x[1, n] += PH1 * per_S * ν
     x[2, n] = wrapped(x[2, n] + PH2 * per_S * ν)

@@ -100,7 +100,7 @@ class StudyKeys(Strict):
     fast: bool = Field(
         False,
         description="Whether the runs are calculated by code that Numba compiles (the extra "
-        "`fast`); alike but for the last digits.",
+        "`fast`), whole for ekf, huber and pdaf in the classroom; alike but for the last digits.",
         examples=[True],
     )
     a: Side = Field(

@@ -52,9 +52,17 @@ class PDAF(EKF):
 
 def association(told: Correction, clutter: float, density: float) -> Array:
     """β : (…), that a reading is of what was expected; 1 where there is no clutter."""
-    k = told.innovation.shape[-1]
     with np.errstate(divide="ignore", invalid="ignore"):
-        ln_odds = np.log(clutter) - np.log1p(-clutter) + k * np.log(density * np.sqrt(2 * np.pi))
-        ln_odds = ln_odds + (np.linalg.slogdet(told.S).logabsdet + told.nis) / 2
+        ln_S = np.linalg.slogdet(told.S).logabsdet
+        ln_odds = ln_clutter(clutter, density, told.innovation.shape[-1]) + (ln_S + told.nis) / 2
     β: Array = 1 / (1 + np.exp(np.minimum(ln_odds, SURELY_CLUTTER)))
     return β
+
+
+def ln_clutter(clutter: float, density: float, k: int) -> float:
+    """ln c λᵏ √(2π)ᵏ/(1 − c): of the odds for clutter what no reading of k numbers changes; −∞
+    where there is none.
+    """
+    with np.errstate(divide="ignore"):
+        of_share = np.log(clutter) - np.log1p(-clutter)
+        return float(of_share + k * np.log(density * np.sqrt(2 * np.pi)))
