@@ -10,7 +10,7 @@ import numpy as np
 
 from ekfsim.commands import Kidnap, Move, Say, Sense, Untold
 from ekfsim.diagnostics.ambiguity import Sighting, sighting_of
-from ekfsim.filters.belief import Belief, Correction, Refused
+from ekfsim.filters.belief import Belief, Correction, Mixture, Refused
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import ellipse
 from ekfsim.models.sensors.laser import Laser
@@ -236,7 +236,21 @@ def _told(kind: str, command: dict[str, Any], step: Step) -> dict[str, Any]:
 
 
 def _belief(belief: Belief) -> dict[str, Any]:
-    return {"mean": _finite(belief.mean), "covariance": _finite(belief.covariance)}
+    """Mean and covariance; of several Gaussians, each a hypothesis, also what each weighs, and its
+    own two, heaviest first.
+    """
+    told: dict[str, Any] = {
+        "mean": _finite(belief.mean),
+        "covariance": _finite(belief.covariance),
+    }
+    if isinstance(belief, Mixture):
+        each = zip(belief.weights.tolist(), belief.means, belief.covariances, strict=True)
+        told["hypotheses"] = [
+            {"weight": weight, "mean": _finite(mean), "covariance": _finite(covariance)}
+            for weight, mean, covariance in each
+            if weight > 0
+        ]
+    return told
 
 
 def _number(value: Any) -> float | None:

@@ -9,7 +9,7 @@ import numpy as np
 from ekfsim.commands import Untold
 from ekfsim.diagnostics.summary import Instants
 from ekfsim.files.results.trace import ODOMETRY
-from ekfsim.filters.belief import Refused, posed
+from ekfsim.filters.belief import Correction, Mixture, Refused, posed
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import ellipse
 from ekfsim.printable import cell
@@ -74,13 +74,19 @@ FORMAT = 1
 ESTIMATE = ("x", "y", "theta", "P_xx", "P_xy", "P_xtheta", "P_yy", "P_ytheta", "P_thetatheta")
 TRUTH = ("true_x", "true_y", "true_theta")
 JUDGED = ("ellipse_major", "ellipse_minor", "ellipse_orientation", "nees", "nees_dof", "impossible")
+# how far a filter that weighs its readings believed this one; and of a belief of several Gaussians
+# their number and, heaviest first, what each weighs and where its mean is
+CURED = ("trust", "hypotheses", "weights", "each_x", "each_y", "each_theta")
 COLUMNS = (
     *("index", "type", *ESTIMATE, *TRUTH),
-    *("range", "predicted_range", "innovation", "innovation_variance", "nis", "refused", *JUDGED),
+    *("range", "predicted_range", "innovation", "innovation_variance", "nis", "refused"),
+    *(*JUDGED, *CURED),
 )
-DRIVEN_COLUMNS = (  # z, predicted and innovation hold all their numbers, with a space between
+# z, predicted and innovation hold all their numbers, with a space between; so do those of each
+# hypothesis in both
+DRIVEN_COLUMNS = (
     *("index", "t", "type", "sensor", *ESTIMATE, *TRUTH),
-    *("z", "predicted", "innovation", "nis", "refused", *JUDGED),
+    *("z", "predicted", "innovation", "nis", "refused", *JUDGED, *CURED),
 )
 
 
@@ -122,7 +128,23 @@ def row_of(step: Step, commanded: bool, confidence: float) -> list[object]:
         *(_reading(step) if commanded else _numbers(step)),
         *map(float, (drawn.major, drawn.minor, drawn.orientation)),
         *([""] * 3 if measured is None else map(_cell, _judged(measured))),
+        "" if step.correction is None else _cell(_trust(step.correction)),
+        *_hypotheses(step),
     ]
+
+
+def _trust(c: Correction) -> float | None:
+    return None if c.trust is None else float(c.trust)
+
+
+def _hypotheses(step: Step) -> list[object]:
+    """How many there are, their weights and their poses; nothing of another belief."""
+    several = step.posterior
+    if not isinstance(several, Mixture):
+        return [""] * 5
+    used = several.weights > 0
+    poses = step.layout.pose(several.means[used])
+    return [int(used.sum()), *map(_joined, (several.weights[used], *poses.T))]
 
 
 def _judged(measured: Nees) -> tuple[float, int, bool]:

@@ -245,3 +245,27 @@ def test_every_filter_can_be_traced(filter):
     for made in (rich(), recording(), speeds(9, 3)):
         steps = len(list(play(made)))
         assert len(trace_of(dataclasses.replace(made, filter=filter))) == steps
+
+
+def test_a_belief_of_several_gaussians_is_written_whole():
+    """What stands beside the hypotheses is their mean, and their covariance about it."""
+    several = 0
+    for line in trace_of(dataclasses.replace(load_scene("diverge-01-wrong-wall"), filter="mhekf")):
+        for belief in (line[key] for key in ("prior", "posterior") if key in line):
+            if "hypotheses" not in belief:
+                assert line["index"] < 2  # the first belief is one Gaussian
+                continue
+            each = belief["hypotheses"]
+            weights = [one["weight"] for one in each]
+            assert sum(weights) == pytest.approx(1, abs=1e-12)
+            assert weights == sorted(weights, reverse=True)
+            about = [np.subtract(one["mean"], belief["mean"]) for one in each]
+            mean = sum(w * δ for w, δ in zip(weights, about, strict=True))
+            P = sum(
+                one["weight"] * (np.array(one["covariance"]) + np.outer(δ, δ))
+                for one, δ in zip(each, about, strict=True)
+            )
+            np.testing.assert_allclose(mean, 0, atol=1e-12)
+            np.testing.assert_allclose(P, belief["covariance"], atol=1e-12)
+            several += len(each) > 1
+    assert several > 3

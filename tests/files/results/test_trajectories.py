@@ -245,3 +245,31 @@ def test_what_a_recorded_run_leaves_undefined_is_empty():
     ]
     blind = rows_of(speeds(6, 3))[3]
     assert [blind[name] for name in ("true_x", "true_theta", "nees", "impossible")] == [""] * 4
+
+
+@pytest.mark.parametrize("filter", ["huber", "pdaf"])
+def test_a_row_holds_how_far_its_reading_was_believed(filter):
+    made = replace(load_scene("tour"), filter=filter)
+    trusted = [float(row["trust"]) for row in rows_of(made) if row["trust"]]
+    assert trusted == [float(s.correction.trust) for s in play(made) if s.correction]
+    assert 0 < min(trusted) < max(trusted) <= 1
+    assert {row["hypotheses"] for row in rows_of(made)} == {""}
+
+
+def test_a_row_holds_every_hypothesis():
+    """Their weights are one in all, and their mean is that of the row."""
+    several = 0
+    for row in rows_of(replace(load_scene("diverge-01-wrong-wall"), filter="mhekf")):
+        if not row["hypotheses"]:
+            assert int(row["index"]) < 2  # the first belief is one Gaussian
+            continue
+        names = "weights", "each_x", "each_y", "each_theta"
+        w, x, y, theta = (np.array([float(one) for one in row[name].split()]) for name in names)
+        assert len(w) == len(x) == len(y) == len(theta) == int(row["hypotheses"])
+        assert w.sum() == pytest.approx(1, abs=1e-12)
+        assert w.tolist() == sorted(w, reverse=True)
+        assert w @ x == pytest.approx(float(row["x"]), abs=1e-12)
+        assert w @ y == pytest.approx(float(row["y"]), abs=1e-12)
+        assert row["trust"] == ""
+        several += len(w) > 1
+    assert several > 3
