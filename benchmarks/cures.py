@@ -40,7 +40,8 @@ def main() -> None:
             if given.only not in f"{name} {beside}":
                 continue
             words = ("study", scene, "--expect", "--runs", str(runs), "--filter")
-            ours = newer.task(*words, name)
+            crowd = ("--particles", "1000") if name in ("pf", "amcl") else ()
+            ours = newer.task(*words, name, *crowd)
             theirs = (older if "before" in beside else newer).task(*words, beside.split()[0])
             theirs()
             ours()

@@ -100,7 +100,7 @@ def belief_of(scene: Scene, runs: Integers | None = None) -> Belief:
             f"{scene.world_source}: belief.start: {label(scene.filter)} cannot begin where the "
             f"start is unknown; name one that can: --filter {' or '.join(reversed(CROWDS))}"
         )
-    p = scene.tuning.particles
+    p = scene.tuning.crowd(scene.filter)
     drawn = [anywhere(one, p) for one in particle_generators(scene.seed, numbers, STARTS)]
     states = np.stack(drawn).reshape(*numbers.shape, p, -1)
     return Particles(*first, states, np.full(states.shape[:-1], 1 / p))

@@ -68,7 +68,11 @@ START = "tour", "square", "theta"  # in the order to look at them
 LOGS = "logs"
 GROUPS = (  # of the other commands that come along: what their names begin or end with
     ("proofs", "proofs: each shows one thing", re.compile("proof-.*")),
-    ("divergence", "divergence: how a filter gets lost, and why", re.compile("diverge-.*")),
+    (
+        "divergence",
+        "divergence: how a filter gets lost, and why",
+        re.compile("diverge-.*|kidnap|unknown-start"),
+    ),
     ("systems", "other systems", re.compile("(?!(log|bag)$).*(?<!_log)")),
     (LOGS, "recorded logs, by --log", re.compile("(.*_)?log|bag")),
 )

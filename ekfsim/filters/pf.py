@@ -18,7 +18,7 @@ from ekfsim.filters.arithmetic.unscented import weighted_mean
 from ekfsim.filters.belief import Belief, Correction, Particles, Prediction, Refused
 from ekfsim.filters.kalman import Rule, refusal
 from ekfsim.filters.protocol import Beginning
-from ekfsim.filters.tuning import Tuning
+from ekfsim.filters.tuning import CROWDS
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.protocols import Motion, Sensor, angles
 
@@ -43,7 +43,7 @@ class PF:
     # probability; a reading whose NIS lies beyond that χ² quantile is refused
     gate: float | None = None
     headings: tuple[int, ...] = (2,)  # which entries of the state are headings, kept in (−π, π]
-    count: int = Tuning.particles  # particles of each run
+    count: int = CROWDS["pf"]  # particles of each run
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:
@@ -51,7 +51,7 @@ class PF:
         if beginning.generators is None:
             raise ValueError("a particle filter needs generators to draw from")
         generators = tuple(beginning.generators())
-        return cls(generators, beginning.gate, beginning.headings, beginning.tuning.particles)
+        return cls(generators, beginning.gate, beginning.headings, beginning.tuning.crowd("pf"))
 
     def predict(self, belief: Belief, motion: Motion, u: Array) -> tuple[Particles, Prediction]:
         """xᵢ⁻ = f(xᵢ, u) + G(xᵢ, u) wᵢ + qᵢ      wᵢ ~ N(0, M)      qᵢ ~ N(0, Q)          u : (…, m)

@@ -8,9 +8,9 @@ CrossCovariances = Literal["kept", "dropped"]
 MOST_PARTICLES = 1_000_000
 MOST_HYPOTHESES = 64
 UNSCENTED = "ukf", "ukf-augmented"
-CROWDS = "pf", "amcl"  # particles, and no P to drop anything from
+CROWDS = {"pf": 1000, "amcl": 5000}  # of how many particles, where nobody says; they have no P
 OF_SOME = {  # whose number it is
-    "particles": CROWDS, "alpha": UNSCENTED, "beta": UNSCENTED, "kappa": UNSCENTED,
+    "particles": tuple(CROWDS), "alpha": UNSCENTED, "beta": UNSCENTED, "kappa": UNSCENTED,
     "iterations": ("iekf",), "hypotheses": ("mhekf",), "huber": ("huber",),
     "clutter": ("pdaf",), "clutter_density": ("pdaf",),
 }  # fmt: skip
@@ -22,7 +22,7 @@ class Tuning:
     textbook's.
     """
 
-    particles: int = 1000  # of each run's particle filter
+    particles: int | None = None  # of each run, of the amcl at most; None: those of CROWDS
     alpha: float = 1.0  # of the sigma points: √(α² (n + κ)) standard deviations from the mean
     beta: float = 0.0  # what is known of the shape: 2 for a Gaussian, where α is small
     kappa: float | None = None  # None: max(3 − n, 0)
@@ -35,6 +35,16 @@ class Tuning:
     # whence the classroom's C_v = (ratio · r)² takes its r
     range_variance: RangeVariance = "prediction"
     cross_covariances: CrossCovariances = "kept"  # σ_xθ and σ_yθ, which no picture shows
+
+    def crowd(self, filter_name: str) -> int:
+        """Of how many particles, at most, a run of this filter is.
+
+        >>> Tuning().crowd("amcl"), Tuning(particles=300).crowd("pf-smoothed")
+        (5000, 300)
+        """
+        if self.particles is not None:
+            return self.particles
+        return CROWDS[filter_name.removesuffix("-smoothed")]
 
 
 UNTUNED = Tuning()

@@ -63,7 +63,7 @@ def at_once(scene: Scene, first: int, runs: int) -> list[tuple[int, int]]:
     """
     some = runs
     if forward(scene.filter) in CROWDS:
-        some = max(MOST_PARTICLES // scene.tuning.particles, 1)
+        some = max(MOST_PARTICLES // scene.tuning.crowd(scene.filter), 1)
     if is_smoothed(scene.filter):
         kept = (length_of(scene) + 1) * len(scene.world.layout.names) ** 2
         some = min(some, max(MOST_KEPT // kept, 1))

@@ -15,7 +15,9 @@ from ekfsim.files.template import template
 from ekfsim.localization import play
 
 CLASSROOM = [
-    name for name, path in packaged("commands").items() if "\ncommands:" in path.read_text("utf-8")
+    name
+    for name, path in packaged("commands").items()
+    if "\ncommands:" in path.read_text("utf-8") and name != "unknown-start"
 ]
 OPEN = {"predict": ["6", "1", "4", "7"], "update": ["8 and 9", "11", "10", "12"]}
 

@@ -50,7 +50,7 @@ SCENES = {
 CLASSROOM = {
     name: made
     for name, path in packaged("commands").items()
-    if (made := check(path).get()).world.system == "classroom"
+    if (made := check(path).get()).world.system == "classroom" and made.filter == "ekf"
 }
 
 

@@ -102,7 +102,7 @@ PARTICLES = click.option(
     "--particles",
     type=Whole(1, MOST_PARTICLES),
     metavar="N",
-    help="Of each run's particle filter, of amcl at most; short for --set filter.particles=N.",
+    help="Of each run: of pf (1000), of amcl at most (5000); short for --set filter.particles=N.",
 )
 HYPOTHESES = click.option(
     "--hypotheses",

@@ -51,9 +51,10 @@ def is_filter(name: str) -> bool:
 class TuningKeys(Strict):
     """Numbers that a filter alone has."""
 
-    particles: int = Field(
+    particles: int | None = Field(
         Tuning.particles,
-        description="Particles of each run, of the pf; of the amcl at most so many.",
+        description="Particles of each run, of the pf; 1000 where absent. Of the amcl at most so "
+        "many; 5000 where absent.",
         ge=1,
         le=MOST_PARTICLES,
         examples=[10000],

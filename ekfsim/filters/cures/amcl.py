@@ -135,7 +135,7 @@ class AMCL(PF):
             tuple(beginning.generators()),
             beginning.gate,
             beginning.headings,
-            beginning.tuning.particles,
+            beginning.tuning.crowd("amcl"),
             beginning.anywhere,
         )
 

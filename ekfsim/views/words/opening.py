@@ -48,7 +48,9 @@ def opening(scene: Scene) -> str:
         told.append(f"The filter {label(scene.filter)}: {remark}")
     if reads(scene.filter, "particles"):
         most = "at most " if forward(scene.filter) == "amcl" else ""
-        told.append(f"The filter {scene.filter}: {most}{scene.tuning.particles} particles")
+        told.append(
+            f"The filter {scene.filter}: {most}{scene.tuning.crowd(scene.filter)} particles"
+        )
     if scene.world.told.start_unknown:
         told.append(NO_IDEA)
     if reads(scene.filter, "hypotheses"):

@@ -19,7 +19,9 @@ from ekfsim.world import Noise
 
 CONFIDENCE = 0.954
 PACKAGED = {
-    name: path for name, path in packaged("commands").items() if "\ncommands:" in path.read_text()
+    name: path
+    for name, path in packaged("commands").items()
+    if "\ncommands:" in path.read_text() and name != "unknown-start"  # which no EKF can begin
 }
 SCENES = {
     "rich": rich(),
@@ -66,7 +68,7 @@ def test_every_reading_follows_from_the_draws(scene):
 
 @pytest.mark.parametrize("name", PACKAGED)
 def test_the_packaged_scenes_follow_from_their_draws_and_readings(name):
-    scene = load_scene(PACKAGED[name])
+    scene = dataclasses.replace(load_scene(PACKAGED[name]), filter="ekf")
     lines = trace_of(scene)
     for line, raw, expected in zip(
         lines, true_course(scene), believed(scene, lines, CONFIDENCE), strict=True
