@@ -64,7 +64,7 @@ def trust(scene: Scene) -> tuple[float, float]:
     if scene.filter == "huber":
         limit = huber.limit(own.huber, 1)
     if scene.filter == "pdaf":
-        ln_clutter = pdaf.ln_clutter(own.clutter, own.clutter_density, 1)
+        ln_clutter = float(pdaf.ln_clutter(own.clutter, own.clutter_density, 1))
     return limit, ln_clutter
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ekfsim.filters.arithmetic.tolerances import ROUNDING
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, Integers
 from ekfsim.geometry.angles import wrap
 
 
@@ -23,6 +23,19 @@ def inverse(S: Array) -> Array:
     per_σσ = per[..., :, None] * per[..., None, :]
     inverted: Array = np.linalg.pinv(S * per_σσ, rtol=ROUNDING, hermitian=True) * per_σσ
     return inverted
+
+
+def uncertain(S: Array) -> tuple[Integers, Array]:
+    """How many of the numbers of S : (…, k, k) are uncertain, and ln det S of these : (…). So a
+    density is that of what can vary; as in `inverse` the correlations decide what that is.
+    """
+    S = np.nan_to_num(S)
+    σσ = np.maximum(np.diagonal(S, axis1=-2, axis2=-1), 0.0)
+    per = np.divide(1.0, np.sqrt(σσ), out=np.zeros_like(σσ), where=σσ > 0)
+    λ = np.linalg.eigvalsh(S * (per[..., :, None] * per[..., None, :]))
+    varies = λ > ROUNDING * λ.shape[-1]
+    factors = np.log(np.where(varies, λ, 1.0)) + np.log(np.where(σσ > 0, σσ, 1.0))
+    return np.count_nonzero(varies, axis=-1), np.sum(factors, axis=-1)
 
 
 def gain_of_moments(cross: Array, S: Array) -> Array:

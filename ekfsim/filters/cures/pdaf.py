@@ -6,11 +6,12 @@ from typing import Self
 import numpy as np
 
 from ekfsim.filters import kalman
+from ekfsim.filters.arithmetic.algebra import uncertain
 from ekfsim.filters.belief import Belief, Correction, Gaussian
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.protocol import Beginning
 from ekfsim.filters.tuning import Tuning
-from ekfsim.geometry import Array, Booleans
+from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.protocols import Sensor
 
 SURELY_CLUTTER = 700.0  # ln of odds: exp of more is no number
@@ -51,18 +52,20 @@ class PDAF(EKF):
 
 
 def association(told: Correction, clutter: float, density: float) -> Array:
-    """β : (…), that a reading is of what was expected; 1 where there is no clutter."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ln_S = np.linalg.slogdet(told.S).logabsdet
-        ln_odds = ln_clutter(clutter, density, told.innovation.shape[-1]) + (ln_S + told.nis) / 2
+    """β : (…), that a reading is of what was expected; 1 where there is no clutter.
+
+    What is certain beforehand among its numbers tells neither.
+    """
+    k, ln_S = uncertain(told.S)
+    ln_odds = ln_clutter(clutter, density, k) + (ln_S + told.nis) / 2
     β: Array = 1 / (1 + np.exp(np.minimum(ln_odds, SURELY_CLUTTER)))
     return β
 
 
-def ln_clutter(clutter: float, density: float, k: int) -> float:
-    """ln c λᵏ √(2π)ᵏ/(1 − c): of the odds for clutter what no reading of k numbers changes; −∞
-    where there is none.
+def ln_clutter(clutter: float, density: float, k: int | Integers) -> Array:
+    """ln c λᵏ √(2π)ᵏ/(1 − c) : (…), of the odds for clutter what no reading of k : (…) numbers
+    changes; −∞ where there is none.
     """
     with np.errstate(divide="ignore"):
         of_share = np.log(clutter) - np.log1p(-clutter)
-        return float(of_share + k * np.log(density * np.sqrt(2 * np.pi)))
+        return np.asarray(of_share + k * np.log(density * np.sqrt(2 * np.pi)))

@@ -10,6 +10,7 @@ from problems import problem
 from scipy.stats import multivariate_normal
 
 from ekfsim.files.scenes.load import load_scene
+from ekfsim.filters.arithmetic.algebra import uncertain
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.cures.pdaf import PDAF
 from ekfsim.filters.ekf import EKF
@@ -102,3 +103,37 @@ def test_the_narrative_tells_beta():
     )
     assert "was expected and no clutter, is 0.935995\n" in short
     assert "c = 0.1 of readings clutter, lambda = 0.1 per m)" in long
+
+
+@pytest.mark.parametrize(("off", "spare"), [(0.3, 0.0), (4.0, 0.0), (4.0, 0.7)])
+def test_a_number_that_is_certain_among_several_tells_nothing(off, spare):
+    """S is singular there, and β that of the other numbers, wherever the certain one lies; with a
+    scale so small that its determinant is no measure.
+    """
+    x, P = np.array([1.0, 2.0, 0.3]), np.diag([0.04, 0.0, 1e-16])
+    filter = PDAF(headings=(), clutter=0.2, density=0.05)
+    some = problem(np.random.default_rng(0))
+    alone = replace(some, C=np.eye(3)[:1], noise=np.array([[0.01]]))
+    several = replace(some, C=np.eye(3)[:2], noise=np.diag([0.01, 0.0]))
+    expected, told = filter.update(Gaussian(x, P), alone, x[:1] + off)
+    found, also = filter.update(Gaussian(x, P), several, x[:2] + np.array([off, spare]))
+    likely = 0.8 * multivariate_normal(0, 0.05).pdf(off)
+    assert float(told.trust) == pytest.approx(likely / (likely + 0.2 * 0.05), rel=1e-9)
+    assert float(also.trust) == pytest.approx(float(told.trust), rel=1e-9)
+    np.testing.assert_allclose(found.mean, expected.mean, atol=1e-12)
+    np.testing.assert_allclose(found.covariance, expected.covariance, atol=1e-12)
+
+
+def test_which_numbers_are_uncertain_their_correlations_say():
+    """Metres and nanoradians mixed."""
+    units = np.array([1.0, 1e-9, 1e6])
+    for rank in (0, 1, 2, 3):
+        root = np.random.default_rng(rank).normal(size=(3, rank))
+        S = root @ root.T
+        k, ln_det = uncertain(units[:, None] * S * units)
+        assert k == rank
+        if rank == 3:
+            assert ln_det == pytest.approx(np.linalg.slogdet(S)[1] + 2 * np.log(units).sum())
+    k, ln_det = uncertain(np.stack([np.diag([4.0, 9.0, 0.0]), np.zeros((3, 3))]))
+    assert k.tolist() == [2, 0]
+    assert ln_det == pytest.approx([np.log(36), 0.0])
