@@ -35,6 +35,7 @@ FILTERS: Table["Kind"] = Table(
         "ukf-augmented": "ekfsim.filters.variants.ukf_augmented:AugmentedUKF",
         "huber": "ekfsim.filters.cures.huber:Huber",
         "pdaf": "ekfsim.filters.cures.pdaf:PDAF",
+        "adaptive": "ekfsim.filters.cures.adaptive:Adaptive",
         "invariant": "ekfsim.filters.cures.invariant:Invariant",
         "pf": "ekfsim.filters.pf:PF",
         "amcl": "ekfsim.filters.cures.amcl:AMCL",

@@ -1,6 +1,6 @@
 """What a filter believes, and what it says of each step."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple, Protocol
@@ -9,6 +9,7 @@ import numpy as np
 
 from ekfsim.geometry import Array, Booleans, Integers
 from ekfsim.models.layout import Layout
+from ekfsim.models.protocols import Quantity
 
 
 class Belief(Protocol):
@@ -65,6 +66,20 @@ class Mixture:
     merged: Integers  # (…, h) how many the last reading left, that are one in this one
     pruned: Integers  # (…) how many it left without a place, their weight being given to the others
     memory: object = None  # what its filter remembers besides
+
+    def __iter__(self) -> Iterator[Array]:
+        """`x, P = belief` takes any kind of belief."""
+        return iter((self.mean, self.covariance))
+
+
+@dataclass(frozen=True, slots=True)
+class Learning:
+    """A Gaussian, and what its filter has learnt of its sensors so far."""
+
+    mean: Array  # (…, n)
+    covariance: Array  # (…, n, n)
+    # by what a sensor reads, how many times the R that is told its noise is taken for : (…)
+    factors: Mapping[tuple[Quantity, ...], Array]
 
     def __iter__(self) -> Iterator[Array]:
         """`x, P = belief` takes any kind of belief."""
@@ -131,6 +146,9 @@ class Correction:
     # (…) how far a filter that weighs its readings believes this one, 0 to 1; nan where it is not
     # used; None of a filter that weighs none
     trust: Array | None = None
+    # (…) how many times the told R a filter that learns it takes the noise for after this reading;
+    # R above is with what it had learnt before. None of a filter that learns none
+    noise_factor: Array | None = None
     # `predicted` is that of a tangent drawn elsewhere than at x⁻: it meets nothing of the map
     tangent: bool = False
 

@@ -12,7 +12,7 @@ CROWDS = {"pf": 1000, "amcl": 5000}  # of how many particles, where nobody says;
 OF_SOME = {  # whose number it is
     "particles": tuple(CROWDS), "alpha": UNSCENTED, "beta": UNSCENTED, "kappa": UNSCENTED,
     "iterations": ("iekf",), "hypotheses": ("mhekf",), "huber": ("huber",),
-    "clutter": ("pdaf",), "clutter_density": ("pdaf",),
+    "adaptive": ("adaptive",), "clutter": ("pdaf",), "clutter_density": ("pdaf",),
 }  # fmt: skip
 
 
@@ -31,6 +31,7 @@ class Tuning:
     huber: float = 2.0  # σ of an innovation; beyond it a reading pulls no harder than there
     clutter: float = 0.1  # share of readings that are of something else than is expected
     clutter_density: float = 0.1  # of those, per unit (m, rad) of each number: 0.1/m is in 10 m
+    adaptive: float = 0.9  # what a reading leaves of what was learnt of its sensor's noise
     hypotheses: int = 8  # Gaussians of the mhekf at most
     # whence the classroom's C_v = (ratio · r)² takes its r
     range_variance: RangeVariance = "prediction"

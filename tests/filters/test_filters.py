@@ -20,7 +20,7 @@ from ekfsim.models.motions.wheels import TwoWheels
 from ekfsim.models.sensors.laser import Laser
 
 WEIGHING = ("huber", "pdaf")  # their readings
-EXACT = [name for name in FILTERS if name not in (*CROWDS, *WEIGHING)]  # without draws
+EXACT = [name for name in FILTERS if name not in (*CROWDS, *WEIGHING, "adaptive")]  # without draws
 STAY = ("kf", "kf-nominal")  # linearised where the run begins: the plan of `begun` is to stay there
 TOLD = ("predicted", "innovation", "R", "S", "H", "K", "nis", "refused")
 

@@ -194,9 +194,9 @@ WATCHED = (  # by whom a run is watched
         "filter_name",
         metavar="NAME,…",
         help="In place of the file's filter: "
-        "kf, kf-nominal, ekf, iekf, ukf, ukf-augmented, huber, pdaf, invariant, mhekf, pf or amcl, "
-        "or one of your own, FILE.py, FILE.py:NAME or package.module:NAME. Several are put side by "
-        "side; the name of each then stands before the ending of its files.",
+        "kf, kf-nominal, ekf, iekf, ukf, ukf-augmented, huber, pdaf, adaptive, invariant, mhekf, "
+        "pf or amcl, or one of your own, FILE.py, FILE.py:NAME or package.module:NAME. Several are "
+        "put side by side; the name of each then stands before the ending of its files.",
     ),
     SMOOTH,
     GATE,

@@ -105,6 +105,14 @@ class TuningKeys(Strict):
         le=8,
         examples=[3],
     )
+    adaptive: float = Field(
+        Tuning.adaptive,
+        description="How much of what the adaptive filter has learnt of a sensor's noise a reading "
+        "leaves: 0.9 remembers about ten readings; 1 makes it the ekf.",
+        gt=0,
+        le=1,
+        examples=[0.95],
+    )
     clutter: float = Field(
         Tuning.clutter,
         description="Share of readings that the pdaf takes for something else than it expected; 0 "

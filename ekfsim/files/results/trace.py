@@ -100,6 +100,7 @@ def _update(step: Step, reading: Reading, scene: Scene) -> dict[str, Any]:
         "refused": Refused(int(c.refused)).word,
         **({} if c.settled else {"settled": False}),
         **({} if c.trust is None else {"trust": _number(c.trust)}),
+        **_learnt(c),
         **_believed(step, scene),
     }
 
@@ -189,7 +190,13 @@ def _corrected(c: Correction) -> dict[str, Any]:
         "refused": Refused(int(c.refused)).word,
         **({} if c.settled else {"settled": False}),
         **({} if c.trust is None else {"trust": _number(c.trust)}),
+        **_learnt(c),
     }
+
+
+def _learnt(c: Correction) -> dict[str, Any]:
+    """Of a filter that learns its sensor's noise, how many times the told R it now takes it for."""
+    return {} if c.noise_factor is None else {"noise_factor": _number(c.noise_factor)}
 
 
 def _sighted(sensor: Any, sighting: Sighting | None, predicted: bool) -> dict[str, Any]:

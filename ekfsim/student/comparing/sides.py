@@ -17,7 +17,9 @@ from ekfsim.student.own.forms import Whole
 from ekfsim.student.own.loading import load
 
 # a filter that goes on from any mean and covariance, and does the same again
-COMPARABLE = tuple(name for name in FILTERS if name not in ("kf-nominal", "mhekf", *CROWDS))
+COMPARABLE = tuple(
+    name for name in FILTERS if name not in ("kf-nominal", "adaptive", "mhekf", *CROWDS)
+)
 
 
 def caller_of(scene: Scene, provided: Sequence[str] | None = None) -> Caller:

@@ -10,7 +10,7 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 
 from ekfsim import localization, simulation
-from ekfsim.filters.belief import Belief, Mixture, Particles
+from ekfsim.filters.belief import Belief, Learning, Mixture, Particles
 from ekfsim.filters.protocol import Filter
 from ekfsim.geometry import Integers
 from ekfsim.models.layout import POSE, Layout
@@ -62,8 +62,7 @@ def _held(step: Step) -> Step:
         _fast(made.F, made.G)
     if (c := step.correction) is not None:
         _fast(c.predicted, c.innovation, c.R, c.S, c.H, c.K, c.nis, c.refused, c.settled)
-        if c.trust is not None:
-            _fast(c.trust)
+        _fast(*(weight for weight in (c.trust, c.noise_factor) if weight is not None))
     if (nees := step.nees) is not None:
         _fast(nees.value, nees.dof, nees.impossible)
     _hold_fields(step.remark)
@@ -74,6 +73,8 @@ def _hold(belief: Belief) -> None:
     _fast(belief.mean, belief.covariance)
     if isinstance(belief, Particles):
         _fast(belief.states, belief.weights)
+    elif isinstance(belief, Learning):
+        _fast(*belief.factors.values())
     elif isinstance(belief, Mixture):
         _fast(belief.means, belief.covariances, belief.weights)
         _fast(belief.walls, belief.merged, belief.pruned)

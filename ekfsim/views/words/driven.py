@@ -24,7 +24,7 @@ from ekfsim.views.words.numbers import (
     quantity,
     state,
 )
-from ekfsim.views.words.trust import trusted
+from ekfsim.views.words.trust import learnt, trusted
 from ekfsim.views.words.uncertainty import crowd, judged, rest, surprise, uncertainty
 
 REFUSED = {
@@ -104,6 +104,7 @@ def revised(view: View, scene: Scene, probability: float, form: Form) -> str:
         + REFUSED[Refused(int(c.refused))]
         + (_gain(view, given.sensor.outputs, c.K, by("gain")) if used else "")
         + trusted(c, scene, form)
+        + learnt(c, scene, form)
         + rest(c)
         + (hypotheses(view.step) if used else "")
         + f"Revised state estimate: {state(x, view.layout)}{by('revised')}\n"

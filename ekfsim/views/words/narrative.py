@@ -17,7 +17,7 @@ from ekfsim.views.words.driven import REFUSED
 from ekfsim.views.words.long_form import SHORT, Form, LongForm
 from ekfsim.views.words.numbers import fill, fill_vector, fine, matrix, number, pose, turn
 from ekfsim.views.words.opening import opening, plain
-from ekfsim.views.words.trust import trusted
+from ekfsim.views.words.trust import learnt, trusted
 from ekfsim.views.words.uncertainty import crowd, judged, rest, surprise, uncertainty
 
 DERIVATIVES = "  dh/dx = %.6g, dh/dy = %.6g, dh/dth = %.6g\n"
@@ -143,6 +143,7 @@ def _update(view: View, scene: Scene, probability: float, form: Form) -> str:
             else ""
         )
         + trusted(c, scene, form)
+        + learnt(c, scene, form)
         + rest(c)
         + (hypotheses(step) if used else "")
         + f"Revised state estimate: (x, y, theta) = {pose(x.tolist())}{by('revised')}\n"

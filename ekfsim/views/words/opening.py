@@ -25,7 +25,7 @@ RATIOS = {  # as the files call them
     "range": "rangeSigmaRatio",
 }
 SELDOM = "delay", "mount_x", "mount_y", "mount_theta"  # told where they are not 0
-LINEARISED = ("kf", "kf-nominal", "ekf", "iekf", "huber", "pdaf", "invariant")
+LINEARISED = ("kf", "kf-nominal", "ekf", "iekf", "huber", "pdaf", "adaptive", "invariant")
 WEIGHING = ("huber", "pdaf")  # their readings
 BOTH = (
     "A gate and a weight judge each reading: one beyond the gate is refused outright, and only the "

@@ -70,6 +70,9 @@ BY_FILTER: dict[str, Origins] = {
         revised="eq 10: x + beta K r",
         revised_covariance="(1 - beta) P + beta (I - K H) P + beta (1 - beta) K r r' K'",
     ),
+    "adaptive": Origins(
+        range_noise="what was learnt so far times (rangeSigmaRatio * predicted range)^2",
+    ),
     "invariant": Origins(
         revised="eq 10: x + K r, x and y moved along the arc to it",
         revised_covariance="eq 12: (I - K H) P, x and y turned by the heading's part of K r",

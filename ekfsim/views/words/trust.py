@@ -1,4 +1,6 @@
-"""How far a filter that weighs its readings believed one: why, by which formula, and the value."""
+"""How far a filter that weighs its readings believed one, and what a filter that learns their noise
+has learnt: why, by which formula, and the value.
+"""
 
 import math
 from statistics import NormalDist
@@ -18,6 +20,12 @@ PDAF = (
     "beta = (1 - c) N(r; 0, S) / ((1 - c) N(r; 0, S) + c lambda%s), with c = %s of readings "
     "clutter, lambda = %s %s"
 )
+
+LEARNT = (
+    "s <- a s + (1 - a) seen, a = %s; seen = %s, the factor on the told %s that this reading "
+    "speaks for"
+)
+ONE, SEVERAL = "s + s (%s / S) (NIS - 1)", "tr(R^-1 (e e' + H P H')) / %s, e = z - h - H K r"
 
 
 def trusted(c: Correction, scene: Scene, form: Form) -> str:
@@ -71,6 +79,22 @@ def sigmas(rare: float) -> float:
     2.0
     """
     return NormalDist().inv_cdf(1 - rare / 2)
+
+
+def learnt(c: Correction, scene: Scene, form: Form) -> str:
+    """A line of its own; nothing of a filter that learns no noise, or of a reading that is not
+    used.
+    """
+    if c.noise_factor is None or not c.used:
+        return ""
+    s, numbers, R = float(c.noise_factor), len(c.innovation), "C_v" if scene.commanded else "R"
+    seen = ONE % R if numbers == 1 else SEVERAL % numbers
+    told = LEARNT % (number(scene.tuning.adaptive), seen, R)
+    origin = "" if form is SHORT else f"   ({told})"
+    return (
+        f"As the filter has learnt, such readings have {number(math.sqrt(s))} times the sigma that "
+        f"it is told; s, the square of that factor, is {number(s)}{origin}\n"
+    )
 
 
 def _weight(c: Correction, scene: Scene, w: float) -> str:

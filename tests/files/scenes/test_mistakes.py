@@ -451,7 +451,7 @@ SCENES = {
         [
             "2:7: seed: 7.5 is not written as a whole number; write e.g. 7",
             "3:9: filter: 5 is a number where a word belongs; write kf, kf-nominal, ekf, iekf, "
-            "ukf, ukf-augmented, huber, pdaf, invariant, pf, amcl, mhekf or FILE.py",
+            "ukf, ukf-augmented, huber, pdaf, adaptive, invariant, pf, amcl, mhekf or FILE.py",
             "4:7: gate: 0 is not strictly between 0 and 1; write e.g. 0.99",
             "5:8: guard: false is a yes-or-no value where a word belongs; write off, warn or skip",
             "6:11: commands: 5 is a number where a list belongs; write e.g. [{move: {distance: "

@@ -451,7 +451,7 @@ def test_no_filter_is_given_the_equations_of_another(filter):
     text = "".join(narrate(view, made, explain=True) for view in views(play(made)))
     tangents, at_estimate = (
         filter in ("kf", "kf-nominal"),
-        filter in ("ekf", "iekf", "huber", "pdaf", "invariant"),
+        filter in ("ekf", "iekf", "huber", "pdaf", "adaptive", "invariant"),
     )
     weighing = filter in ("huber", "pdaf")
     assert filter in BY_FILTER
