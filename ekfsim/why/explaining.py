@@ -1,6 +1,7 @@
 """explain: what was wrong with one run, by what cures it."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,13 +13,13 @@ from ekfsim.why.changes.groups import groups_of
 from ekfsim.why.changes.singles import singles
 from ekfsim.why.changes.suspects import FEW, Suspect, suspects_of
 from ekfsim.why.changes.told import ratios, starts
-from ekfsim.why.records import Change, Explanation, Mechanism
+from ekfsim.why.records import Change, Explanation, Heard, Mechanism, Shares
 from ekfsim.why.trying.chance import by_chance
 from ekfsim.why.trying.crowd import Crowd
 from ekfsim.why.trying.minimal import SpentError, minimal
 from ekfsim.why.trying.naming import named
 from ekfsim.why.trying.seeing import unseen
-from ekfsim.why.trying.trials import Heard, Trials
+from ekfsim.why.trying.trials import Trials
 
 BUDGET = 400  # replays of one run
 # of a driven robot, whose run has thousands of steps
@@ -37,7 +38,8 @@ def explain(
     """Why the scene's run ended as it did.
 
     runs : how many stand behind the shares; budget : how many times one run is played again at
-    most; heard : is told how many of these are done, and the budget
+    most; heard : is told how many of these are done, and the budget, then how far many runs have
+    come. Ctrl-C ends it with what is known by then, once the run itself is.
     """
     if scene.log is not None:
         from ekfsim.why.recorded import explain_log  # of no use to a simulation
@@ -58,15 +60,12 @@ def explain(
         return Explanation(
             scene, was.outcome, None, mechanism=seen, budget=budget, lost_steps=steps
         )
-    suspects = suspects_of(scene, steps) if scene.commanded else suspects_of_drive(scene)
-    _try_all(scene, suspects, trials)
-    few = max(min(runs, FEWEST), min(runs, PARTICLE_STEPS // (FEW * len(steps))))
-    crowd = Crowd(scene, runs, was.outcome)
-    guilty, shares = named(suspects, trials, crowd, Crowd(scene, few, was.outcome))
-    mechanisms = tuple(one.mechanism for one in guilty)
-    if not guilty and (luck := by_chance(steps, crowd, was.outcome)) is not None:
-        mechanisms, shares = (Mechanism.CHANCE,), luck
-    cure = _cure(guilty, trials)
+    found, stopped = Named((), (), None), False
+    try:
+        found = _named(scene, trials, runs, heard)
+        cure = _cure(found.guilty, trials)
+    except KeyboardInterrupt:
+        stopped, cure = True, _cure((), trials)
     cured = tuple(trials.again(cure)) if cure else ()
     return Explanation(
         scene,
@@ -76,14 +75,36 @@ def explain(
         cure,
         tuple(one.change for one in trials.tried if one.cures and one.change not in cure),
         parted(steps, cured),
-        mechanisms[0] if len(mechanisms) == 1 else None,
-        mechanisms if len(mechanisms) > 1 else (),
+        found.mechanisms[0] if len(found.mechanisms) == 1 else None,
+        found.mechanisms if len(found.mechanisms) > 1 else (),
         trials.replays,
         budget,
-        shares,
+        found.shares,
         steps,
         cured,
+        stopped,
     )
+
+
+class Named(NamedTuple):
+    """What it was, and what many runs say of it."""
+
+    guilty: tuple[Suspect, ...]
+    mechanisms: tuple[Mechanism, ...]
+    shares: Shares | None
+
+
+def _named(scene: Scene, trials: Trials, runs: int, heard: Heard | None) -> Named:
+    """What it was, by every change that is tried on the run, and those that cure on many."""
+    steps, was = trials.steps, trials.was.outcome
+    suspects = suspects_of(scene, steps) if scene.commanded else suspects_of_drive(scene)
+    _try_all(scene, suspects, trials)
+    few = max(min(runs, FEWEST), min(runs, PARTICLE_STEPS // (FEW * len(steps))))
+    crowd = Crowd(scene, runs, was, heard)
+    guilty, shares = named(suspects, trials, crowd, Crowd(scene, few, was, heard))
+    if not guilty and (luck := by_chance(steps, crowd, was)) is not None:
+        return Named((), (Mechanism.CHANCE,), luck)
+    return Named(guilty, tuple(one.mechanism for one in guilty), shares)
 
 
 def parted(lost: Sequence[Step], cured: Sequence[Step]) -> int | None:

@@ -17,12 +17,11 @@ from ekfsim.why.changes.driven import NO_GATE
 from ekfsim.why.changes.groups import groups_of
 from ekfsim.why.changes.guesses import Family, families, outliers, surprises
 from ekfsim.why.changes.recorded import start_at_truth, unsure
-from ekfsim.why.records import Change, Explanation
+from ekfsim.why.records import Change, Explanation, Heard, Mechanism
 from ekfsim.why.trying.log_naming import named_of_log
 from ekfsim.why.trying.log_trials import Guess, LogTrials, plain
 from ekfsim.why.trying.minimal import SpentError
 from ekfsim.why.trying.replaying import replayed
-from ekfsim.why.trying.trials import Heard
 
 ROBUST = "huber"  # a filter that few bad readings do not lead astray
 BETWEEN = 4  # values that are tried in the second round, beside the one that would fit
@@ -36,9 +35,16 @@ def explain_log(scene: Scene, budget: int, heard: Heard | None = None) -> Explan
     log = LogTrials(scene, steps, budget, heard)
     if log.was in ("consistent", "recorded"):
         return Explanation(scene, log.was, None, budget=budget, lost_steps=steps)
-    with contextlib.suppress(SpentError):
-        _try_all(log)
-    mechanisms, cure = named_of_log(log)
+    mechanisms: tuple[Mechanism, ...] = ()
+    cure: tuple[Change, ...] = ()
+    stopped = False
+    try:
+        with contextlib.suppress(SpentError):
+            _try_all(log)
+        mechanisms, cure = named_of_log(log)
+    except KeyboardInterrupt:
+        stopped = True
+        cure = tuple(one.tried.change for one in log.guesses if one.tried.cures)[:1]
     cured_steps = tuple(replayed(scene, cure)) if cure else ()
     tried = tuple(one.tried for one in log.guesses)
     return Explanation(
@@ -46,6 +52,7 @@ def explain_log(scene: Scene, budget: int, heard: Heard | None = None) -> Explan
         tuple(one.change for one in tried if one.cures and one.change not in cure),
         None, mechanisms[0] if len(mechanisms) == 1 else None,
         mechanisms if len(mechanisms) > 1 else (), log.replays, budget, None, steps, cured_steps,
+        stopped,
     )  # fmt: skip
 
 

@@ -27,6 +27,11 @@ Kind = Literal[
 Outcome = Literal["consistent", "lost", "over-cautious", "over-confident", "recorded"]
 
 
+# how many of how many are done, and of what
+Heard = Callable[[int, int, str], None]
+REPLAYS = "replays"
+
+
 class Mechanism(Enum):
     """What makes a filter diverge. The value is its plain name."""
 
@@ -134,6 +139,7 @@ class Explanation(Shown):
     shares: Shares | None = None
     lost_steps: tuple[Step, ...] = ()  # of the run as it stands, whatever became of it
     cured_steps: tuple[Step, ...] = ()
+    stopped: bool = False  # by Ctrl-C, before all was tried
 
     def __repr__(self) -> str:
         named = "nothing to explain" if self.outcome == "consistent" else "not found"

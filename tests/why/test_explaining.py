@@ -7,8 +7,10 @@ import numpy as np
 from ekfsim import load_scene
 from ekfsim.localization import play
 from ekfsim.study.block import run_block
+from ekfsim.views.why.answer import answer, sentence
 from ekfsim.why import Mechanism, explain
 from ekfsim.why.explaining import parted
+from ekfsim.why.records import REPLAYS
 
 RUNS = 200
 
@@ -57,7 +59,30 @@ def test_the_budget_is_kept_and_told():
     found = explain(
         load_scene("diverge-12-close-to-the-wall"), RUNS, heard=lambda *told: heard.append(told)
     )
-    assert heard[-1] == (found.replays, found.budget)
+    assert [told for told in heard if told[2] == REPLAYS][-1] == (
+        found.replays,
+        found.budget,
+        REPLAYS,
+    )
+    asked = [told[:2] for told in heard if told[2].startswith(f"{RUNS} runs")]
+    last = len(found.lost_steps) - 1
+    assert (0, last) in asked
+    assert (last, last) in asked
+
+
+def test_what_there_is_when_it_is_stopped_is_told():
+    def stop(done, of, what):
+        if what != REPLAYS:
+            raise KeyboardInterrupt
+
+    scene = load_scene("diverge-02a-odometry-overtrusted")
+    found, whole = explain(scene, RUNS, heard=stop), explain(scene, RUNS)
+    assert found.stopped
+    assert (found.mechanism, found.causes, found.shares) == (None, (), None)
+    assert found.tried == whole.tried
+    assert found.cure
+    assert "Ctrl-C came before many runs had been asked" in sentence(found)
+    assert "Ctrl-C" not in answer(whole)
 
 
 def test_the_run_that_is_explained_is_the_one_that_is_played():

@@ -158,7 +158,7 @@ def write_page(
         from ekfsim.why import explain
 
         one = scene.alone()[0]
-        reason = answer(explain(one, runs_for(one), heard=lambda done, budget: heed()))
+        reason = answer(explain(one, runs_for(one), heard=lambda *done: heed()))
     made = write(scene, out, look, every, force, heed, reason)
     if made.left_out:
         say(f"{in_a_line(out)}: {made.left_out}")

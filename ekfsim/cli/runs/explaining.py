@@ -24,8 +24,9 @@ FEWEST_RUNS = 100  # of fewer no share tells one cause from another
 @click.command(short_help="Say why the run of COMMANDS was lost, and what cures it.")
 @scene_options
 @click.option(
-    "--runs", type=Whole(FEWEST_RUNS, MOST_RUNS), default=1000, show_default=True, metavar="N",
-    help="How many runs of the seed stand behind the name and the shares.",
+    "--runs", type=Whole(FEWEST_RUNS, MOST_RUNS), metavar="N",
+    help="How many runs of the seed stand behind the name and the shares: 1000 where it is not "
+    "said, and 100 of particles or of a filter of your own.",
 )  # fmt: skip
 @click.option(
     "--budget", type=Whole(1, MOST_REPLAYS), metavar="N",
@@ -39,7 +40,7 @@ FEWEST_RUNS = 100  # of fewer no share tells one cause from another
 )  # fmt: skip
 @FORCE
 def why(
-    runs: int, budget: int | None, csv: Path | None, out: Path | None, force: bool,
+    runs: int | None, budget: int | None, csv: Path | None, out: Path | None, force: bool,
     confidence: float, **chosen: Any,
 ) -> None:  # fmt: skip
     """Say why the run of COMMANDS was lost, and what cures it.
@@ -64,11 +65,12 @@ def why(
 
         refuse_existing(csv, force)
     from ekfsim.views.why.answer import answer
+    from ekfsim.views.why.asked import runs_for
     from ekfsim.why import explain
 
     with replays_bar() as heard:
         limit = {} if budget is None else {"budget": budget}
-        found = explain(scene, runs, heard=heard, **limit)
+        found = explain(scene, runs or runs_for(scene), heard=heard, **limit)
     if csv is not None:
         write_table(found, csv, force)
     if out is not None:
@@ -76,6 +78,7 @@ def why(
 
         draw_why(found, out, confidence, force)
     click.echo(shown(answer(found, width())), nl=False)
+    heed()  # what there was is told, and that it was cut short
 
 
 def write_table(found: "Explanation", path: Path, force: bool) -> None:
@@ -88,15 +91,21 @@ def write_table(found: "Explanation", path: Path, force: bool) -> None:
 
 
 @contextmanager
-def replays_bar() -> Iterator[Callable[[int, int], None]]:
-    """A bar on standard error where that is a terminal: how many of the replays are done."""
+def replays_bar() -> Iterator[Callable[[int, int, str], None]]:
+    """A bar on standard error where that is a terminal: how many of the replays are done, then how
+    far many runs have come.
+    """
+    from ekfsim.why.records import REPLAYS
+
     with click.progressbar(
-        length=1, label="replays", file=sys.stderr, hidden=not sys.stderr.isatty()
+        length=1, label=REPLAYS, file=sys.stderr, hidden=not sys.stderr.isatty()
     ) as bar:
 
-        def heard(done: int, budget: int) -> None:
+        def heard(done: int, of: int, what: str) -> None:
             heed()
-            bar.length = budget
+            if bar.label != what:
+                bar.label, bar.pos = what, 0
+            bar.length = of
             bar.update(done - bar.pos)
 
         yield heard

@@ -42,13 +42,13 @@ class Reason:
         wait(CALCULATING)
         with interruptible() as stopped:
 
-            def heard(done: int, budget: int) -> None:
+            def heard(done: int, of: int, what: str) -> None:
                 nonlocal begun
                 if stopped():
                     raise StoppedError
                 if time.monotonic() - begun > OFTEN:
                     begun = time.monotonic()
-                    wait(f"{CALCULATING} · {done} of at most {budget}")
+                    wait(f"{CALCULATING} · {what} {done} of {of}")
 
             try:
                 one = scene.alone()[0]

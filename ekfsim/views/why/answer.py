@@ -66,6 +66,8 @@ def _sentences(explanation: Explanation) -> Iterator[str]:
     yield from _cured(explanation)
     if explanation.parts_at is not None and explanation.cure:
         yield f"The two estimates part at step {explanation.parts_at}"
+    if explanation.stopped:
+        yield "Ctrl-C came before many runs had been asked, so no cause is named"
     if explanation.shares is not None:
         together = "with all of these put right" if explanation.causes else None
         yield shares(explanation.shares, together)
@@ -180,4 +182,5 @@ def effort(explanation: Explanation) -> str:
         f"{cured} {'cures' if cured == 1 else 'cure'}; {explanation.replays} of at most "
         f"{count(explanation.budget, 'replay')}"
         + (", which did not do for all" if explanation.replays >= explanation.budget else "")
+        + (", then Ctrl-C" if explanation.stopped else "")
     )

@@ -1,18 +1,19 @@
 """Of how many runs it holds: as they stand, and with a change."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
 from ekfsim.diagnostics.verdict import BAND
 from ekfsim.geometry import Booleans, Integers
+from ekfsim.records import Step
 from ekfsim.scene import Scene
-from ekfsim.study.block import Watched, watched_along
+from ekfsim.study.block import Watched, at_once, length_of, watched_along
 from ekfsim.study.comparison import of_shares
 from ekfsim.study.counting import bounds
 from ekfsim.study.pairs import Shared
-from ekfsim.why.records import Change, Outcome, Shares
-from ekfsim.why.trying.replaying import replayed
+from ekfsim.why.records import Change, Heard, Outcome, Shares
+from ekfsim.why.trying.replaying import changed, replayed
 
 
 def badly(watched: Watched, outcome: Outcome) -> Booleans:
@@ -42,8 +43,8 @@ def outcomes(watched: Watched) -> dict[Outcome, Booleans]:
 class Crowd:
     """Runs of a scene, each of them also with changes, on the same draws."""
 
-    def __init__(self, scene: Scene, runs: int, of: Outcome) -> None:
-        self._scene, self._of = scene, of
+    def __init__(self, scene: Scene, runs: int, of: Outcome, heard: Heard | None = None) -> None:
+        self._scene, self._of, self._heard = scene, of, heard
         self.numbers: Integers = np.arange(runs)
         self._bad: dict[tuple[Change, ...], Booleans] = {}
 
@@ -51,9 +52,25 @@ class Crowd:
         """Which runs end as badly, with changes : (N,)"""
         key = tuple(changes)
         if key not in self._bad:
-            steps = replayed(self._scene, changes, self.numbers)
-            self._bad[key] = badly(watched_along(self._scene, self.numbers, steps), self._of)
+            some = at_once(changed(self._scene, changes), 0, len(self.numbers))
+            each = [self._portion(changes, self.numbers[first:][:runs]) for first, runs in some]
+            self._bad[key] = np.concatenate([np.zeros(0, bool), *each])
         return self._bad[key]
+
+    def _portion(self, changes: Sequence[Change], numbers: Integers) -> Booleans:
+        """Of some of the runs, as many as fit the memory : (n,)"""
+        steps = self._told(replayed(self._scene, changes, numbers), len(changes))
+        return badly(watched_along(self._scene, numbers, steps), self._of)
+
+    def _told(self, steps: Iterable[Step], changes: int) -> Iterator[Step]:
+        """The steps, and how far they have come."""
+        last, often = length_of(self._scene), "with a change" if changes else "as they stand"
+        for step in steps:
+            if self._heard is not None:
+                self._heard(
+                    min(step.entry.index, last), last, f"{len(self.numbers)} runs {often}, steps"
+                )
+            yield step
 
     def shares(self, change: Change, changes: Sequence[Change] = ()) -> Shares:
         """What a change does, or several together that are told as one."""

@@ -8,11 +8,10 @@ from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.why.changes.guesses import Family
-from ekfsim.why.records import Change, Mechanism, Outcome, Tried, together
+from ekfsim.why.records import REPLAYS, Change, Heard, Mechanism, Outcome, Tried, together
 from ekfsim.why.trying.logs import Rows, gathered, rows_of
 from ekfsim.why.trying.minimal import SpentError
 from ekfsim.why.trying.replaying import cured, replayed
-from ekfsim.why.trying.trials import Heard
 
 MOST_ROWS = 64  # at once
 
@@ -101,7 +100,7 @@ class LogTrials:
             raise SpentError
         self.replays += replays
         if self._heard is not None:
-            self._heard(self.replays, self.budget)
+            self._heard(self.replays, self.budget, REPLAYS)
 
 
 def plain(

@@ -1,6 +1,6 @@
 """One run, played again with one change after another, within a budget."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 from ekfsim.geometry import Integers
 from ekfsim.localization import belief_of, filter_of, localize
@@ -10,12 +10,10 @@ from ekfsim.study.block import watched_along
 from ekfsim.why.changes.groups import Group, instants
 from ekfsim.why.changes.groups import abreast as groups_abreast
 from ekfsim.why.changes.singles import abreast, numbers
-from ekfsim.why.records import Change, Outcome, Tried
+from ekfsim.why.records import REPLAYS, Change, Heard, Outcome, Tried
 from ekfsim.why.trying.crowd import outcomes
 from ekfsim.why.trying.minimal import SpentError
 from ekfsim.why.trying.replaying import cured, ending, replayed
-
-Heard = Callable[[int, int], None]  # replays that are done, and the budget
 
 
 class Trials:
@@ -114,4 +112,4 @@ class Trials:
             raise SpentError
         self.replays += replays
         if self._heard is not None:
-            self._heard(self.replays, self.budget)
+            self._heard(self.replays, self.budget, REPLAYS)
