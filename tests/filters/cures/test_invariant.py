@@ -160,6 +160,16 @@ def test_the_gain_for_a_landmark_depends_on_what_is_predicted_alone():
     assert made[0] == pytest.approx(made[1], abs=1e-12)
 
 
+def test_from_the_right_the_mean_would_be_the_same():
+    """exp(ξ) χ⁻ with the twist in the world's frame that has the same chord."""
+    random = np.random.default_rng(7)
+    prior = Gaussian(random.uniform(-3, 3, 3), covariance(random, 3))
+    (x, _), told = Invariant().update(prior, landmark(5.0, 4.0), np.array([3.0, 1.0]))
+    *δp, δθ = told.K @ told.innovation
+    ξ = np.array([*(δp - δθ * J @ prior.mean[:2]), δθ])
+    assert as_matrix(x) == pytest.approx(expm(hat(ξ)) @ as_matrix(prior.mean), abs=1e-12)
+
+
 def test_who_drove_straight_stays_on_the_arc():
     """The start is known and the heading is not: after d the robot is on a circle of d about the
     start, and so is the estimate, whatever a fix says; its ellipse lies along the circle."""
