@@ -65,6 +65,9 @@ class Mixture:
     walls: Integers  # (…, h) the wall that each took its last reading for, −1 where none is known
     merged: Integers  # (…, h) how many the last reading left, that are one in this one
     pruned: Integers  # (…) how many it left without a place, their weight being given to the others
+    # (…, h) which of the hypotheses before that reading it came of, −1 where the filter sought the
+    # robot everywhere and found it there
+    parents: Integers
     memory: object = None  # what its filter remembers besides
 
     def __iter__(self) -> Iterator[Array]:

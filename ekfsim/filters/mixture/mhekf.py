@@ -83,7 +83,9 @@ class MHEKF:
         told = _picked(answers.correction, few.heaviest[..., 0])
         rule = kalman.Rule(self.gate, skip, self.headings)
         refused = kalman.refusal(z, told.predicted, told.nis, rule)
-        after = self._mixture(few, np.take_along_axis(answers.walls, few.heaviest, axis=-1))
+        many = answers.weights.shape[-1] // before.weights.shape[-1]  # walls of each hypothesis
+        walls = np.take_along_axis(answers.walls, few.heaviest, axis=-1)
+        after = self._mixture(few, walls, few.heaviest // many)
         after = replace(where_used(refused, after, before), memory=before.memory)
         if self.places is not None and answers.parting:
             after = self._relocated(after, before, sensor, z, answers.log, refused)
@@ -132,7 +134,13 @@ class MHEKF:
             self.hypotheses,
             self.headings,
         )
-        return placed(self._mixture(few, np.full_like(few.merged, -1)), self.hypotheses)
+        known = few.heaviest < before.weights.shape[-1]
+        at = np.where(known, few.heaviest, 0)
+        walls, parents = (
+            np.where(known, np.take_along_axis(of, at, axis=-1), -1)
+            for of in (before.walls, before.parents)
+        )
+        return placed(self._mixture(few, walls, parents), self.hypotheses)
 
     def _answers(self, before: Mixture, sensor: Sensor, z: Array) -> Answers:
         """Every hypothesis revised by every line that the sensor may be taken for there."""
@@ -184,10 +192,14 @@ class MHEKF:
             parting,
         )
 
-    def _mixture(self, few: Few, walls: Integers) -> Mixture:
-        """A few Gaussians with mean and covariance of all, and the wall of each : (…, h)"""
+    def _mixture(self, few: Few, walls: Integers, parents: Integers) -> Mixture:
+        """A few Gaussians with mean and covariance of all; the wall of each, and which it came of :
+        (…, h)
+        """
         x, P = moments(few.means, few.covariances, few.weights, self.headings)
-        return Mixture(x, P, few.means, few.covariances, few.weights, walls, few.merged, few.pruned)
+        return Mixture(
+            x, P, few.means, few.covariances, few.weights, walls, few.merged, few.pruned, parents
+        )
 
     def _together(self, mixture: Mixture) -> Mixture:
         """The same with mean and covariance of all its hypotheses."""

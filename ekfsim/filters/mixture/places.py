@@ -15,8 +15,9 @@ def mixed(belief: Belief) -> Mixture:
     x, P = belief
     one, none = np.ones((*x.shape[:-1], 1)), np.full((*x.shape[:-1], 1), -1)
     return Mixture(
-        x, P, x[..., None, :], P[..., None, :, :], one, none, one.astype(np.int64), none[..., 0] + 1
-    )
+        x, P, x[..., None, :], P[..., None, :, :], one, none, one.astype(np.int64),
+        none[..., 0] + 1, none + 1,
+    )  # fmt: skip
 
 
 def placed(mixture: Mixture, h: int) -> Mixture:
@@ -34,6 +35,7 @@ def placed(mixture: Mixture, h: int) -> Mixture:
         weights=np.concatenate([mixture.weights, 0.0 * nothing], -1),
         walls=np.concatenate([mixture.walls, nothing - 1], -1),
         merged=np.concatenate([mixture.merged, nothing], -1),
+        parents=np.concatenate([mixture.parents, nothing], -1),
     )
 
 
@@ -53,6 +55,7 @@ def where_used(refused: Integers, after: Mixture, before: Mixture) -> Mixture:
         either(new.means, old.means), either(new.covariances, old.covariances),
         either(new.weights, old.weights), np.where(used[..., None], new.walls, old.walls),
         np.where(used[..., None], new.merged, 1), np.where(used, new.pruned, 0),
+        np.where(used[..., None], new.parents, np.arange(h)),
     )  # fmt: skip
 
 
@@ -61,7 +64,7 @@ def part(mixture: Mixture, rows: Booleans) -> Mixture:
     m = mixture
     return Mixture(
         m.mean[rows], m.covariance[rows], m.means[rows], m.covariances[rows], m.weights[rows],
-        m.walls[rows], m.merged[rows], m.pruned[rows],
+        m.walls[rows], m.merged[rows], m.pruned[rows], m.parents[rows],
     )  # fmt: skip
 
 
@@ -88,4 +91,5 @@ def inserted(mixture: Mixture, rows: Booleans, more: Mixture) -> Mixture:
         walls=put_whole(mixture.walls, more.walls),
         merged=put_whole(mixture.merged, more.merged),
         pruned=put_whole(mixture.pruned, more.pruned),
+        parents=put_whole(mixture.parents, more.parents),
     )

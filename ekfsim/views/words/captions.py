@@ -14,6 +14,7 @@ from ekfsim.views.picture.sights import Sight, instants, told
 from ekfsim.views.picture.written.lettering import shortened
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.beams.beam import Beam, called
+from ekfsim.views.words.beams.hypotheses import weights
 from ekfsim.views.words.changes import ARROWS, carried, losing, revised
 from ekfsim.views.words.closing import meaning
 from ekfsim.views.words.numbers import length
@@ -109,6 +110,7 @@ def _notes(view: View, scene: Scene, read: Beam | Sight | None, probability: flo
         changed = carried(view, probability)
     else:
         refused = Refused(int(step.correction.refused))
+        told += weights(step)
         changed = (
             REFUSALS[refused] + "; the estimate stays" if refused else revised(view, probability)
         )
