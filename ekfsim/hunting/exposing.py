@@ -36,24 +36,30 @@ class Exposure:
 
 
 def exposure(
-    scene: Scene, against: str, longest: int, begin: Sequence[Listed], heed: Callable[[], None]
-) -> Exposure | None:
+    scene: Scene, against: str, longest: int, begin: Sequence[Listed],
+    heed: Callable[[], None], go_on: Callable[[], bool],
+) -> Exposure | None:  # fmt: skip
     """The shortest input at which the scene's filter has other numbers than another, or its code
     fails; None where none of those that were tried shows any.
 
-    begin : lists that are tried when no shorter one shows it
+    begin : lists that are tried when no shorter one shows it; go_on : whether there is time for
+    more
     """
     space, caller = Space(scene.world, longest), caller_of(scene)
 
     def shows(played: Scene, tried: Sequence[Listed]) -> Listed | None:
         for listed in tried:
             heed()
+            if not go_on():
+                return None
             if differs(replace(played, commands=listed), caller, against):
                 return listed
         return None
 
     looked_at = 0
     for listed in (*by_length(scene, space), *begin):
+        if not go_on():
+            return None
         looked_at += 1
         if shows(scene, [listed]) is None:
             continue

@@ -88,6 +88,8 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
     """
     if asked.change == "told":
         return _told(asked, heed)
+    if asked.change == "start":
+        _refuse_where_no_start_is_sought(asked.scene)
     space, starts = (
         Lists(Space(asked.scene.world, asked.moves)),
         Starts(asked.scene.world, asked.scene.commands),
@@ -121,7 +123,15 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
             f"{asked.scene.world.name}: no run of {state.looked_at} lists does that; look at more "
             f"(--lists, --budget), allow more commands (--moves), or less error (--off)"
         )
-    return _measured(asked, state, end, shorter or _as_it_is(asked, state.best[0]))
+    found = _measured(asked, state, end, shorter or _as_it_is(asked, state.best[0]))
+    if not found.fresh.hits and end != "interrupted":
+        raise RunError(
+            f"{asked.scene.world.name}: the best of {state.looked_at} lists does that in "
+            f"{found.count.hits} of {found.count.of} runs of the search, and in none of "
+            f"{found.fresh.of} fresh ones; look at more (--lists, --budget), or allow less error "
+            "(--off)"
+        )
+    return found
 
 
 def _less(asked: Asked, best: Variant, judge: Judge, go_on: Callable[[], bool]) -> Shrunk:
@@ -145,6 +155,15 @@ def _as_it_is(asked: Asked, best: Seen) -> Shrunk:
         case Commanded(commands):
             return Shrunk(asked.scene, commands, best.count, False)
     raise AssertionError
+
+
+def _refuse_where_no_start_is_sought(scene: Scene) -> None:
+    """Raises UsageError, before anything takes long."""
+    if not len(scene.world.map.walls.boxes[0]):
+        raise UsageError(
+            f"{scene.world.name}: no wall says where a start may be; --change start looks in a room"
+        )
+    _begun(scene, Started(*scene.world.start.tolist()))
 
 
 def _begun(scene: Scene, start: Started) -> Scene:

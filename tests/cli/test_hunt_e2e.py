@@ -9,6 +9,14 @@ from program import ekfsim, started
 
 ENOUGH = ("hunt", "furnished-room", "--enough", "0.5", "--lists", "256", "--runs", "300")
 
+FIELD = """
+name: field
+start: {x: 1, y: 1, theta: 0}
+noise: {executionDstSigmaRatio: 0.05, executionAngSigmaRatio: 0.05, odometryDstSigmaRatio: 0.02,
+        odometryAngSigmaRatio: 0.02, rangeSigmaRatio: 0.01}
+"""
+TURN_AND_SENSE = "commands: [move: {distance: 0.5, angle: 90}, sense: {angle: 0}]\n"
+
 
 def test_what_is_written_keeps_its_word(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -51,10 +59,21 @@ def test_the_smallest_wrong_number_keeps_its_word(tmp_path, monkeypatch):
         (["room", "-o", "a.txt"], "a.txt: a commands file is written; name it e.g. hunt"),
         (["room", "--change", "told"], "--change told: name COMMANDS that are to be lost"),
         (["room", "--for", "ekf,pf", "--goal", "numbers"], "pf: does not go on from a mean"),
+        (["room", "--for", "ekf,ekf-smoothed"], "--for ekf,ekf-smoothed: both believe the same"),
+        (["room", "--for", "ekf,ekf"], "--filter ekf,ekf: 'ekf' stands twice; delete one"),
+        (["open.yaml", "--change", "start"], "field: no wall says where a start may be"),
+        (["told.yaml", "--change", "start"], "room: its `belief` tells the filter a start of its"),
     ],
 )
 def test_mistakes_are_told_in_a_line(words, told, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "field.yaml").write_text(FIELD)
+    (tmp_path / "room.yaml").write_text(
+        FIELD.replace("field", "room")
+        + "boundary: [[0, 0], [4, 0], [4, 4], [0, 4]]\nbelief: {start: {x: 1.1, y: 1, theta: 0}}\n"
+    )
+    for name, world in (("open", "field"), ("told", "room")):
+        (tmp_path / f"{name}.yaml").write_text(f"world: {world}.yaml\n{TURN_AND_SENSE}")
     made = ekfsim("hunt", *words)
     assert made.status == 2
     assert told in made.err
@@ -72,3 +91,41 @@ def test_ctrl_c_writes_the_best_so_far(tmp_path):
         return
     assert b"lists is kept in hunt.yaml" in err
     assert yaml.safe_load((tmp_path / "hunt.yaml").read_text())["expect"]["runs"] == 50
+
+
+def test_where_no_fresh_run_does_it_nothing_is_written(tmp_path, monkeypatch):
+    """In a field without a wall the best is a run of a thousand."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "field.yaml").write_text(FIELD)
+    made = ekfsim("hunt", "field.yaml", "--lists", "40", "--runs", "20")
+    assert made.status == 1
+    assert made.err.count("\n") == 1
+    assert "no run of 40 lists does that" in made.err or "none of 20 fresh ones" in made.err
+    assert [one.name for one in tmp_path.iterdir()] == ["field.yaml"]
+
+
+def test_the_clock_ends_a_comparison_of_numbers(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    made = ekfsim("hunt", "room", "--for", "huber", "--goal", "numbers", "--budget", "0.001")
+    assert made.status == 1
+    assert made.err == (
+        "ekfsim: huber: has the numbers of ekf in every list that was tried in the 0.001 s of "
+        "--budget; --goal apart looks where it is lost more often\n"
+    )
+
+
+def test_every_command_is_told_as_its_file_has_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "field.yaml").write_text(FIELD)
+    (tmp_path / "all.yaml").write_text(
+        "world: field.yaml\ncommands:\n  - move: {distance: 1, angle: 90, slip: 0.5}\n"
+        "  - repeat: {times: 3, commands: [sense: {angle: 10}]}\n"
+        "  - kidnap: {x: 3, y: 2.5, theta: 30}\n"
+    )
+    made = ekfsim("hunt", "all.yaml", "--change", "told", "--runs", "20")
+    assert made.status == 0
+    assert made.out.splitlines()[1:4] == [
+        "  move 1 m, turn 90°, slip 0.5",
+        "  3 times: sense at 10°",
+        "  kidnap to x 3 m, y 2.5 m, 30°",
+    ]

@@ -10,7 +10,8 @@ import pytest
 
 from ekfsim.commands import Move, Sense
 from ekfsim.errors import RunError
-from ekfsim.files.scenes.load import load_scene
+from ekfsim.files.scenes.load import load_scene, load_world
+from ekfsim.filters.tuning import Tuning
 from ekfsim.hunting.changes.starts import Starts
 from ekfsim.hunting.changes.told import needed, untruly
 from ekfsim.hunting.changes.variants import Started, Told
@@ -20,6 +21,17 @@ from ekfsim.hunting.hunt import Asked, hunt
 
 COMMANDS = (Move(1.0, math.radians(90)), Sense(0.0))
 ROOM = replace(load_scene({"world": "room", "commands": []}), commands=COMMANDS)
+FIELD = {
+    "name": "field",
+    "start": {"x": 1, "y": 1, "theta": 0},
+    "noise": {
+        "executionDstSigmaRatio": 0.05,
+        "executionAngSigmaRatio": 0.05,
+        "odometryDstSigmaRatio": 0.02,
+        "odometryAngSigmaRatio": 0.02,
+        "rangeSigmaRatio": 0.01,
+    },
+}
 
 
 def no_ear(*_: object) -> None:
@@ -120,3 +132,22 @@ def test_the_budget_ends_it_and_an_interruption_keeps_what_was_found():
 def test_of_a_list_that_no_run_is_lost_in_nothing_is_written():
     with pytest.raises(RunError, match="no run of 128 lists does that"):
         hunt(Asked(ROOM, change="start", lists=128, moves=1, off=50.0), no_ear, no_ear)
+
+
+def test_no_start_is_beside_a_wall_that_stands_free():
+    panel = {"name": "panel", "points": [[2.0, 1.0], [2.0, 3.0]]}
+    boundary = [[0, 0], [4, 0], [4, 4], [0, 4]]
+    world = {**FIELD, "boundary": boundary, "walls": [panel]}
+    starts = Starts(load_world(world), ())
+    assert not starts.suits(Started(1.8, 2.0, 0.0))
+    assert starts.suits(Started(1.6, 2.0, 0.0))
+    assert starts.suits(Started(2.0, 3.5, 0.0))  # beyond its end
+
+
+def test_a_start_that_is_unknown_is_no_number_to_change():
+    world = {**FIELD, "boundary": [[0, 0], [4, 0], [4, 4], [0, 4]], "belief": {"start": "unknown"}}
+    scene = replace(ROOM, world=load_world(world), filter="pf", tuning=Tuning(particles=20))
+    with crew(1, Lost(), "quick", no_ear) as judge:
+        found = [one.told.key for one in needed(scene, judge, 0.0) if one is not None]
+    assert found
+    assert not [key for key in found if key.startswith("start")]

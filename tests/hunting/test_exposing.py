@@ -13,6 +13,11 @@ ROOM = load_scene({"world": "furnished-room", "commands": []})
 RIGHT = template("filter-complete")
 
 
+def always():
+    """There is time."""
+    return True
+
+
 def no_ear():
     """Heeds nothing."""
 
@@ -43,7 +48,7 @@ def of_own(tmp_path, text):
 def test_a_planted_mistake_is_found_by_the_least_that_shows_it(tmp_path):
     planted = RIGHT.replace("x + K @ r", "x - K @ r")
     assert planted != RIGHT
-    found = exposure(of_own(tmp_path, planted), "ekf", 8, [], no_ear)
+    found = exposure(of_own(tmp_path, planted), "ekf", 8, [], no_ear, always)
     assert len(found.scene.commands) == 2  # nothing is uncertain before the first move
     assert found.found.first.step.asked.index == 2
     assert "innovation-sign" in [one.name for guess in found.found.guesses for one in guess]
@@ -52,11 +57,11 @@ def test_a_planted_mistake_is_found_by_the_least_that_shows_it(tmp_path):
 
 def test_code_that_fails_is_exposed_too(tmp_path):
     planted = RIGHT.replace("    H, r =", "    raise ValueError('open')\n    H, r =")
-    found = exposure(of_own(tmp_path, planted), "ekf", 8, [], no_ear)
+    found = exposure(of_own(tmp_path, planted), "ekf", 8, [], no_ear, always)
     assert len(found.scene.commands) == 1
     assert "open" in str(found.found.fault)
 
 
 def test_a_right_filter_is_not_exposed(tmp_path, monkeypatch):
     monkeypatch.setattr("ekfsim.hunting.exposing.MANY", 10)
-    assert exposure(of_own(tmp_path, RIGHT), "ekf", 3, [], no_ear) is None
+    assert exposure(of_own(tmp_path, RIGHT), "ekf", 3, [], no_ear, always) is None

@@ -2,6 +2,7 @@
 
 import shlex
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -28,7 +29,7 @@ from ekfsim.cli.program.options import (
 )  # fmt: skip
 from ekfsim.cli.program.process import heed, part_with, shown, warn, width
 from ekfsim.errors import RunError, UsageError
-from ekfsim.filters.place import label
+from ekfsim.filters.place import forward, label
 
 if TYPE_CHECKING:
     from ekfsim.hunting.hunt import Asked
@@ -42,7 +43,7 @@ OPTIONS = (
     WORLD,
     SEED,
     click.option(
-        "--for", "hunted", metavar="NAME[,NAME]",
+        "--for", "--filter", "hunted", metavar="NAME[,NAME]",
         help="The filter that is hunted, in place of the file's: see play. Of one of your own the "
         "first wrong number is found; of two, where the first is lost and the second is not.",
     ),
@@ -146,11 +147,15 @@ def _expose(task: "Asked", out: Path, force: bool) -> None:
     from ekfsim.views.hunting.exposing import conclude, headline, held
 
     against = task.against or "ekf"
-    found = exposure(task.scene, against, task.moves, begun_with(task), heed)
+    end = time.monotonic() + task.seconds
+    found = exposure(
+        task.scene, against, task.moves, begun_with(task), heed, lambda: time.monotonic() < end
+    )
     if found is None:
+        within = "" if time.monotonic() < end else f" in the {task.seconds:g} s of --budget"
         raise RunError(
             f"{label(task.scene.filter)}: has the numbers of {label(against)} in every list that "
-            f"was tried; --goal apart looks where it is lost more often"
+            f"was tried{within}; --goal apart looks where it is lost more often"
         )
     repeated = _repeating(None, task.scene.seed)
     told = Told(headline(found, against), repeated, held(found, against, Path(out.name)))
@@ -186,13 +191,15 @@ def _asked(
         against = "ekf" if scene.filter != "ekf" else None
     if chosen == "apart" and against is None:
         raise UsageError(f"--goal apart: name two filters, e.g. --for {scene.filter},iekf")
+    if chosen == "apart" and forward(str(against)) == forward(scene.filter):
+        raise UsageError(f"--for {hunted}: both believe the same at the end; name two filters")
     if chosen == "numbers":
         for name in (scene.filter, against or "ekf"):
             comparable(name, "--for")
     way = "compiled" if fast else taken()
     if numbers["change"] != "commands" and (not scene.commands or chosen == "numbers"):
         what = f"--change {numbers['change']}"
-        raise UsageError(f"{what}: name COMMANDS that are to be lost, and no other goal than runs")
+        raise UsageError(f"{what}: name COMMANDS that are to be lost, and no --goal numbers")
     plain = replace(scene, beside=())
     if fast:
         watching = {scene.filter, *([against] if against else [])}

@@ -59,10 +59,12 @@ class Starts:
 
     def suits(self, one: Started) -> bool:
         """Whether a robot can stand there, and no wall is in its way."""
-        from shapely import Point  # slow to import
+        from shapely import LineString, Point  # slow to import
 
         boundary, obstacles = self.world.map.areas
         place = Point(one.x, one.y)
+        if any(LineString(line.points).distance(place) < CLEAR for line in self.world.map.lines):
+            return False
         if boundary is not None and not boundary.buffer(-CLEAR).contains(place):
             return False
         if any(area.distance(place) < CLEAR for area in obstacles):

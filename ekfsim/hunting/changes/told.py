@@ -89,6 +89,8 @@ def _numbers(scene: Scene) -> Iterator[Way]:
             for way in (1, -1):
                 steps = [_told(true * STEP ** (way * k)) for k in range(1, STEPS)]
                 yield Way(f"noise.{name}", true, steps)
+    if scene.world.told.start_unknown:
+        return
     for axis, true in zip(AXES, scene.world.start.tolist(), strict=True):
         true = float(np.degrees(true)) if axis == "theta" else true
         for way in (1, -1):

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
-from ekfsim.commands import Command, Move, Say, Sense
+from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.filters.place import label
 from ekfsim.hunting.goals import Name
 from ekfsim.hunting.hunt import Hunted
@@ -59,17 +59,21 @@ def description(hunted: Hunted) -> str:
 def told(command: Command) -> str:
     """A command as its file has it, on a line.
 
-    >>> told(Move(1.5, math.radians(90))), told(Sense(math.radians(-45)))
-    ('move 1.5 m, turn 90°', 'sense at -45°')
+    >>> told(Move(1.5, math.radians(90))), told(Repeat(2, (Sense(math.radians(-45)),)))
+    ('move 1.5 m, turn 90°', '2 times: sense at -45°')
     """
     match command:
-        case Move(d, a):
-            return f"move {d:g} m, turn {math.degrees(a):.6g}°"
+        case Move(d, a, slip):
+            slips = f", slip {slip:g}" if slip else ""
+            return f"move {d:g} m, turn {math.degrees(a):.6g}°{slips}"
         case Sense(a):
             return f"sense at {math.degrees(a):.6g}°"
         case Say(text):
             return f"say: {in_a_line(text)}"
-    return str(command)
+        case Kidnap(x, y, θ):
+            return f"kidnap to x {x:g} m, y {y:g} m, {math.degrees(θ):.6g}°"
+        case Repeat(times, commands):
+            return f"{times} times: {'; '.join(map(told, commands)) or 'nothing'}"
 
 
 def _headline(hunted: Hunted) -> str:
