@@ -1,7 +1,7 @@
 """Scenes whose mechanism is known and that no packaged input holds: what `ekfsim why` is tried on.
 
 rooms.py  where they play and what routes are made of
-sound.py, told.py, faults.py, traps.py  the scenes, by what is wrong
+sound.py, told.py, faults.py, traps.py, strangers.py  the scenes, by what is wrong
 cases.py  a case, its cause shown by taking it out, and the run that is looked at
 """
 
@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from .cases import Case
 from .faults import faults_cases
 from .sound import sound_cases
+from .strangers import strangers_cases
 from .told import told_cases
 from .traps import traps_cases
 
@@ -20,3 +21,4 @@ def cases() -> Iterator[Case]:
     yield from told_cases()
     yield from faults_cases()
     yield from traps_cases()
+    yield from strangers_cases()

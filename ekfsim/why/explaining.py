@@ -26,6 +26,7 @@ BUDGET = 400  # replays of one run
 STEPS_REPLAYED = 3_000_000  # of all replays of one run
 LEAST_BUDGET = 40
 STEPS_OF_RUNS = 200_000  # of all of many runs, with each change
+STEPS_OF_OBEYED = 2_000_000  # the same of the classroom's robot
 FEWEST_DRIVEN = 20  # runs; of fewer nothing is to be learnt, and this one speaks for itself
 PARTED = 1e-6  # m, rad; two estimates that differ by more have parted
 PARTICLE_STEPS = 4_000_000  # of many runs' exact filter, in all
@@ -48,8 +49,10 @@ def explain(
         limit = max(LEAST_BUDGET, STEPS_REPLAYED // steps_at_once)
         return explain_log(scene, min(budget, limit), heard)
     steps = tuple(Trials.first(scene))
-    if not scene.commanded:  # its runs are long
-        budget = min(budget, max(LEAST_BUDGET, STEPS_REPLAYED // len(steps)))
+    budget = min(budget, max(LEAST_BUDGET, STEPS_REPLAYED // len(steps)))
+    if scene.commanded:
+        runs = min(runs, max(FEWEST, STEPS_OF_OBEYED // len(steps)))
+    else:
         runs = min(runs, STEPS_OF_RUNS // len(steps))
         runs = runs if runs >= FEWEST_DRIVEN else 0
     trials = Trials(scene, steps, budget, heard)

@@ -50,6 +50,7 @@ class Mechanism(Enum):
     SHEARED_MAP = "sheared map"
     LOOK_ALIKE_WALLS = "look-alike walls"
     HEADING_SPREAD = "heading spread"
+    LINEARISED_ELSEWHERE = "linearised elsewhere"  # of filters that do so about another belief
     GRAZING_BEAMS = "grazing beams"
     WRONG_START = "wrong start"
     REPEATED_READINGS = "repeated readings"

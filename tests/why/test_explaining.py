@@ -70,6 +70,14 @@ def test_the_budget_is_kept_and_told():
     assert (last, last) in asked
 
 
+def test_a_filter_that_makes_its_lines_elsewhere_is_told_so():
+    """The linear filter stays with the first belief: a slip on top is a second cause."""
+    scene = replace(load_scene("diverge-03c-slip"), filter="kf")
+    found = explain(scene, RUNS)
+    assert set(found.causes) == {Mechanism.SLIP, Mechanism.LINEARISED_ELSEWHERE}
+    assert "The filter makes its straight lines about the first belief" in sentence(found)
+
+
 def test_what_there_is_when_it_is_stopped_is_told():
     def stop(done, of, what):
         if what != REPLAYS:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ekfsim.commands import Kidnap, Move
-from ekfsim.diagnostics.ambiguity import sighting_of
+from ekfsim.diagnostics.ambiguity import GRAZING, sighting_of
 from ekfsim.diagnostics.verdict import BAND, LOST
 from ekfsim.filters.belief import posed
 from ekfsim.records import Reading, Step
@@ -15,6 +15,7 @@ from ekfsim.views.why.changes import joined, named
 from ekfsim.views.why.driven import because_driven
 from ekfsim.views.why.met import Met, called, met, told
 from ekfsim.views.words.numbers import length
+from ekfsim.why.changes.suspects import ELSEWHERE
 from ekfsim.why.records import Change, Explanation, Mechanism
 
 LASER = (Mechanism.LASER_OVERTRUSTED, Mechanism.LASER_DISTRUSTED)
@@ -75,6 +76,12 @@ def because(explanation: Explanation, mechanism: Mechanism) -> str:
             return _map(explanation, mechanism)
         case Mechanism.HEADING_SPREAD:
             return _spread(explanation)
+        case Mechanism.LINEARISED_ELSEWHERE:
+            about = ELSEWHERE.get(scene.filter, "another belief")
+            return (
+                f"The filter makes its straight lines about {about}, and the robot has gone "
+                "elsewhere"
+            )
         case Mechanism.WRONG_START:
             return _start(scene)
         case Mechanism.REPEATED_READINGS:
@@ -177,7 +184,7 @@ def _wrong_wall(explanation: Explanation, mechanism: Mechanism) -> str:
 def _grazing(explanation: Explanation) -> str:
     step = culprit(explanation)
     sighting = None if step is None else sighting_of(step)
-    if step is None or sighting is None or math.isnan(float(sighting.incidence)):
+    if step is None or sighting is None or not float(sighting.incidence) < GRAZING:
         return "Beams meet their walls at so flat an angle that a small turn moves their ends far"
     angle = math.degrees(float(sighting.incidence))
     return (

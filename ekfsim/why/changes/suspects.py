@@ -11,8 +11,11 @@ from ekfsim.why.changes.singles import reading
 from ekfsim.why.records import Change, Mechanism, together
 
 HAS_NO_LINES = "pf"  # the filter that makes nothing linear
+# filters that make their straight lines elsewhere than at the estimate
+ELSEWHERE = {"kf": "the first belief", "kf-nominal": "the plan"}
 PARTICLES = 10_000  # of one run's exact filter
 FEW = 1000  # of each of many runs'
+LONG = 500  # steps; of a longer run particles take too long, and sigma points take their place
 PARTED = ("noise", "number", "start", "map", "fault")  # kinds whose whole is made of its members
 
 
@@ -62,14 +65,21 @@ def suspects_of(scene: Scene, steps: Sequence[Step]) -> list[Suspect]:
         each = tuple(reading(entry.index) for entry in entries if beams.grazes(entry))
         found.append(Suspect(Mechanism.GRAZING_BEAMS, beams.GRAZING_BEAMS, each, reckoning=True))
     found.append(Suspect(Mechanism.CLOSE_TO_THE_WALL, beams.NOISE_AT_TRUTH, reckoning=True))
-    if scene.filter != HAS_NO_LINES:
-        exact = (sigma_points(), particles(PARTICLES))
-        found.append(
-            Suspect(
-                Mechanism.HEADING_SPREAD, exact[1], exact, particles(FEW), reckoning=True, slow=True
-            )
-        )
-    return found
+    return [*found, *_lines(scene, len(steps))]
+
+
+def _lines(scene: Scene, steps: int) -> Iterator[Suspect]:
+    """That straight lines are made of what bends."""
+    if scene.filter in ELSEWHERE:
+        yield Suspect(Mechanism.LINEARISED_ELSEWHERE, here(scene), reckoning=True)
+    if scene.filter == HAS_NO_LINES:
+        return
+    exact, often = [sigma_points()], sigma_points()
+    if steps <= LONG:
+        exact, often = [*exact, particles(PARTICLES)], particles(FEW)
+    yield Suspect(
+        Mechanism.HEADING_SPREAD, exact[-1], tuple(exact), often, reckoning=True, slow=True
+    )
 
 
 def _told(scene: Scene) -> Iterator[Suspect]:
@@ -137,4 +147,13 @@ def sigma_points() -> Change:
     return Change(
         "linear", "sigma points in place of straight lines", "the ukf",
         of_scene=lambda scene: replace(scene, filter="ukf"),
+    )  # fmt: skip
+
+
+def here(scene: Scene) -> Change:
+    """Straight lines about the estimate in place of another belief."""
+    told = f"not about {ELSEWHERE[scene.filter]}: the ekf"
+    return Change(
+        "linear", "straight lines about the estimate", told,
+        of_scene=lambda scene: replace(scene, filter="ekf"),
     )  # fmt: skip

@@ -81,10 +81,21 @@ def cured(suspect: Suspect, trials: Trials) -> bool:
 
 
 def _several(suspects: Sequence[Suspect], trials: Trials) -> tuple[Suspect, ...]:
-    """The fewest suspects that cure the run together; none where all of them do not."""
+    """The fewest suspects that cure the run together; none where all of them do not. What leads the
+    filter's own lines astray is put right before them.
+    """
+
+    def cures(some: Sequence[Suspect]) -> bool:
+        return bool(some) and trials.together([one.change for one in some])
+
+    mistakes = tuple(one for one in suspects if not one.reckoning)
+    reckoning = tuple(one for one in suspects if one.reckoning)
     try:
-        if not suspects or not trials.together([one.change for one in suspects]):
+        if not cures(suspects):
             return ()
+        needed = () if cures(mistakes) else minimal(reckoning, lambda some: cures(mistakes + some))
+        if cures(needed):
+            return needed
+        return minimal(mistakes, lambda some: cures(some + needed)) + needed
     except SpentError:
         return ()
-    return minimal(suspects, lambda some: trials.together([one.change for one in some]))
