@@ -11,7 +11,7 @@ def place(tmp_path, monkeypatch):
 
 
 def test_two_workers_make_the_same_gallery(place):
-    asked = "--only", "theta, proof-corner"
+    asked = "--only", "theta, proof-corner", "--cures", "20"
     for folder, more in (("one", []), ("two", ["--workers", "2"])):
         made = ekfsim("gallery", "-o", folder, *asked, *more)
         told = f"{folder}: 2 scenarios; open {folder}/index.html\n"

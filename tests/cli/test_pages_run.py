@@ -42,7 +42,7 @@ QUICKER = {  # what is typed in addition, so that it is soon done
     "render": ["--every", "40"],
     "study": ["--runs", "2"],
     "compare": ["--runs", "2"],
-    "gallery": ["--only", "square"],
+    "gallery": ["--only", "square", "--cures", "2"],
     "hunt": ["--lists", "128", "--runs", "100", "--force"],
 }
 QUOTED = {  # what a page quotes of what a line prints, for which that is run in full

@@ -28,6 +28,14 @@ from ekfsim.printable import in_a_line
     help="Print one page of Markdown, and put the pictures alone into the folder.",
 )
 @click.option(
+    "--cures",
+    type=Whole(0, 1_000_000),
+    default=200,
+    show_default=True,
+    metavar="N",
+    help="Runs of each scenario under each cure, 50 of a drive at most; 0: no table of them.",
+)
+@click.option(
     "--workers",
     type=Whole(1, 1024),
     default=1,
@@ -36,9 +44,12 @@ from ekfsim.printable import in_a_line
     help="Processes on this machine.",
 )
 @FORCE
-def gallery(out: Path, only: str | None, in_markdown: bool, workers: int, force: bool) -> None:
+def gallery(
+    out: Path, only: str | None, in_markdown: bool, cures: int, workers: int, force: bool
+) -> None:
     """Make a web site of all scenarios that come along: of each a page that plays its run in a
-    browser, a picture of how it ends, the verdict on it, and what many runs find.
+    browser, a picture of how it ends, the verdict on it, what many runs find, and how many of
+    them are lost under each cure.
 
     It opens as a file, and loads nothing from elsewhere. Recorded logs are left out.
     """
@@ -53,7 +64,7 @@ def gallery(out: Path, only: str | None, in_markdown: bool, workers: int, force:
     names = chosen([name.strip() for name in only.split(",")] if only is not None else [])
     engine = engine_of(workers, None)
     with blocks_bar(len(names), "scenarios") as done:
-        wings = write_gallery(names, out, engine, not in_markdown, force, done)
+        wings = write_gallery(names, out, engine, not in_markdown, force, cures, done)
     if in_markdown:
         click.echo(shown(markdown(wings, out)), nl=False)
     else:

@@ -9,6 +9,7 @@ from ekfsim.printable import in_a_line
 from ekfsim.scene import Scene
 from ekfsim.study.block import run_block
 from ekfsim.study.results import Result
+from ekfsim.views.gallery.cures import Cured, cured
 from ekfsim.views.gallery.still import draw_last
 from ekfsim.views.page.writing import write
 from ekfsim.views.picture.look import STANDARD
@@ -32,6 +33,7 @@ class Exhibit:
     size: tuple[int, int]  # of its picture, in px
     runs: int  # that the figures rest on
     figures: tuple[str, ...]  # beneath the HEAD of shares.py
+    cured: Cured | None  # where it is asked what becomes of it under each cure
 
 
 class Wing(NamedTuple):
@@ -42,10 +44,13 @@ class Wing(NamedTuple):
     exhibits: Sequence[Exhibit]
 
 
-def exhibit(name: str, scene: Scene, folder: Path, paged: bool, first: int, runs: int) -> Exhibit:
+def exhibit(
+    name: str, scene: Scene, folder: Path, paged: bool, cures: int, first: int, runs: int
+) -> Exhibit:
     """Make the page and the picture of a scenario; what is told of it.
 
-    paged : whether it has a page at all; first, runs : which runs the figures rest on
+    paged : whether it has a page at all; cures : how many runs each cure watches, 0 for none;
+    first, runs : which runs the figures rest on
     """
     if paged:
         write(scene, folder / f"{name}.html")
@@ -64,4 +69,5 @@ def exhibit(name: str, scene: Scene, folder: Path, paged: bool, first: int, runs
         size=size,
         runs=runs,
         figures=shares(Result.alone(scene, run_block(scene, first, runs))),
+        cured=cured(scene, cures) if cures else None,
     )

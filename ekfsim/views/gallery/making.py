@@ -12,6 +12,7 @@ from ekfsim.files.scenes.load import load_scene
 from ekfsim.scene import Scene
 from ekfsim.study.plan import Task
 from ekfsim.study.running.engines import Engine
+from ekfsim.views.gallery.cures import RUNS as CURED
 from ekfsim.views.gallery.exhibit import Exhibit, Wing, exhibit
 from ekfsim.views.gallery.site import INDEX, site
 
@@ -26,11 +27,12 @@ class Making:
     scenes: Mapping[str, Scene]
     folder: Path
     paged: bool  # whether each has a page, too
+    cures: int  # how many runs each cure watches
 
     def block(self, case: int) -> Callable[[int, int], Exhibit]:
         """What becomes of a scenario: a function of the runs that its figures rest on."""
         name = list(self.scenes)[case]
-        return partial(exhibit, name, self.scenes[name], self.folder, self.paged)
+        return partial(exhibit, name, self.scenes[name], self.folder, self.paged, self.cures)
 
     def tasks(self) -> list[Task]:
         """One for each. Those that take long come first, and nobody waits for them in the end."""
@@ -54,12 +56,13 @@ def chosen(names: Sequence[str]) -> list[str]:
 
 
 def write_gallery(
-    names: Sequence[str], out: Path, engine: Engine, paged: bool, force: bool,
+    names: Sequence[str], out: Path, engine: Engine, paged: bool, force: bool, cures: int = CURED,
     done: Callable[[object, object], object] = lambda task, made: None,
 ) -> list[Wing]:  # fmt: skip
     """Put the pictures of scenarios into a folder, and where it is `paged` their pages and an
     index.html as well; all that is told of them, by groups.
 
+    cures : how many runs of each scenario each cure watches; 0: there is no table of them
     done : called with each task and what was made of it
     Raises UsageError where the folder holds something (without `force`).
     """
@@ -67,7 +70,7 @@ def write_gallery(
     refuse_existing_folder(out, *places, force=force)
     scenes = {name: load_scene(name) for name in names}
     with whole_folder(out, *places, force=force) as folder:
-        making, made = Making(scenes, folder.resolve(), paged), dict[str, Exhibit]()
+        making, made = Making(scenes, folder.resolve(), paged, cures), dict[str, Exhibit]()
         for task, found in engine(making, making.tasks()):
             made[found.name] = found
             done(task, found)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from ekfsim.views.gallery import cures
 from ekfsim.views.gallery.exhibit import Exhibit, Wing
 from ekfsim.views.study.shares import HEAD, MEANING
 
@@ -16,6 +17,12 @@ comes to, and what many runs of it find. `ekfsim play NAME` steps through one, a
 
 {meaning}
 """
+CURES = """\
+Under the head of each group a table holds the cures side by side. {meaning} \
+[Cures](judging/cures.md) tells which one to take.
+
+{assumptions}
+"""
 
 
 def markdown(wings: Sequence[Wing], pictures: Path) -> str:
@@ -25,12 +32,32 @@ def markdown(wings: Sequence[Wing], pictures: Path) -> str:
 
 def _paragraphs(wings: Sequence[Wing], pictures: Path) -> Iterator[str]:
     yield INTRODUCTION.format(meaning=MEANING)
+    if any(shown.cured for wing in wings for shown in wing.exhibits):
+        told = (f"- `{name}`: {cures.assumption(name)}" for name in cures.CURES)
+        yield CURES.format(meaning=cures.MEANING, assumptions="\n".join(told))
     for wing in wings:
         names = (f"[{shown.name}](#{shown.name})" for shown in wing.exhibits)
         yield f"- {wing.title}: {', '.join(names)}"
     for wing in wings:
         yield f"\n## {wing.title[0].upper()}{wing.title[1:]}\n"
+        yield from _cured(wing)
         yield "\n".join(section(shown, pictures) for shown in wing.exhibits)
+
+
+def _cured(wing: Wing) -> Iterator[str]:
+    """The table of what becomes of a group's scenarios under each cure."""
+    rows = [(shown.name, shown.cured) for shown in wing.exhibits if shown.cured is not None]
+    if not rows:
+        return
+    yield f"| {cures.whose([found.runs for _, found in rows])} | {' | '.join(cures.HEAD)} |"
+    yield f"|---|{'--:|' * len(cures.HEAD)}"
+    yield from (row(name, found) for name, found in rows)
+    yield ""
+
+
+def row(name: str, found: cures.Cured) -> str:
+    """What becomes of one scenario under each cure."""
+    return f"| [{name}](#{name}) | {' | '.join(found.cells)} |"
 
 
 def section(shown: Exhibit, pictures: Path) -> str:
