@@ -75,8 +75,9 @@ ESTIMATE = ("x", "y", "theta", "P_xx", "P_xy", "P_xtheta", "P_yy", "P_ytheta", "
 TRUTH = ("true_x", "true_y", "true_theta")
 JUDGED = ("ellipse_major", "ellipse_minor", "ellipse_orientation", "nees", "nees_dof", "impossible")
 # how far a filter that weighs its readings believed this one; and of a belief of several Gaussians
-# their number and, heaviest first, what each weighs and where its mean is
-CURED = ("trust", "hypotheses", "weights", "each_x", "each_y", "each_theta")
+# their number and, heaviest first, what each weighs and where its mean is; and how many times the
+# told R a filter that learns it takes the noise of such readings for
+CURED = ("trust", "hypotheses", "weights", "each_x", "each_y", "each_theta", "noise_factor")
 COLUMNS = (
     *("index", "type", *ESTIMATE, *TRUTH),
     *("range", "predicted_range", "innovation", "innovation_variance", "nis", "refused"),
@@ -130,11 +131,16 @@ def row_of(step: Step, commanded: bool, confidence: float) -> list[object]:
         *([""] * 3 if measured is None else map(_cell, _judged(measured))),
         "" if step.correction is None else _cell(_trust(step.correction)),
         *_hypotheses(step),
+        "" if step.correction is None else _cell(_learnt(step.correction)),
     ]
 
 
 def _trust(c: Correction) -> float | None:
     return None if c.trust is None else float(c.trust)
+
+
+def _learnt(c: Correction) -> float | None:
+    return None if c.noise_factor is None else float(c.noise_factor)
 
 
 def _hypotheses(step: Step) -> list[object]:

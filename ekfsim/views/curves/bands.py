@@ -1,4 +1,6 @@
-"""Panels of what should lie in a band, ±2σ if nothing else is asked for: errors, innovations."""
+"""Panels of what should lie in a band, ±2σ if nothing else is asked for: errors, innovations; and
+what was learnt of a noise, which makes the band of innovations.
+"""
 
 import math
 from collections.abc import Sequence
@@ -6,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import FixedLocator, NullLocator, StrMethodFormatter
+from matplotlib.ticker import FixedLocator, LogLocator, NullLocator, StrMethodFormatter
 
 from ekfsim.geometry import Array
 from ekfsim.models.protocols import Quantity
@@ -19,6 +21,8 @@ REACH = 2.0
 DEGREE = math.degrees(1.0)
 HEADING, HALF = 2, 180.0  # the entry of a pose; half a turn, in degrees
 FAR = 5.0  # times the widest band: an error that is larger would leave nothing to be seen of it
+TWICE, DECADE = 2.0, 30.0  # a learnt noise's axis: at least to there; so far it has finer ticks
+FINE = 1.0, 2.0, 5.0
 NAMES = (("x", "x error (m)", 1.0), ("y", "y error (m)", 1.0), ("theta", "θ error (°)", DEGREE))
 
 
@@ -80,6 +84,42 @@ class InnovationPanel:
             )  # fmt: skip
         unit = "°" if unit == "rad" else unit
         _about_zero(axes, f"{name}: ν ({unit})" if unit else f"{name}: ν")
+
+
+@dataclass(frozen=True)
+class NoisePanel:
+    """How many times the told σ a filter that learns it takes a sensor's noise for, of each kind of
+    reading.
+    """
+
+    height: float = 1.0
+
+    def draw(self, axes: Axes, runs: Sequence[Series]) -> None:
+        """Draw it."""
+        several = len({outputs for run in runs for outputs in run.learnt}) > 1
+        for number, run in enumerate(runs):
+            for outputs, found in run.learnt.items():
+                name = " and ".join(quantity.name for quantity in outputs)
+                kept = peaks(found.ratio[:, None])
+                x, ratio = run.abscissa[found.rows[kept]], found.ratio[kept]
+                axes.plot(
+                    x, ratio, color=pen(number).colour, ls=pen(number).dashes, lw=pen(number).width,
+                    drawstyle="steps-post", gid=f"learnt-{name}-{number}",
+                )  # fmt: skip
+                if several:
+                    axes.annotate(
+                        name, (x[-1], ratio[-1]), (-3, 3), textcoords="offset points", ha="right",
+                        fontsize=7, color=pen(number).colour,
+                    )  # fmt: skip
+        axes.set_yscale("log")
+        low, high = axes.get_ylim()
+        low, high = min(low, 1 / TWICE), max(high, TWICE)
+        axes.set_ylim(low, high)
+        axes.yaxis.set_major_locator(LogLocator(subs=FINE if high < DECADE * low else (1.0,)))
+        axes.yaxis.set_minor_locator(NullLocator())
+        axes.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axes.axhline(1, color="black", lw=0.6, zorder=1)
+        ruled(axes, "learnt σ / told")
 
 
 def _band(axes: Axes, x: Array, half: Array, pen: Pen, name: str, edged: bool) -> None:

@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 from ekfsim.errors import UsageError
 from ekfsim.geometry.ellipse import cone_factor
 from ekfsim.models.protocols import Quantity
-from ekfsim.views.curves.bands import ErrorPanel, InnovationPanel
+from ekfsim.views.curves.bands import ErrorPanel, InnovationPanel, NoisePanel
 from ekfsim.views.curves.judged import NeesPanel, NisPanel
 from ekfsim.views.curves.marks import mark_impossible, mark_lost, mark_moments, mark_readings
 from ekfsim.views.curves.series import Series
@@ -16,22 +16,24 @@ from ekfsim.views.curves.thinning import ENOUGH, is_long
 from ekfsim.views.picture.look import STANDARD
 
 MOST = 4  # quantities that are read of which the innovations have a panel
-Panel = ErrorPanel | InnovationPanel | NisPanel | NeesPanel
+Panel = ErrorPanel | InnovationPanel | NoisePanel | NisPanel | NeesPanel
 
 
 def panels_of(runs: Sequence[Series], probability: float = STANDARD.probability) -> list[Panel]:
-    """What there is to draw: errors, NIS and NEES; without a truth innovations and NIS.
+    """What there is to draw: errors, NIS and NEES; without a truth innovations and NIS. Before NIS
+    what a filter that learns its sensors' noises has learnt.
     probability : of the bands
 
     Raises UsageError where there is nothing.
     """
     reach = cone_factor(probability)
+    learnt = [NoisePanel()] if any(run.learnt for run in runs) else []
     if any(run.has_truth for run in runs):
         nis = [NisPanel()] if any(run.read.any() for run in runs) else []
-        return [*(ErrorPanel(entry, reach) for entry in range(3)), *nis, NeesPanel()]
+        return [*(ErrorPanel(entry, reach) for entry in range(3)), *learnt, *nis, NeesPanel()]
     if not any(run.read.any() for run in runs):
         raise UsageError("there is nothing to plot: no truth is known, and nothing was read")
-    return [*(InnovationPanel(q, reach) for q in quantities(runs)[:MOST]), NisPanel()]
+    return [*(InnovationPanel(q, reach) for q in quantities(runs)[:MOST]), *learnt, NisPanel()]
 
 
 def quantities(runs: Sequence[Series]) -> list[Quantity]:

@@ -52,6 +52,29 @@ class Innovations:
         return np.array(self._σ)
 
 
+class Learnt:
+    """What a filter has learnt of the noise of one kind of reading."""
+
+    def __init__(self) -> None:
+        self._rows, self._factors = array("q"), array("d")
+
+    def append(self, row: int, factor: float) -> None:
+        """After one more reading, of the series' row."""
+        self._rows.append(row)
+        self._factors.append(factor)
+
+    @property
+    def rows(self) -> Integers:
+        """(k,) the rows of the series at which it was read"""
+        return np.array(self._rows)
+
+    @property
+    def ratio(self) -> Array:
+        """How many times the told σ it is taken for since : (k,)"""
+        ratio: Array = np.sqrt(np.array(self._factors))
+        return ratio
+
+
 @dataclass
 class Series:
     """The curves of one filter, a row a step; the first is the start.
@@ -65,6 +88,8 @@ class Series:
     events: list[Event] = field(default_factory=list)
     # of each quantity that was read, in the order of their first readings
     innovations: dict[Quantity, Innovations] = field(default_factory=dict)
+    # of a filter that learns its sensors' noises, by what is read
+    learnt: dict[tuple[Quantity, ...], Learnt] = field(default_factory=dict)
     evidence: Evidence = field(default_factory=Evidence)  # holds the verdict and `lost_from`
     whitened: whitening.Innovations = field(default_factory=whitening.Innovations)
     _rows: "array[float]" = field(default_factory=lambda: array("d"))  # COLUMNS of each step
@@ -100,6 +125,8 @@ class Series:
         variances = np.diagonal(c.S).tolist()
         for quantity, ν, S in zip(outputs, c.innovation.tolist(), variances, strict=True):
             self.innovations.setdefault(quantity, Innovations()).append(row, ν, S)
+        if c.noise_factor is not None:
+            self.learnt.setdefault(outputs, Learnt()).append(row, float(c.noise_factor))
 
     def _columns(self, first: int, end: int) -> Array:
         """(N, end − first)"""

@@ -256,6 +256,14 @@ def test_a_row_holds_how_far_its_reading_was_believed(filter):
     assert {row["hypotheses"] for row in rows_of(made)} == {""}
 
 
+def test_a_row_holds_what_was_learnt_of_the_noise():
+    made = replace(load_scene("tour"), filter="adaptive")
+    learnt = [float(row["noise_factor"]) for row in rows_of(made) if row["noise_factor"]]
+    assert learnt == [float(s.correction.noise_factor) for s in play(made) if s.correction]
+    assert 0 < min(learnt) < max(learnt)
+    assert {row["trust"] for row in rows_of(made)} == {""}
+
+
 def test_a_row_holds_every_hypothesis():
     """Their weights are one in all, and their mean is that of the row."""
     several = 0

@@ -1,5 +1,7 @@
 import math
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -151,7 +153,8 @@ def test_it_remembers_for_each_kind_of_reading_and_each_run():
             assert alone[i].factors[outputs].shape == ()
             assert s[i] == pytest.approx(float(alone[i].factors[outputs]), rel=1e-12)
     only_beams = filter.update(first, beams[0], beams[0].h(first.mean))[0]
-    only_beams, told = filter.update(only_beams, mark, mark.h(first.mean))
+    both, told = filter.update(only_beams, mark, mark.h(first.mean))
+    assert both.factors[beams[0].outputs] is only_beams.factors[beams[0].outputs]
     assert (mark.R(first.mean) == told.R).all()  # nothing was learnt of landmarks yet
 
 
@@ -225,3 +228,11 @@ def test_narrative_and_trace_tell_what_was_learnt():
     assert short.count("such readings have") == sum(
         bool(step.correction.used) for step in steps if step.correction
     )
+
+
+def test_the_page_prints_what_it_says(capsys):
+    """Its block of Python, of 1000 runs, and the block beneath it."""
+    page = (Path(__file__).parents[3] / "docs/judging/adaptive.md").read_text(encoding="utf-8")
+    code, printed = re.search(r"```python\n(.*?)```\n\n```\n(.*?)```", page, re.DOTALL).groups()
+    exec(compile(code, "adaptive.md", "exec"), {})
+    assert capsys.readouterr().out == printed

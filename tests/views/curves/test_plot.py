@@ -205,6 +205,20 @@ def test_without_a_truth_there_are_innovations_and_nis():
     assert remarks([run]) == ["no truth is known: innovations and NIS alone"]
 
 
+def test_what_was_learnt_of_a_noise_has_a_panel():
+    """Of each kind of reading its own line: the square root of the factor on the told R."""
+    made = scene(Move(1, 0), Sense(0.1), Sense(1.6), Move(0.5, 0.2), Sense(0.3))
+    run = Series.of(play(replace(made, filter="adaptive")), "adaptive")
+    figure, artists = drawn(Series.of(play(made), "ekf"), run)
+    assert "learnt σ / told" in [axes.get_ylabel() for axes in figure.axes]
+    steps = [s for s in play(replace(made, filter="adaptive")) if s.correction]
+    expected = [(s.entry.index, math.sqrt(s.correction.noise_factor)) for s in steps]
+    np.testing.assert_allclose(points(artists["learnt-range-1"]), expected)
+    assert "learnt-range-0" not in artists
+    plain, _ = drawn(Series.of(play(made)))
+    assert len(plain.axes) == len(figure.axes) - 1
+
+
 def test_a_long_run_keeps_its_peaks_and_says_that_it_is_thinned():
     made = load_scene("commands/gnss.yaml")
     run = Series.of(play(made))
