@@ -2,6 +2,7 @@
 
 nees.py       normalised estimation error squared, aware of the rank of P
 coverage.py   whether the truth is inside the ellipse and the cone
+unplaced.py   whether a crowd that began all over the floor tells a place by now
 ambiguity.py  whether a beam may meet another wall than the one predicted
 innovations.py  the innovations of a run, by sensor and target, in units of their own σ
 whiteness.py  whether those of one sensor are white around zero

@@ -8,6 +8,7 @@ import numpy as np
 
 from ekfsim.commands import Untold
 from ekfsim.diagnostics.summary import Instants
+from ekfsim.diagnostics.unplaced import Unplaced
 from ekfsim.files.results.trace import ODOMETRY
 from ekfsim.filters.belief import Correction, Mixture, Refused, posed
 from ekfsim.geometry import Array
@@ -100,6 +101,7 @@ class Table:
     def __init__(self, file: TextIO, scene: Scene, confidence: float) -> None:
         self._origin = [cell(_cell(value)) for value in provenance(scene).values()]
         self._confidence, self._commanded = confidence, scene.commanded
+        self._unplaced: Unplaced | None = None
         self._csv = csv.writer(file, lineterminator="\n")
         self._csv.writerow(
             [*columns_of(self._commanded), *provenance(scene), "confidence", "format"]
@@ -107,7 +109,10 @@ class Table:
 
     def write(self, step: Step) -> None:
         """Append the row of this step."""
-        row = row_of(step, self._commanded, self._confidence)
+        if self._unplaced is None:
+            self._unplaced = Unplaced(step.posterior, step.layout)
+        unplaced = self._unplaced.at(step.posterior)
+        row = row_of(step, self._commanded, self._confidence, unplaced)
         self._csv.writerow([*row, *self._origin, self._confidence, FORMAT])
 
 
@@ -116,8 +121,10 @@ def columns_of(commanded: bool) -> tuple[str, ...]:
     return COLUMNS if commanded else DRIVEN_COLUMNS
 
 
-def row_of(step: Step, commanded: bool, confidence: float) -> list[object]:
-    """What stands in them; "" where a number is undefined."""
+def row_of(step: Step, commanded: bool, confidence: float, unplaced: bool = False) -> list[object]:
+    """What stands in them; "" where a number is undefined, and where there is no idea of the place
+    in place of an ellipse.
+    """
     x, P = posed(step.posterior, step.layout)
     drawn, measured = ellipse(P, confidence), step.nees
     return [
@@ -127,7 +134,7 @@ def row_of(step: Step, commanded: bool, confidence: float) -> list[object]:
         *(float(P[i, j]) for i in range(3) for j in range(i, 3)),
         *([""] * 3 if step.entry.truth is None else step.entry.truth.tolist()),
         *(_reading(step) if commanded else _numbers(step)),
-        *map(float, (drawn.major, drawn.minor, drawn.orientation)),
+        *([""] * 3 if unplaced else map(float, (drawn.major, drawn.minor, drawn.orientation))),
         *([""] * 3 if measured is None else map(_cell, _judged(measured))),
         "" if step.correction is None else _cell(_trust(step.correction)),
         *_hypotheses(step),

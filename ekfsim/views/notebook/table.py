@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ekfsim.diagnostics.unplaced import Unplaced
 from ekfsim.errors import UsageError
 from ekfsim.files.results.trajectories import columns_of, row_of
 from ekfsim.geometry import Array
@@ -62,7 +63,11 @@ def table(steps: Iterable[Step], confidence: float = 0.954) -> Any:
     if any(step.posterior.mean.ndim > 1 for step in known):
         raise UsageError("a table is of one run: these steps hold many side by side")
     commanded = all(step.entry.t is None for step in known)
-    rows = [row_of(step, commanded, confidence) for step in known]
+    unplaced = Unplaced(known[0].posterior, known[0].layout) if known else None
+    rows = [
+        row_of(step, commanded, confidence, unplaced is not None and unplaced.at(step.posterior))
+        for step in known
+    ]
     names = columns_of(commanded)
     columns = zip(*rows, strict=True) if rows else [()] * len(names)
     return framed(dict(zip(names, columns, strict=True)))

@@ -112,6 +112,8 @@ class Teller:
         }
         if told["long"] == told["told"]:
             del told["long"]
+        if view.unplaced:
+            told["unplaced"] = 1
         if stands.outside_ellipse or stands.outside_cone:
             told["outside"] = [int(stands.outside_ellipse), int(stands.outside_cone)]
         if stands.lost_from is not None:
@@ -156,7 +158,11 @@ class Teller:
         """Where the truth is, while the close-up does not show it."""
         truth = view.step.entry.truth
         wide = close_width(view, self.look.probability, CERTAIN * self.size)
-        hidden = truth is not None and abs(truth[:2] - view.pose.mean[:2]).max() > wide / 2
+        hidden = (
+            not view.unplaced
+            and truth is not None
+            and abs(truth[:2] - view.pose.mean[:2]).max() > wide / 2
+        )
         return away(view.step, view) if hidden else None
 
     def _pose(self, pose: Array) -> list[Any]:

@@ -112,7 +112,9 @@ class Picture:
         self.legend.show_entries(self.main.handles())
         told = notes(view, self._scene, read, self._probability)
         x, P = view.pose
-        if not self.main.limits.hold(outline(x, P[:2, :2], self._probability)):
+        if not view.unplaced and not self.main.limits.hold(
+            outline(x, P[:2, :2], self._probability)
+        ):
             told = [*told, too_large(view, self._probability)]
         across = self._layout.width - 2 * MARGIN
         columns = int(across * LETTERS)

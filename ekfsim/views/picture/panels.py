@@ -169,7 +169,11 @@ class CloseUp:
         bar = one_two_five(width / 6)
         self.bar.set_data([0.05, 0.05 + bar / width], [0.045, 0.045])
         self.scale.set_text(length(bar))
-        hidden = truth is not None and float(np.abs(truth[:2] - x[:2]).max()) > width / 2
+        hidden = (
+            not view.unplaced
+            and truth is not None
+            and float(np.abs(truth[:2] - x[:2]).max()) > width / 2
+        )
         self.away.set_text(away(view.step, view) if hidden else "")
 
 

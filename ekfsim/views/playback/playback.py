@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Protocol, TypeVar
 
 from ekfsim.commands import Move, Untold
+from ekfsim.diagnostics.unplaced import Unplaced
 from ekfsim.diagnostics.verdict import Evidence
 from ekfsim.errors import StepError
 from ekfsim.filters.belief import Belief
@@ -40,6 +41,7 @@ class Unrolling:
         self._numbers = itertools.count()
         self._start: float | None = None
         self._nees: Nees | None = None
+        self._unplaced: Unplaced | None = None
 
     def take(self, group: Sequence[Step], over: bool = False) -> list[View]:
         """The views of the steps that come next, which one view gathers; of the last ones, where
@@ -50,14 +52,17 @@ class Unrolling:
         for each in group:
             self._ways.take(each)
         self._ways.mark(step)
+        self._unplaced = self._unplaced or Unplaced(first.posterior, first.layout)
         before = first.prior if _gathered(first.entry) else None
-        if before is not None or isinstance(step.entry.command, Move | Untold):
+        was, now = self._unplaced.at(first.prior), self._unplaced.at(step.posterior)
+        moves = before is not None or isinstance(step.entry.command, Move | Untold)
+        if moves and not was:
             self._settled.append(*_position(first.prior, first.layout))
         shown = View(
             next(self._numbers), step, isinstance(step.entry.given, Reading),
             Way.now(self._settled), Way.now(self._ways.true), Way.now(self._ways.reckoned),
             Judged(self._nees, self._evidence.lost_from), start=self._start,
-            across=self._zoom.take(first.prior, step),
+            across=self._zoom.take(first.prior, step), unplaced=was, was_unplaced=was,
         )  # fmt: skip
         made = [shown] if shown.beam else []
         for each in group:
@@ -67,7 +72,7 @@ class Unrolling:
             shown,
             number=next(self._numbers) if shown.beam else shown.number, beam=False,
             judged=Judged(self._nees, evidence.lost_from, evidence if over else None),
-            inputs=len(group), before=before, since=first.entry.t,
+            inputs=len(group), before=before, since=first.entry.t, unplaced=now,
         )  # fmt: skip
         return [*made, revised]
 

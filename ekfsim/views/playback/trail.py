@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 
 from ekfsim.commands import Kidnap
+from ekfsim.filters.belief import Particles
 from ekfsim.geometry import Array
 from ekfsim.records import Control, Step
 
@@ -64,7 +65,9 @@ class Ways:
         """Follow one more step; the first is the start."""
         entry = step.entry
         if self._reckoned is None:
-            self._reckoned = step.posterior.mean
+            x = step.posterior.mean
+            nowhere = isinstance(step.posterior, Particles)  # all over the floor
+            self._reckoned = np.full_like(x, np.nan) if nowhere else x
         elif isinstance(entry.given, Control):
             self._reckoned = entry.given.motion.f(self._reckoned, entry.given.u)
         if isinstance(entry.command, Kidnap):

@@ -48,6 +48,9 @@ class View(Shown):
     start: float = 0.0  # s, the stamp of the start
     # m, that a close-up is wide; 0 where all is certain; None in a view that is of no run
     across: float | None = None
+    # whether what is shown, and what was believed before, tells no place: diagnostics/unplaced.py
+    unplaced: bool = False
+    was_unplaced: bool = False
     others: tuple["View", ...] = ()  # the same view as other filters have it, that watch beside
     apart: tuple[Apart, ...] = ()  # of each of them: whether it believes something else
 
@@ -72,9 +75,11 @@ class View(Shown):
 
     @property
     def earlier(self) -> Gaussian | None:
-        """What was believed of the pose before its steps, where the view shows something else."""
+        """What was believed of the pose before its steps, where the view shows something else, and
+        where both tell a place.
+        """
         before = self.step.prior if self.before is None else self.before
-        if self.beam or before is self.belief:
+        if self.beam or before is self.belief or self.unplaced or self.was_unplaced:
             return None
         was, now = posed(before, self.layout), self.pose
         return None if all(map(np.array_equal, was, now)) else was
@@ -97,4 +102,6 @@ class View(Shown):
 
     def path(self) -> Array:
         """All estimated positions from the start to the one that is drawn : (n, 2) m"""
+        if self.unplaced:
+            return self.settled.points()
         return np.vstack([self.settled.points(), self.layout.pose(self.belief.mean)[:2]])

@@ -38,6 +38,8 @@ def draw_uncertainty(canvas: Canvas, view: View, probability: float) -> list[Ite
     mean, P = view.pose
     if not (np.isfinite(mean).all() and np.isfinite(P).all()):
         return [Item("!", "the belief is no number")]
+    if view.unplaced:
+        return [Item("?", "no idea yet: anywhere in the room", ELLIPSE.colour)]
     ghost = _draw_ghost(canvas, view.earlier, probability)
     stands, half = standing(view, probability), cone_halfwidth(float(P[2, 2]), probability)
     ellipse = ALARM if stands.outside_ellipse else ELLIPSE

@@ -101,7 +101,7 @@ def depict(canvas: Canvas, view: View, scene: Scene, probability: float) -> list
     legend = _draw_others(canvas, view, scene, probability) + legend
     if view.beam:
         legend = draw_reading(canvas, view) + legend
-    return _draw_robots(canvas, mean, step.entry.truth) + legend
+    return _draw_robots(canvas, None if view.unplaced else mean, step.entry.truth) + legend
 
 
 def _draw_others(canvas: Canvas, view: View, scene: Scene, probability: float) -> list[Item]:
@@ -182,8 +182,18 @@ def _place(ring: Array, box: Array) -> Array | None:
     return np.asarray(middles[best, 0]) if fits[best] else None
 
 
-def _draw_robots(canvas: Canvas, mean: Array, truth: Array | None) -> list[Item]:
+def _draw_robots(canvas: Canvas, mean: Array | None, truth: Array | None) -> list[Item]:
     """The robot where it is believed to be, and a mark where it is. mean, truth : (3,)"""
+    legend = [] if mean is None else _draw_estimate(canvas, mean)
+    if truth is None:
+        return legend
+    canvas.polyline([truth[:2], truth[:2] + HEADING * canvas.cell * direction(truth[2])], TRUTH)
+    canvas.text(truth[:2], "o", TRUTH.colour)
+    lost = "" if inside(truth[:2], canvas.bounds) else " (outside)"
+    return [*legend, Item("o~" if canvas.ascii else "o⠒", "truth" + lost, TRUTH.colour)]
+
+
+def _draw_estimate(canvas: Canvas, mean: Array) -> list[Item]:
     ahead = direction(mean[2])
     triangle = mean[:2] + canvas.cell * ROBOT @ np.array([ahead, [-ahead[1], ahead[0]]])
     if canvas.ascii:
@@ -193,13 +203,7 @@ def _draw_robots(canvas: Canvas, mean: Array, truth: Array | None) -> list[Item]
         canvas.polygons([triangle], ESTIMATE)
         canvas.polyline(mean[:2], ESTIMATE)
     lost = "" if inside(mean[:2], canvas.bounds) else " (outside)"
-    legend = [Item(">" if canvas.ascii else "⡷⠄", "estimate" + lost, ESTIMATE.colour)]
-    if truth is None:
-        return legend
-    canvas.polyline([truth[:2], truth[:2] + HEADING * canvas.cell * direction(truth[2])], TRUTH)
-    canvas.text(truth[:2], "o", TRUTH.colour)
-    lost = "" if inside(truth[:2], canvas.bounds) else " (outside)"
-    return [*legend, Item("o~" if canvas.ascii else "o⠒", "truth" + lost, TRUTH.colour)]
+    return [Item(">" if canvas.ascii else "⡷⠄", "estimate" + lost, ESTIMATE.colour)]
 
 
 def title(view: View, scene: Scene, probability: float, ascii: bool = False) -> str:

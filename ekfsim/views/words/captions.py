@@ -155,6 +155,8 @@ def told_of(step: Step) -> str:
 
 def spread(view: View, probability: float) -> str:
     """How large ellipse and cone are, in numbers."""
+    if view.unplaced:
+        return "no idea yet: anywhere in the room"
     P = view.pose.covariance
     shape = ellipse(P, probability)
     half = math.degrees(cone_halfwidth(float(P[2, 2]), probability))

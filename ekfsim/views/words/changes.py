@@ -27,6 +27,7 @@ UNTURNED = math.radians(0.005)
 ALIKE = 0.005  # share by which a size must change to be told
 CONE = "the heading's cone"
 NO_NUMBER = "the estimate is no number"
+NO_IDEA = "it has no idea yet where it is: its particles lie all over the room"
 
 
 class Size(NamedTuple):
@@ -61,6 +62,10 @@ def revised(view: View, probability: float) -> str:
     before, after = posed(view.step.prior, view.layout), view.pose
     if not _finite(after):
         return NO_NUMBER
+    if view.unplaced:
+        return "; ".join([NO_IDEA, *worth(correction)])
+    if view.was_unplaced:
+        return "; ".join(["its particles gather: now it has an idea", *worth(correction)])
     sizes = list(_sizes(view, before, after, probability))
     if not any(size.before for size in sizes):
         return "; ".join(["nothing was uncertain, so the estimate stays", *worth(correction)])
@@ -76,6 +81,8 @@ def carried(view: View, probability: float) -> str:
     before = posed(view.step.prior if view.before is None else view.before, view.layout)
     if not _finite(view.pose):
         return NO_NUMBER
+    if view.unplaced or view.was_unplaced:
+        return NO_IDEA if view.unplaced else ""
     sizes = [
         size
         for size in _sizes(view, before, view.pose, probability)

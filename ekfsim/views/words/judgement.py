@@ -59,6 +59,8 @@ def standing(view: View, probability: float) -> Standing:
     """Of the belief that the view shows. probability : of the ellipse and the cone"""
     truth, judged = view.step.entry.truth, view.judged
     verdict = None if judged.closing is None else judged.closing.verdict
+    if view.unplaced:
+        truth = None  # nothing is drawn that it could lie outside of
     return Standing(
         judged.nees,
         truth is not None and not inside_ellipse(view.pose, truth, probability),
@@ -132,6 +134,8 @@ def _parts(view: View, probability: float) -> list[Part]:
     stands, evidence = standing(view, probability), view.judged.closing
     if evidence is None:
         told = [_nis(view), _nees(stands), _sides(view, stands), _lost(stands)]
+        if view.unplaced:
+            told = [_nis(view), Part(*("no idea yet where it is",) * 2, *("no idea yet",) * 2)]
     else:
         told = [_verdict(evidence), _nees(_last(stands, evidence)), _sides(view, stands)]
     return [part for part in told if part is not None]

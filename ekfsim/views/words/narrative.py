@@ -18,7 +18,7 @@ from ekfsim.views.words.long_form import SHORT, Form, LongForm
 from ekfsim.views.words.numbers import fill, fill_vector, fine, matrix, number, pose, turn
 from ekfsim.views.words.opening import opening, plain
 from ekfsim.views.words.trust import learnt, trusted
-from ekfsim.views.words.uncertainty import crowd, judged, rest, surprise, uncertainty
+from ekfsim.views.words.uncertainty import crowd, judged, rest, surprise, uncertain
 
 DERIVATIVES = "  dh/dx = %.6g, dh/dy = %.6g, dh/dth = %.6g\n"
 INNOVATION = "The innovation is %.6g, its standard deviation %.6g; NIS is %.6g"
@@ -45,7 +45,7 @@ def narrate(view: View, scene: Scene, probability: float = 0.954, explain: bool 
         case Kidnap(x, y, theta), _:
             text = (
                 f"==>The robot was carried away to (x, y, th) = {pose((x, y, theta))}; the filter "
-                f"was not told\n" + judged(step, view.pose, probability)
+                f"was not told\n" + ("" if view.unplaced else judged(step, view.pose, probability))
             )
         case Say(said), _:
             text = f"==>{plain(said)}\n"
@@ -67,13 +67,15 @@ def narrate(view: View, scene: Scene, probability: float = 0.954, explain: bool 
 def _start(view: View, scene: Scene, probability: float) -> str:
     if not scene.commanded:
         return driven_narrative.started(view, probability)
+    if view.unplaced:
+        nowhere = "First state estimate: none, its particles lie all over the room\n"
+        return nowhere + _truth(view.step)
     x, P = view.belief
     return (
         f"First state estimate is (x, y, theta) = {pose(x.tolist())}\n"
         f"First state covariance matrix is:\n{matrix(P)}\n"
         + _truth(view.step)
-        + uncertainty(view.pose, probability)
-        + judged(view.step, view.pose, probability)
+        + uncertain(view, probability)
     )
 
 
@@ -91,8 +93,7 @@ def _move(view: View, move: Move | Untold, scene: Scene, probability: float, for
         + f"New state estimate is (x, y, theta) = {pose(x.tolist())}{form.by('state')}\n"
         + f"New state covariance matrix is:{form.by('covariance')}\n{matrix(P)}\n"
         + _truth(step)
-        + uncertainty(view.pose, probability)
-        + judged(step, view.pose, probability)
+        + uncertain(view, probability)
     )
 
 
@@ -148,8 +149,7 @@ def _update(view: View, scene: Scene, probability: float, form: Form) -> str:
         + (hypotheses(step) if used else "")
         + f"Revised state estimate: (x, y, theta) = {pose(x.tolist())}{by('revised')}\n"
         + f"Revised covariance matrix is:{by('revised_covariance')}\n{matrix(P)}"
-        + uncertainty(view.pose, probability)
-        + judged(step, view.pose, probability)
+        + uncertain(view, probability)
     )
 
 

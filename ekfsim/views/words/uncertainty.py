@@ -8,7 +8,23 @@ from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Particles
 from ekfsim.geometry.ellipse import cone_factor, cone_halfwidth, ellipse
 from ekfsim.records import Nees, Step
+from ekfsim.views.playback.view import View
 from ekfsim.views.words.numbers import fine, heading, number, turn
+
+NO_IDEA_YET = (
+    "No idea yet where the robot is: its particles lie all over the room, mean and covariance are "
+    "theirs and no place, and no ellipse is drawn\n"
+)
+
+
+def uncertain(view: View, probability: float) -> str:
+    """How uncertain the pose is in a view, and how it stands beside the truth; that there is no
+    idea, where its particles may be anywhere.
+    """
+    if view.unplaced:
+        return NO_IDEA_YET
+    pose = view.pose
+    return uncertainty(pose, probability) + judged(view.step, pose, probability)
 
 
 def uncertainty(pose: Gaussian, probability: float) -> str:

@@ -69,8 +69,10 @@ def test_the_short_form_of_particles_is_the_setting():
 
 
 def test_as_it_comes_every_filter_is_its_own_default():
-    for name, field, key in (("pf", "count", "particles"), ("ukf", "alpha", "alpha"), ("ukf",
-    "beta", "beta"),
+    for name in CROWDS:
+        assert filter_of(scene_of("tour", filter_name=name)).count == CROWDS[name]
+    assert (CROWDS["pf"], CROWDS["amcl"]) == (FILTERS["pf"].count, 5000)
+    for name, field, key in (("ukf", "alpha", "alpha"), ("ukf", "beta", "beta"),
                              ("ukf", "kappa", "kappa"), ("iekf", "iterations",
                              "iterations")):  # fmt: skip
         made = filter_of(scene_of("tour", filter_name=name))

@@ -80,7 +80,7 @@ function show() {
   at("slider").setAttribute("aria-valuetext", spoken);
   at("count").textContent = `step ${view.step} of ${lesson.last}`;
   at("map-told").textContent =
-    `${spoken}. ${where(belief.pose)}; ${belief.spread}. ${view.judged}.`;
+    `${spoken}. ${belief.unplaced ? "" : where(belief.pose) + "; "}${belief.spread}. ${view.judged}.`;
   at("close-told").textContent = [belief.spread, view.away].filter(Boolean).join("; ");
   survey();
   const [, left, bottom, right, top] = limits;

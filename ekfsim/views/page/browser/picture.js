@@ -138,7 +138,7 @@ class Picture {
         "reference" + i,
         i ? "second reference" : "reference",
         filter.mark ?? "o",
-        shown[i] ? view.by[i].pose.slice(0, 2) : [],
+        shown[i] && !view.by[i].unplaced ? view.by[i].pose.slice(0, 2) : [],
       ).style.setProperty("--own", filter.ink ?? ""),
     );
     this.mark("fixes", "fix", "plus", view.fix ?? fixesUntil(view.step));
@@ -146,13 +146,16 @@ class Picture {
     this.arrange();
   }
 
-  belief(belief, before, unit, i, told, shown) {
+  belief(belief, before, unit, i, told, wanted) {
+    const shown = wanted && !belief.unplaced; // a crowd all over the room tells no place
     const { pose } = belief,
       P = poseBlock(symmetric(belief.P), lesson.places),
       k = lesson.k;
-    const path = shown ? [...lesson.ways.paths[i].slice(0, 2 * belief.path), pose[0], pose[1]] : [];
+    const path = wanted
+      ? [...lesson.ways.paths[i].slice(0, 2 * belief.path), ...(shown ? pose.slice(0, 2) : [])]
+      : [];
     const oval = shown ? outline(pose, P, k) : [];
-    const old = shown && before ? before.pose : null;
+    const old = shown && before && !before.unplaced ? before.pose : null;
     if (i) {
       const { ink, dashes } = lesson.filters[i];
       for (const part of [
@@ -206,7 +209,7 @@ class Picture {
     this.line("ellipse", off ? "ellipse wrong" : "ellipse", oval, true, "P");
     this.line("ghost", "ghost", old ? outline(old, was, k) : [], true);
     this.several((shown && belief.several) || [], k);
-    this.mark("crowd", "particle", "dot", (shown && belief.crowd) || []);
+    this.mark("crowd", "particle", "dot", (wanted && belief.crowd) || []);
   }
 
   // The ellipses of a belief of several Gaussians, as bold as each is heavy.

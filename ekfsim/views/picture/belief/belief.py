@@ -90,7 +90,7 @@ class BeliefArtists:
     def show(self, shape: Shape, unit: float) -> None:
         """Move everything to a view. unit : m, what the robot's body measures in this Axes"""
         view, stands, half = shape.view, shape.stands, shape.region.half
-        x, P = view.pose
+        x, P = shape.region.pose, view.pose.covariance
         self._cone.show(sector(x, half, CONE * unit), stands.outside_cone)
         self._ellipse.show(shape.region.rim, stands.outside_ellipse)
         self.ghost.show(shape.before, unit)

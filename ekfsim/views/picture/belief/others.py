@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 
 from ekfsim.geometry.ellipse import outline
 from ekfsim.views.picture.artists import NOSE, NOWHERE, direction, line, marks, place
+from ekfsim.views.picture.belief.shape import NO_POSE
 from ekfsim.views.picture.belief.warned import ALARM, ALARM_DASHES
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.judgement import standing
@@ -57,6 +58,7 @@ class OtherArtists:
         unit : m, what the robot's body measures in this Axes
         """
         x, P = view.pose
+        x = NO_POSE if view.unplaced else x
         place(self.path, view.path())
         rim = outline(x, P[:2, :2], self._probability)
         place(self.ellipse, rim)

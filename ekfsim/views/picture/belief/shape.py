@@ -3,10 +3,14 @@
 from dataclasses import dataclass
 from typing import Self
 
+import numpy as np
+
 from ekfsim.geometry import Array
 from ekfsim.geometry.ellipse import cone_halfwidth, ellipse, outline
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.judgement import Standing, standing
+
+NO_POSE = np.full(3, np.nan)  # of a belief that tells no place
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,6 +20,9 @@ class Region:
     pose: Array  # (3,)
     rim: Array  # of the ellipse : (n, 2)
     half: float  # half the opening of the cone
+
+
+NO_REGION = Region(NO_POSE, NO_POSE[None, :2], 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +44,7 @@ class Shape:
         earlier = view.earlier
         return cls(
             view,
-            _region(*view.pose, probability),
+            NO_REGION if view.unplaced else _region(*view.pose, probability),
             float(ellipse(view.pose.covariance, probability).major),
             None if earlier is None else _region(*earlier, probability),
             standing(view, probability),

@@ -4,6 +4,9 @@ import math
 from array import array
 from collections.abc import Iterator
 
+import numpy as np
+
+from ekfsim.diagnostics.unplaced import Unplaced
 from ekfsim.filters.belief import Belief
 from ekfsim.geometry.ellipse import radius_factor
 from ekfsim.models.sensors.laser import Laser
@@ -74,6 +77,7 @@ class Reach:
         self.path = array("d") if path else None  # x and y of the instants one after another
         self._kept = Limits(0.0, 0.0, 0.0, 0.0), Limits(0.0, 0.0, 0.0, 0.0)
         self._belief: Belief | None = None
+        self._unplaced: Unplaced | None = None
 
     def take(self, step: Step) -> None:
         """Reach as far as the next step does."""
@@ -100,6 +104,10 @@ class Reach:
             mean, P = belief
             x, y = float(mean[i]), float(mean[j])
             self.known.hold(x, y)
+            if self._unplaced is None:
+                self._unplaced = Unplaced(step.posterior, step.layout)
+            if self._unplaced.at(belief):
+                P = np.zeros_like(P)  # it has no ellipse
             variance_x, variance_y = float(P[i, i]), float(P[j, j])
             east = self._k * math.sqrt(variance_x) if variance_x > 0 else 0.0
             north = self._k * math.sqrt(variance_y) if variance_y > 0 else 0.0
