@@ -1,6 +1,6 @@
 """Which walls a beam may meet within a belief, and the range to each of them."""
 
-from functools import cache
+from functools import cache, partial
 from statistics import NormalDist
 
 import numpy as np
@@ -31,44 +31,57 @@ def other_walls(
 
     The share of a wall is that of the poses from which it is the first. P : (…, 3, 3)
     """
-    h, H, R = own_line
+    axes = x.shape[:-1]
+    x, P = x.reshape(-1, 3), P.reshape(-1, 3, 3)
+    h, H, R = (part.reshape(len(x), *part.shape[len(axes) :]) for part in own_line)
     λ, V = np.linalg.eigh(P)
     root = V * np.sqrt(np.maximum(λ, 0.0))[..., None, :]
     points, weights = scattered()
-    poses = x[..., None, :] + points @ root.mT  # (…, q, 3)
-    heading = poses[..., 2] + bearing
-    hit = walls.cast(poses[..., :2], heading)
+    poses = x[..., None, :] + points @ root.mT  # (m, q, 3)
+    hit = walls.cast(poses[..., :2], poses[..., 2] + bearing)
     plane = _plane(walls, hit.wall)
-    own = plane[..., 0]
-    left = np.where((plane != own[..., None]) & (plane >= 0), weights, 0.0)
-    found = [(h, H, R, 1.0 - left.sum(axis=-1), hit.wall[..., 0])]
+    left = np.where((plane != plane[..., :1]) & (plane >= 0), weights, 0.0)
+    own = h, H, R, 1.0 - left.sum(axis=-1), hit.wall[..., 0]
+    found = [own]
     for _ in range(OTHERS):
-        if not left.any():
+        rows = np.flatnonzero(left.any(axis=-1))  # the beliefs within which there are more
+        if not len(rows):
             break
-        shares = np.sum(
-            np.where(plane[..., :, None] == plane[..., None, :], left[..., None, :], 0.0), axis=-1
-        )
-        shares = np.where(left > 0, shares, 0.0)
-        most = np.argmax(shares, axis=-1)[..., None]
-        share = np.take_along_axis(shares, most, axis=-1)[..., 0]
-        wall = np.take_along_axis(hit.wall, most, axis=-1)[..., 0]
-        seen_from = np.take_along_axis(poses, most[..., None], axis=-2)[..., 0, :]
-        r_there = np.take_along_axis(hit.range, most, axis=-1)
-        there = np.take_along_axis(heading, most, axis=-1)
-        place = seen_from[..., :2] + r_there * np.concatenate(
-            [np.cos(there), np.sin(there)], axis=-1
-        )
-        h_wall, H_wall = _to_line(x, x[..., 2] + bearing, place, walls.normal_at(wall, place))
+        shares = _shares(plane[rows], left[rows])
+        most = np.argmax(shares, axis=-1)
+        share = shares[np.arange(len(rows)), most]
+        seen_from, wall = poses[rows, most], hit.wall[rows, most]
+        there = seen_from[:, 2] + bearing
+        ahead = np.stack([np.cos(there), np.sin(there)], axis=-1)
+        place = seen_from[:, :2] + hit.range[rows, most][:, None] * ahead
+        seen = x[rows], x[rows, 2] + bearing
+        h_wall, H_wall = _to_line(*seen, place, walls.normal_at(wall, place))
+        share = np.where(np.isnan(h_wall[:, 0]), 0.0, share)
         R_wall = np.square(range_ratio * h_wall)[..., None]
-        share = np.where(np.isnan(h_wall[..., 0]), 0.0, share)
-        found.append((h_wall, H_wall, R_wall, share, np.where(share > 0, wall, -1)))
-        gone = np.take_along_axis(plane, most, axis=-1)
-        left = np.where(plane == gone, 0.0, left)
-    hs, Hs, Rs, shares, met = zip(*found, strict=True)
-    return Alternatives(
-        np.stack(hs, -2), np.stack(Hs, -3), np.stack(Rs, -3),
-        np.stack(shares, -1), np.stack(met, -1),
-    )  # fmt: skip
+        line = h_wall, H_wall, R_wall, share, np.where(share > 0, wall, -1)
+        nothing = h, H, R, np.zeros(len(x)), np.full(len(x), -1)
+        found.append(tuple(map(partial(_put, rows), nothing, line)))
+        left[rows] = np.where(plane[rows] == plane[rows, most][:, None], 0.0, left[rows])
+    each = (np.stack(parts, axis=1) for parts in zip(*found, strict=True))
+    return Alternatives(*(part.reshape(*axes, *part.shape[1:]) for part in each))
+
+
+def _put(rows: Integers, all: Array, some: Array) -> Array:
+    """All, with some in their rows."""
+    changed = all.copy()
+    changed[rows] = some
+    return changed
+
+
+def _shares(plane: Integers, left: Array) -> Array:
+    """What all poses that see the same line count for : (m, q), where one counts itself; else 0"""
+    m, planes = len(plane), int(plane.max()) + 1
+    place = np.arange(m)[:, None] * planes + plane
+    counted = left > 0
+    shares = np.zeros(left.shape)
+    of_line = np.bincount(place[counted], left[counted], m * planes)
+    shares[counted] = of_line[place[counted]]
+    return shares
 
 
 @cache
