@@ -2,12 +2,16 @@
 
 from functools import cache, partial
 from statistics import NormalDist
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ekfsim.geometry import Array, Integers
 from ekfsim.models.protocols import Alternatives
 from ekfsim.raycast.walls import Walls
+
+T = TypeVar("T", bound=np.generic)
 
 CLOUD = 16  # pairs of poses that stand for the belief
 REACH = 3.0  # standard deviations to the outermost poses, as in the test of ambiguous beams
@@ -41,7 +45,7 @@ def other_walls(
     hit = walls.cast(poses[..., :2], poses[..., 2] + bearing)
     plane = _plane(walls, hit.wall)
     left = np.where((plane != plane[..., :1]) & (plane >= 0), weights, 0.0)
-    own = h, H, R, 1.0 - left.sum(axis=-1), hit.wall[..., 0]
+    own: tuple[Array | Integers, ...] = h, H, R, 1.0 - left.sum(axis=-1), hit.wall[..., 0]
     found = [own]
     for _ in range(OTHERS):
         rows = np.flatnonzero(left.any(axis=-1))  # the beliefs within which there are more
@@ -63,10 +67,10 @@ def other_walls(
         found.append(tuple(map(partial(_put, rows), nothing, line)))
         left[rows] = np.where(plane[rows] == plane[rows, most][:, None], 0.0, left[rows])
     each = (np.stack(parts, axis=1) for parts in zip(*found, strict=True))
-    return Alternatives(*(part.reshape(*axes, *part.shape[1:]) for part in each))
+    return Alternatives(*(part.reshape((*axes, *part.shape[1:])) for part in each))
 
 
-def _put(rows: Integers, all: Array, some: Array) -> Array:
+def _put(rows: Integers, all: NDArray[T], some: NDArray[T]) -> NDArray[T]:
     """All, with some in their rows."""
     changed = all.copy()
     changed[rows] = some

@@ -1,8 +1,9 @@
 """A few Gaussians in place of many: near ones merged, light ones left out."""
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ekfsim.filters.arithmetic.algebra import symmetric, wrapped
 from ekfsim.filters.arithmetic.unscented import weighted_mean
@@ -11,6 +12,8 @@ from ekfsim.geometry import Array, Booleans, Integers
 
 NEAR = 1.0  # squared distance, in the heavier one's covariance, within which two are one
 LIGHT = 1e-6  # a weight below it is left out
+T = TypeVar("T", bound=np.generic)
+
 TOO_SMALL = 1e-6  # m, rad: nothing is told apart by less
 
 
@@ -66,39 +69,55 @@ def reduced(
     Those that are one keep their mean and covariance (`moments`).
     means : (…, c, n), covariances : (…, c, n, n), weights : (…, c), their sum is 1
     """
+    axes, (c, n) = weights.shape[:-1], means.shape[-2:]
+    x, P = means.reshape(-1, c, n), covariances.reshape(-1, c, n, n)
+    weights = weights.reshape(-1, c)
     left: Booleans = weights > LIGHT
     made: list[_One] = []
     for _ in range(most):
-        w = np.where(left, weights, 0.0)
-        first = np.argmax(w, axis=-1)[..., None]
-        one = left & (np.arange(weights.shape[-1]) == first)
-        several = np.count_nonzero(left, axis=-1).max(initial=0) > 1
-        if several:
-            one |= left & (_distances(means, covariances, first, headings) < NEAR)
-        w = np.where(one, weights, 0.0)
-        total = w.sum(axis=-1)
-        inside = np.divide(w, total[..., None], out=np.zeros_like(w), where=total[..., None] > 0)
-        x, P = moments(means, covariances, inside, headings)
-        made.append(_One(x, P, total, first[..., 0], np.count_nonzero(one, axis=-1)))
-        left = left & ~one
-        if not left.any():
+        rows = np.flatnonzero(left.any(axis=-1))
+        if made and not len(rows):
             break
+        first = np.argmax(np.where(left, weights, 0.0), axis=-1)
+        one = left & (np.arange(c) == first[:, None])
+        some = rows[np.count_nonzero(left[rows], axis=-1) > 1]
+        near = _distances(x[some], P[some], first[some, None], headings) < NEAR
+        one[some] |= left[some] & near
+        made.append(_together(x, P, weights, one, first, headings))
+        left &= ~one
     w = np.stack([one.total for one in made], axis=-1)
     order = np.argsort(-w, axis=-1, kind="stable")
-    w = np.take_along_axis(w, order, axis=-1)
-    x = np.stack([one.mean for one in made], axis=-2)
-    P = np.stack([one.covariance for one in made], axis=-3)
-    heaviest = np.stack([one.heaviest for one in made], axis=-1)
-    merged = np.stack([one.merged for one in made], axis=-1)
     light = (weights > 0) & (weights <= LIGHT)
-    return Few(
-        np.take_along_axis(x, order[..., None], axis=-2),
-        np.take_along_axis(P, order[..., None, None], axis=-3),
-        w / w.sum(axis=-1, keepdims=True),
-        np.take_along_axis(heaviest, order, axis=-1),
-        np.take_along_axis(merged, order, axis=-1),
+    few = Few(
+        _stacked([one.mean for one in made], order),
+        _stacked([one.covariance for one in made], order),
+        np.take_along_axis(w, order, axis=-1) / w.sum(axis=-1, keepdims=True),
+        _stacked([one.heaviest for one in made], order),
+        _stacked([one.merged for one in made], order),
         np.count_nonzero(left | light, axis=-1),
     )
+    return Few(*(part.reshape((*axes, *part.shape[1:])) for part in few))
+
+
+def _together(
+    x: Array, P: Array, weights: Array, one: Booleans, first: Integers, headings: tuple[int, ...]
+) -> _One:
+    """What is one in each of N mixtures : (N, c); the heaviest of them, `first` : (N,), as it is
+    where there is no other.
+    """
+    n, merged = np.arange(len(x)), np.count_nonzero(one, axis=-1)
+    mean, covariance = x[n, first], P[n, first]
+    w = np.where(one, weights, 0.0)
+    total, several = w.sum(axis=-1), np.flatnonzero(merged > 1)
+    if len(several):
+        inside = w[several] / total[several, None]
+        mean[several], covariance[several] = moments(x[several], P[several], inside, headings)
+    return _One(mean, covariance, total, first, merged)
+
+
+def _stacked(each: list[NDArray[T]], order: Integers) -> NDArray[T]:
+    """(N, …) of each → (N, h, …), in an order of their own. order : (N, h)"""
+    return np.stack(each, axis=1)[np.arange(len(order))[:, None], order]
 
 
 def _distances(

@@ -3,34 +3,23 @@
 The multiple-hypothesis extended Kalman filter: an EKF for every answer to "which wall?".
 """
 
-import math
 from dataclasses import dataclass, replace
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from ekfsim.filters import kalman
 from ekfsim.filters.belief import Belief, Correction, Gaussian, Mixture, Prediction, Refused
+from ekfsim.filters.mixture.answers import answered, picked
 from ekfsim.filters.mixture.merging import Few, moments, reduced
 from ekfsim.filters.mixture.places import inserted, mixed, part, placed, where_used
 from ekfsim.filters.mixture.relocating import Found, Memory, sought, span
 from ekfsim.filters.protocol import Beginning
 from ekfsim.filters.tuning import Tuning
 from ekfsim.geometry import Array, Booleans, Integers
-from ekfsim.models.protocols import Alternatives, Motion, Parting, Sensor
+from ekfsim.models.protocols import Motion, Sensor
 
 PLACES = 2048  # from which a robot that was carried away is sought
-
-
-class Answers(NamedTuple):
-    """What a reading would make of each hypothesis and each of its walls, c in all."""
-
-    posterior: Gaussian  # (…, c, n), (…, c, n, n)
-    correction: Correction
-    weights: Array  # (…, c), their sum is 1
-    walls: Integers  # (…, c)
-    log: Array  # (…) of the density that the mixture has for the reading
-    parting: bool  # whether the sensor's reading may be of one thing or another
 
 
 @dataclass(frozen=True)
@@ -78,14 +67,15 @@ class MHEKF:
         hypotheses nor weights. z : (…, k)
         """
         before = mixed(prior)
-        answers = self._answers(before, sensor, z)
+        answers = answered(before, sensor, z, self.headings)
         few = reduced(*answers.posterior, answers.weights, self.hypotheses, self.headings)
-        told = _picked(answers.correction, few.heaviest[..., 0])
+        told = picked(answers.correction, few.heaviest[..., 0])
         rule = kalman.Rule(self.gate, skip, self.headings)
         refused = kalman.refusal(z, told.predicted, told.nis, rule)
-        many = answers.weights.shape[-1] // before.weights.shape[-1]  # walls of each hypothesis
-        walls = np.take_along_axis(answers.walls, few.heaviest, axis=-1)
-        after = self._mixture(few, walls, few.heaviest // many)
+        walls, parents = (
+            np.take_along_axis(of, few.heaviest, axis=-1) for of in (answers.walls, answers.parents)
+        )
+        after = self._mixture(few, walls, parents)
         after = replace(where_used(refused, after, before), memory=before.memory)
         if self.places is not None and answers.parting:
             after = self._relocated(after, before, sensor, z, answers.log, refused)
@@ -142,56 +132,6 @@ class MHEKF:
         )
         return placed(self._mixture(few, walls, parents), self.hypotheses)
 
-    def _answers(self, before: Mixture, sensor: Sensor, z: Array) -> Answers:
-        """Every hypothesis revised by every line that the sensor may be taken for there."""
-        alone = before.weights.shape[-1] == 1
-        x, P = (before.mean, before.covariance) if alone else (before.means, before.covariances)
-        may = sensor.alternatives(x, P) if isinstance(sensor, Parting) else None
-        parting = may is not None
-        if may is None:
-            h, H, R = sensor.linearize(x)
-            none = np.full((*h.shape[:-1], 1), -1)
-            may = Alternatives(
-                h[..., None, :], H[..., None, :, :], R[..., None, :, :], np.ones(none.shape), none
-            )
-        one = alone and may.share.shape[-1] == 1
-        z = z if alone else z[..., None, :]
-        rule = kalman.Rule(None, False, self.headings)
-        if one:  # an EKF
-            line = may.h[..., 0, :], may.H[..., 0, :, :], may.R[..., 0, :, :]
-            reading = kalman.Linearized(z, line[0], sensor.residual(z, line[0]), *line[1:])
-            (x, P), correction = kalman.update(Gaussian(x, P), reading, rule)
-            posterior = Gaussian(x[..., None, :], P[..., None, :, :])
-            log = _log_likelihood(correction)
-            return Answers(posterior, _spread(correction), before.weights, may.wall, log, parting)
-        z = z[..., None, :]
-        ν = sensor.residual(z, may.h)
-        z = np.broadcast_to(z, ν.shape)
-        a = may.share.shape[-1]
-        x = np.repeat(x[..., None, :], a, axis=-2)
-        P = np.repeat(P[..., None, :, :], a, axis=-3)
-        reading = kalman.Linearized(z, may.h, ν, may.H, may.R)
-        (x, P), correction = kalman.update(Gaussian(x, P), reading, rule)
-        weights = before.weights[..., None] if not alone else before.weights[..., :1]
-        log = _log_likelihood(correction) + _log(np.asarray(weights * may.share))
-        top = np.max(log, axis=tuple(range(before.mean.ndim - 1, log.ndim)), keepdims=True)
-        likely = np.exp(log - np.where(np.isfinite(top), top, 0.0))
-        axes, c = before.mean.shape[:-1], int(np.prod(log.shape[before.mean.ndim - 1 :]))
-        w = likely.reshape(*axes, c)
-        total = w.sum(axis=-1, keepdims=True)
-        prior_weights = np.zeros_like(w)
-        prior_weights[..., ::a] = before.weights
-        w = np.where(total > 0, w / np.where(total > 0, total, 1.0), prior_weights)
-        n = x.shape[-1]
-        return Answers(
-            Gaussian(x.reshape(*axes, c, n), P.reshape(*axes, c, n, n)),
-            _flat(correction, axes, c),
-            w,
-            may.wall.reshape(*axes, c),
-            _log(total[..., 0]) + top.reshape(axes),
-            parting,
-        )
-
     def _mixture(self, few: Few, walls: Integers, parents: Integers) -> Mixture:
         """A few Gaussians with mean and covariance of all; the wall of each, and which it came of :
         (…, h)
@@ -210,54 +150,3 @@ class MHEKF:
 def _moved(before: Mixture, motion: Motion, u: Array) -> Memory | None:
     """What is remembered after a motion input."""
     return before.memory.moved(motion, u) if isinstance(before.memory, Memory) else None
-
-
-def _log_likelihood(correction: Correction) -> Array:
-    """log N(ν; 0, S) : (…), −∞ where nothing was predicted or read; 0 where nothing is uncertain
-
-    As a logarithm: an impossible reading must not make all hypotheses equal.
-    """
-    sign, log_det = np.linalg.slogdet(np.nan_to_num(correction.S))
-    k = correction.S.shape[-1]
-    log_det = np.where(sign > 0, log_det, 0.0)
-    log = -0.5 * (np.nan_to_num(correction.nis) + log_det + k * math.log(2 * math.pi))
-    return np.where(np.isnan(correction.innovation).any(axis=-1), -np.inf, log)
-
-
-def _log(share: Array) -> Array:
-    """log share, −∞ of none."""
-    return np.where(share > 0, np.log(np.where(share > 0, share, 1.0)), -np.inf)
-
-
-def _spread(correction: Correction) -> Correction:
-    """A correction with an axis of one hypothesis."""
-    return _flat(correction, correction.nis.shape, 1)
-
-
-def _flat(correction: Correction, axes: tuple[int, ...], c: int) -> Correction:
-    """Corrections of hypotheses and their walls on one axis c."""
-    k, n = correction.H.shape[-2:]
-    return Correction(
-        correction.predicted.reshape(*axes, c, k),
-        correction.innovation.reshape(*axes, c, k),
-        correction.R.reshape(*axes, c, k, k),
-        correction.S.reshape(*axes, c, k, k),
-        correction.H.reshape(*axes, c, k, n),
-        correction.K.reshape(*axes, c, n, k),
-        correction.nis.reshape(*axes, c),
-        np.asarray(correction.refused).reshape(*axes, c),
-    )
-
-
-def _picked(correction: Correction, which: Integers) -> Correction:
-    """The correction of one hypothesis and wall. which : (…)"""
-
-    def of(numbers: Array) -> Array:
-        index = np.asarray(which).reshape(*which.shape, *(1,) * (numbers.ndim - which.ndim))
-        return np.take_along_axis(numbers, index, axis=which.ndim).squeeze(which.ndim)
-
-    return Correction(
-        of(correction.predicted), of(correction.innovation), of(correction.R), of(correction.S),
-        of(correction.H), of(correction.K), of(correction.nis),
-        np.take_along_axis(correction.refused, which[..., None], axis=-1)[..., 0],
-    )  # fmt: skip
