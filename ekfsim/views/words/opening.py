@@ -31,6 +31,10 @@ BOTH = (
     "A gate and a weight judge each reading: one beyond the gate is refused outright, and only the "
     "others are weighed"
 )
+UNTAUGHT = (
+    "A reading beyond the gate teaches nothing of the noise: what is learnt comes from the others, "
+    "and is too small"
+)
 NO_IDEA = "The filter has no idea where the robot starts: it may be anywhere on the floor"
 PERFECT = (
     "The filter is told that the range has no noise: each beam leaves no doubt along its "
@@ -61,6 +65,8 @@ def opening(scene: Scene) -> str:
         )
     if scene.gate is not None and forward(scene.filter) in WEIGHING:
         told.append(BOTH)
+    if scene.gate is not None and forward(scene.filter) == "adaptive":
+        told.append(UNTAUGHT)
     if scene.world.perfect_beam and forward(scene.filter) in LINEARISED:
         told.append(PERFECT)
     if scene.reading != "corrected":

@@ -39,6 +39,9 @@ def trusted(c: Correction, scene: Scene, form: Form) -> str:
 
 def believed(c: Correction) -> str:
     """The same in a word or two, for a picture; nothing of a reading that is believed whole."""
+    if c.noise_factor is not None and c.used:
+        ratio = number(float(f"{math.sqrt(float(c.noise_factor)):.2g}"))
+        return f"learnt: {ratio} times the told σ"
     if c.trust is None or not float(c.trust) < 1:
         return ""
     return f"believed to {number(float(f'{float(c.trust):.2g}'))}"

@@ -21,6 +21,8 @@ from ekfsim.study.block import run_block
 from ekfsim.twins import taking
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.opening import UNTAUGHT, opening
+from ekfsim.views.words.trust import believed
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -228,6 +230,23 @@ def test_narrative_and_trace_tell_what_was_learnt():
     assert short.count("such readings have") == sum(
         bool(step.correction.used) for step in steps if step.correction
     )
+
+
+def test_a_gate_beside_it_is_told_and_keeps_it_from_learning():
+    """Of 1000 runs of a laser that is told a quarter of its noise it loses 36 % with a gate, 0.4 %
+    without."""
+    scene = replace(load_scene("diverge-02b-laser-overtrusted"), filter="adaptive", gate=0.99)
+    assert UNTAUGHT in opening(scene)
+    assert UNTAUGHT not in opening(replace(scene, gate=None))
+    assert UNTAUGHT not in opening(replace(scene, filter="ekf"))
+    assert 45 <= sum(run_block(scene, 0, 200).lost_from.values()) <= 100
+
+
+def test_a_picture_tells_it_in_a_word_or_two():
+    scene = replace(load_scene("tour"), filter="adaptive")
+    first = next(step for step in play(scene) if step.correction)
+    ratio = math.sqrt(float(first.correction.noise_factor))
+    assert believed(first.correction) == f"learnt: {ratio:.2g} times the told σ"
 
 
 def test_the_page_prints_what_it_says(capsys):
