@@ -123,7 +123,7 @@ def inert(value: Any) -> str:
 def _filled(scene: Scene, lesson: str, thinned: str, reason: str) -> str:
     """The page's text with everything in its place."""
     style = inks() + text_of("page.css")
-    script = "(() => {\n" + "".join(map(text_of, SCRIPTS)) + "})();\n"
+    script = "(() => {\n" + "".join(map(_script, SCRIPTS)) + "})();\n"
     heading, *rest = shown(scene.description.strip() or scene.world.name).splitlines()
     facts = {
         "policy": f"default-src 'none'; img-src data:; style-src '{hashed(style)}'; "
@@ -147,3 +147,8 @@ def panel(reason: str) -> str:
         return ""
     summary = "<summary>Why, and what cures it</summary>"
     return f'<details id="why">{summary}<pre>{escape(reason.rstrip())}</pre></details>\n'
+
+
+def _script(name: str) -> str:
+    """A script without what its lines are set in by: a page is to be small enough to be mailed."""
+    return "".join(line.lstrip() for line in text_of(name).splitlines(keepends=True))

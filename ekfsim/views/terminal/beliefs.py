@@ -59,18 +59,20 @@ def draw_uncertainty(canvas: Canvas, view: View, probability: float) -> list[Ite
 
 
 def _draw_hypotheses(canvas: Canvas, view: View, probability: float) -> list[Item]:
-    """The ellipses of a belief that is several Gaussians, the lighter the more broken, with the
-    weights of those that matter.
-    """
+    """The ellipses of a belief that is several Gaussians, the lighter the more broken."""
     several = parts(view.belief, view.layout)
     for w, (x, P) in several:
-        rim = outline(x[:2], P[:2, :2], probability)
-        canvas.polyline(rim, HEAVY if w >= EVEN else LIGHT)
-        if w >= LABELLED:
-            top = rim[rim[:, 1].argmax()]
-            canvas.text(top, f"{w:.2f}", HEAVY.colour)
+        canvas.polyline(outline(x[:2], P[:2, :2], probability), HEAVY if w >= EVEN else LIGHT)
     sample = "``" if canvas.ascii else "⢎⡱"
     return [Item(sample, "hypotheses, with weights", HEAVY.colour)] if several else []
+
+
+def write_weights(canvas: Canvas, view: View, probability: float) -> None:
+    """The weights of the hypotheses that matter, heaviest first, each where it covers no text."""
+    for w, (x, P) in reversed(parts(view.belief, view.layout)):
+        if w >= LABELLED:
+            rim = outline(x[:2], P[:2, :2], probability)
+            canvas.note(rim[rim[:, 1].argmax()], f"{w:.2f}", HEAVY.colour)
 
 
 def _warned(what: str, ascii: bool) -> Item:

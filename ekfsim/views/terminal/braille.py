@@ -24,6 +24,9 @@ BLANK = 0x2800  # the braille character without dots
 BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])  # of each dot of a cell
 # of red, green and blue in the colour cube that all terminals share
 LEVELS = (0, 95, 135, 175, 215, 255)
+MARKERS = "*x?+>^<v"  # what a note does not cover, besides letters and numbers
+# cells down, and its own lengths to the right, that a note is put beside a point
+NEAR = (-1, 0), (0, 0), (-2, 0), (1, 0), (2, 0), (0, 1), (0, -1), (-1, 1), (-1, -1), (1, 1), (1, -1)
 CONTROL_SEQUENCE = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)?")
 
 
@@ -122,6 +125,25 @@ class Canvas:
             if 0 <= j < self.columns:
                 self._characters[row, j] = character
                 self._colours[row, j] = colour
+
+    def note(self, point: ArrayLike, text: str, colour: str = "") -> None:
+        """Write a text near a point : (2,), where it covers neither another text nor a marker;
+        nowhere where there is no such place.
+        """
+        here = np.asarray(point, dtype=np.float64)
+        if not inside(here, self.bounds):
+            return
+        column, row = (_nearest(self._on_dots(here)) // self._cell).tolist()
+        first = column - (len(text) - 1) // 2
+        for down, right in NEAR:
+            i, j = row + down, first + right * (len(text) + 1)
+            if not (0 <= i < self.rows and j >= 0 and j + len(text) <= self.columns):
+                continue
+            covered = self._characters[i, max(j - 1, 0) : j + len(text) + 1]
+            if not any(one.isalnum() or one in MARKERS for one in covered.tolist() if one):
+                self._characters[i, j : j + len(text)] = list(text)
+                self._colours[i, j : j + len(text)] = colour
+                return
 
     def render(self, colour: bool = False) -> str:
         """The drawing, `rows` lines without blanks at their ends. colour : with escape sequences"""

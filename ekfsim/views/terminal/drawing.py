@@ -15,7 +15,7 @@ from ekfsim.scene import Scene
 from ekfsim.views.picture.sights import instants
 from ekfsim.views.playback.length import steps_of
 from ekfsim.views.playback.view import View
-from ekfsim.views.terminal.beliefs import ALARM, draw_true_way, draw_uncertainty
+from ekfsim.views.terminal.beliefs import ALARM, draw_true_way, draw_uncertainty, write_weights
 from ekfsim.views.terminal.braille import (
     Bounds,
     Canvas,
@@ -101,7 +101,10 @@ def depict(canvas: Canvas, view: View, scene: Scene, probability: float) -> list
     legend = _draw_others(canvas, view, scene, probability) + legend
     if view.beam:
         legend = draw_reading(canvas, view) + legend
-    return _draw_robots(canvas, None if view.unplaced else mean, step.entry.truth) + legend
+    estimate = None if view.unplaced else mean
+    legend = _draw_robots(canvas, estimate, step.entry.truth) + legend
+    write_weights(canvas, view, probability)
+    return legend
 
 
 def _draw_others(canvas: Canvas, view: View, scene: Scene, probability: float) -> list[Item]:

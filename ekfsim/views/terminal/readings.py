@@ -12,6 +12,7 @@ from ekfsim.records import Entry, Reading
 from ekfsim.views.picture.sights import sight, told
 from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.braille import Canvas, Pen, ansi
+from ekfsim.views.words.beams.hypotheses import weights
 from ekfsim.views.words.changes import revised
 from ekfsim.views.words.trust import believed
 
@@ -83,7 +84,8 @@ def outcome(view: View, probability: float) -> str:
     if not view.beam:
         if word is not None:
             return f"not used ({word})"
-        return ", ".join(filter(None, [believed(correction), revised(view, probability)]))
+        said = [*weights(step), believed(correction), revised(view, probability)]
+        return ", ".join(filter(None, said))
     if not isinstance(reading.sensor, Laser):
         outputs, refused = reading.sensor.outputs, "" if word is None else f"refused ({word}): "
         return (

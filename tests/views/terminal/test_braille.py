@@ -206,3 +206,22 @@ def test_a_line_between_two_rows_of_dots_has_no_gaps(place):
     canvas.polyline([(5.5, place), (15.5, place)], Pen())
     bits = [ord(sign) - 0x2800 for sign in canvas.render().replace("\n", "").replace(" ", "")]
     assert sum(bit.bit_count() for bit in bits) == 16 + 11
+
+
+def test_a_note_covers_no_other_text():
+    canvas = Canvas(9, 5, (0.0, 9.0, 0.0, 5.0), ascii=True)
+    middle = (4.5, 2.5)
+    canvas.text(middle, "o")
+    canvas.polyline([(0, 2.5), (9, 2.5)], Pen(ascii="."))
+    canvas.text(middle, "*")
+    for number in range(12):
+        canvas.note(middle, f"{number:02}")
+    lines = canvas.render().splitlines()
+    assert "*" in "".join(lines)
+    written = [number for number in range(12) if f"{number:02}" in "\n".join(lines)]
+    assert written[:3] == [0, 1, 2]  # the first found a place, later ones where they do not cover
+    assert 3 <= len(written) < 12
+    for line in lines:
+        assert not any(one.isdigit() and len(one) > 2 for one in line.replace(".", " ").split())
+    canvas.note((99.0, 0.0), "far")
+    assert "far" not in canvas.render()

@@ -3,6 +3,7 @@
 const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = { left: 38, bottom: 24, top: 6, right: 6 }; // pixels about the map, for its numbers
 const DIGIT = 6.5; // pixels of a number's width
+const WRITTEN = 0.01; // a lighter hypothesis is drawn, and its weight not written
 
 function element(name, attributes = {}, text = "") {
   const made = document.createElementNS(SVG, name);
@@ -212,15 +213,48 @@ class Picture {
     this.mark("crowd", "particle", "dot", (wanted && belief.crowd) || []);
   }
 
-  // The ellipses of a belief of several Gaussians, as bold as each is heavy.
+  // The ellipses of a belief of several Gaussians, as bold as each is heavy; parts : lightest first.
   several(parts, k) {
+    const written = [];
     for (let i = 0; i < parts.length || this.parts.has("hypothesis" + i); i++) {
       const [weight, x, y, xx, xy, yy] = parts[i] ?? [];
       const oval = parts[i] ? outline([x, y], [[xx, xy], [xy, yy]], k) : [];
       const part = this.line("hypothesis" + i, "hypothesis", oval, true);
-      part.style.opacity = 0.25 + 0.75 * (weight ?? 0);
+      part.style.opacity = 0.35 + 0.65 * (weight ?? 0);
       part.replaceChildren();
       if (parts[i]) part.appendChild(element("title")).textContent = `weight ${weight.toFixed(3)}`;
+      if (weight >= WRITTEN) written.unshift([weight.toFixed(2), oval]);
+    }
+    const group = this.mark("weights", "", "dot", []);
+    for (const [weight, oval] of written) {
+      const one = group.appendChild(element("text", { class: "weight" }, weight));
+      const [xs, ys] = [0, 1].map(side => oval.filter((_, i) => i % 2 === side));
+      const [left, right, low, high] = [xs, ys].flatMap(all => [Math.min(...all), Math.max(...all)]);
+      one.place = [(left + right) / 2, (low + high) / 2];
+      one.half = [(right - left) / 2, (high - low) / 2];
+    }
+  }
+
+  // Each weight beside its ellipse, where it covers none of a heavier one; nowhere without room.
+  weigh() {
+    const [scale] = this.matrix,
+      taken = [];
+    for (const one of this.parts.get("weights")?.children ?? []) {
+      const [x, y] = this.pixel(one.place),
+        [across, up] = one.half.map(half => half * scale);
+      const spots = [
+        [x, y - up - 3],
+        [x, y + up + 12],
+        [x + across + 15, y + 4],
+        [x - across - 15, y + 4],
+      ];
+      const spot = spots.find(([u, v]) =>
+        taken.every(([a, b]) => Math.abs(u - a) > 28 || Math.abs(v - b) > 12),
+      );
+      one.style.display = spot ? "" : "none";
+      if (!spot) continue;
+      taken.push(spot);
+      one.setAttribute("transform", `translate(${spot.join(" ")})`);
     }
   }
 
@@ -265,6 +299,7 @@ class Picture {
       for (const one of group.children)
         one.setAttribute("transform", `translate(${this.pixel(one.place).join(" ")})`);
     }
+    this.weigh();
   }
 
   // Numbers along two sides, and the obstacles' names where they have room.
