@@ -58,11 +58,7 @@ def opening(scene: Scene) -> str:
     if scene.world.told.start_unknown:
         told.append(NO_IDEA)
     if reads(scene.filter, "hypotheses"):
-        told.append(
-            f"The filter {scene.filter}: {scene.tuning.hypotheses} hypotheses at most; it is "
-            "judged by the mean and covariance of all, and a reading's numbers are those of the "
-            "heaviest"
-        )
+        told.append(f"The filter {scene.filter}: {_hypotheses(scene)}")
     if scene.gate is not None and forward(scene.filter) in WEIGHING:
         told.append(BOTH)
     if scene.gate is not None and forward(scene.filter) == "adaptive":
@@ -72,6 +68,21 @@ def opening(scene: Scene) -> str:
     if scene.reading != "corrected":
         told.append(_followed(scene))
     return "".join(f"{line}\n" for line in told)
+
+
+def _hypotheses(scene: Scene) -> str:
+    """How many Gaussians the filter may keep, and what is told of them; only the classroom's laser
+    says which walls its beam may meet (`Parting`).
+    """
+    if scene.world.robot is not None:
+        return (
+            "no sensor here tells which of several walls it may have met, so that there is one "
+            "hypothesis, and it is the EKF"
+        )
+    return (
+        f"{scene.tuning.hypotheses} hypotheses at most; it is judged by the mean and covariance of "
+        "all, and a reading's numbers are those of the heaviest"
+    )
 
 
 def plain(text: str) -> str:

@@ -1,6 +1,7 @@
 """What is said of the hypotheses of mhekf, as the numbers of the run have it."""
 
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.belief import Mixture
 from ekfsim.localization import play
 from ekfsim.views.words.beams.hypotheses import SOUGHT, hypotheses, weights
+from ekfsim.views.words.opening import opening
 
 
 @pytest.fixture(scope="module")
@@ -87,3 +89,18 @@ def test_of_other_filters_nothing_is_told():
     for step in play(load_scene("square")):
         assert hypotheses(step) == ""
         assert weights(step) == []
+
+
+@pytest.mark.parametrize("system", ["pioneer", "landmarks"])
+def test_where_no_sensor_parts_it_is_the_ekf_and_says_so(system):
+    scene = replace(load_scene(system), filter="mhekf")
+    assert (
+        "The filter mhekf: no sensor here tells which of several walls it may have met, so that "
+        "there is one hypothesis, and it is the EKF\n"
+    ) in opening(scene)
+    assert "The filter mhekf: 8 hypotheses" in opening(replace(load_scene("tour"), filter="mhekf"))
+    plain = islice(play(replace(scene, filter="ekf")), 200)
+    for step, other in zip(islice(play(scene), 200), plain, strict=True):
+        np.testing.assert_allclose(step.posterior.mean, other.posterior.mean, rtol=1e-9)
+        P = other.posterior.covariance  # which the EKF's quicker twin rounds otherwise
+        np.testing.assert_allclose(step.posterior.covariance, P, rtol=1e-9, atol=1e-12)
