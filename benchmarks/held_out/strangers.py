@@ -59,9 +59,9 @@ def told() -> Iterator[Case]:
         odometry(room(BARN, (6, 6, 20), noise=rough), 1 / 4), [zigzag], noise_told, seed=31,
     )  # fmt: skip
     yield case(
-        "zigzag in the bend, laser told a quarter", "laser overtrusted",
-        ratios(room(BENT, (1.5, 2, 0)), range=1 / 4),
-        [again(4, [move(1.5, 20), *look(*SIX), move(-1.5, -20), *look(*SIX)])], noise_told, seed=32,
+        "laser told a quarter in the bend", "laser overtrusted",
+        ratios(room(BENT, (1, 1, 0)), range=1 / 4),
+        [again(3, lap(2.5, 2.5, 2.5, 2.5, beams=(15, 105, -75, 195)))], noise_told, seed=32,
     )  # fmt: skip
     yield case(
         "laser told six times, trapeze", "laser distrusted",
@@ -84,8 +84,8 @@ def told() -> Iterator[Case]:
 def happens() -> Iterator[Case]:
     """Something is wrong with the robot, or happens to it."""
     yield case(
-        "wheels 1.05 on a triangle", "wheel scale",
-        faulty(room(BARN, (5, 3, 0)), odometry_distance_scale=1.05),
+        "wheels 1.1 on a triangle", "wheel scale",
+        faulty(room(BARN, (5, 3, 0)), odometry_distance_scale=1.1),
         [again(2, [step for side in (120, 120, 120)
                    for step in (move(3), *look(20, 110), move(3, side), *look(20, 110, -70))])],
         sound, seed=36,

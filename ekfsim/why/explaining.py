@@ -100,7 +100,7 @@ class Named(NamedTuple):
 def _named(scene: Scene, trials: Trials, runs: int, heard: Heard | None) -> Named:
     """What it was, by every change that is tried on the run, and those that cure on many."""
     steps, was = trials.steps, trials.was.outcome
-    suspects = suspects_of(scene, steps) if scene.commanded else suspects_of_drive(scene)
+    suspects = suspects_of(scene, steps) if scene.commanded else suspects_of_drive(scene, was)
     _try_all(scene, suspects, trials)
     few = max(min(runs, FEWEST), min(runs, PARTICLE_STEPS // (FEW * len(steps))))
     crowd = Crowd(scene, runs, was, heard)

@@ -10,7 +10,9 @@ from wrong_drives import faulty, of_sensor, slower, told_robot, told_sensor, tol
 
 from ekfsim.records import Control
 from ekfsim.views.why.answer import answer
-from ekfsim.why import Mechanism, explain
+from ekfsim.views.why.mechanisms import because
+from ekfsim.why import Explanation, Mechanism, explain
+from ekfsim.why.changes.driven import suspects_of_drive
 from ekfsim.why.changes.groups import exact_inputs, groups_of
 from ekfsim.why.trying.replaying import ending, replayed
 from ekfsim.why.trying.trials import Trials
@@ -110,3 +112,20 @@ def test_each_reading_belongs_to_one_stretch_and_one_target():
 def test_a_long_run_has_a_budget_of_its_own():
     found = explain(faulty(landmarks, gyro_bias=0.4), 0, 3)
     assert (found.replays, found.budget) == (3, 3)
+
+
+def test_equations_that_give_the_motion_too_much_are_tried_where_a_run_is_over_cautious():
+    """No number that is told need be wrong for it; it is told as the factor that would fit."""
+    *_, last = suspects_of_drive(landmarks, "over-cautious")
+    assert last.mechanism is Mechanism.ODOMETRY_DISTRUSTED
+    was, now = (
+        next(one.entry.given for one in replayed(landmarks, changes) if one.prediction is not None)
+        for changes in ((), (last.members[0],))
+    )
+    np.testing.assert_allclose(now.motion.M(now.u), was.motion.M(was.u) / 4)
+    for ended in ("lost", "over-confident"):
+        names = {one.mechanism for one in suspects_of_drive(landmarks, ended)}
+        assert Mechanism.ODOMETRY_DISTRUSTED not in names
+    found = Explanation(landmarks, "over-cautious", None, cure=(last.members[1],))
+    told = because(found, Mechanism.ODOMETRY_DISTRUSTED)
+    assert told.endswith("it would fit with 0.25 times the told noise of the motion")

@@ -96,8 +96,10 @@ def _outcome(explanation: Explanation) -> str:
 def _said_already(explanation: Explanation) -> bool:
     """Whether what it ended as is told with the cause."""
     noises = (*LASER, Mechanism.ODOMETRY_OVERTRUSTED, Mechanism.ODOMETRY_DISTRUSTED)
-    return explanation.outcome in ("over-cautious", "over-confident") and (
-        explanation.mechanism in noises
+    return (
+        explanation.outcome in ("over-cautious", "over-confident")
+        and explanation.mechanism in noises
+        and explanation.scene.commanded
     )
 
 

@@ -54,9 +54,16 @@ def named(change: Change) -> str:
     >>> named(Change("map", "edge 1 of boundary in the map"))
     "edge 1 of the room's wall in the map"
     """
-    if change.kind != "map":
-        return change.name
-    return re.sub(rf"\b{BOUNDARY}\b", "the room's wall", change.name)
+    return _of_room(change.name) if change.kind == "map" else change.name
+
+
+def ringed(change: Change) -> str:
+    """What is said of it, likewise."""
+    return _of_room(change.told) if change.kind == "map" else change.told
+
+
+def _of_room(text: str) -> str:
+    return re.sub(rf"\b{BOUNDARY}\b", "the room's wall", text)
 
 
 def all_of(changes: Sequence[Change]) -> str:

@@ -35,4 +35,6 @@ def because_driven(explanation: Explanation, mechanism: Mechanism) -> str:
 
 
 def _with_numbers(change: Change) -> str:
+    if change.kind == "guess":
+        return f"it would fit with {change.name}"
     return f"{named(change)} ({change.told})" if change.told else named(change)

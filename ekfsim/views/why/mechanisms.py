@@ -177,8 +177,9 @@ def _wrong_wall(explanation: Explanation, mechanism: Mechanism) -> str:
     beam = beam_of(explanation)
     if beam is None or beam.truth is None:
         return "A beam was predicted to meet one wall and met another"
-    alike = ", which looks alike" if mechanism is Mechanism.LOOK_ALIKE_WALLS else ""
-    return f"The beam of step {beam.step} {told(beam)}{alike}"
+    said = f"The beam of step {beam.step} {told(beam)}"
+    row = "such walls stand in a row, and one looks like the next"
+    return f"{said}: {row}" if mechanism is Mechanism.LOOK_ALIKE_WALLS else said
 
 
 def _grazing(explanation: Explanation) -> str:

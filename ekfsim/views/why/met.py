@@ -95,4 +95,7 @@ def called(name: str | None) -> str:
     """A wall as it is named in a sentence."""
     if name is None:
         return "no wall"
-    return "the room's wall" if name == BOUNDARY else f"the {shortened(name, NAME)}"
+    if name == BOUNDARY:
+        return "the room's wall"
+    told = shortened(name, NAME)
+    return told if told[-1:].isdigit() else f"the {told}"  # "south 7" is a name by itself

@@ -1,12 +1,12 @@
 """What is told of a recorded log: what is surprising in it, and what the readings speak for."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ekfsim.diagnostics.innovations import Innovations, named
+from ekfsim.diagnostics.innovations import Found, Innovations, named
 from ekfsim.diagnostics.verdict import BAND, Evidence
-from ekfsim.records import Reading
+from ekfsim.records import Reading, Step
 from ekfsim.views.why.changes import all_of
 from ekfsim.views.why.driven import CLAUSES
 from ekfsim.views.words.judgement import count
@@ -14,6 +14,7 @@ from ekfsim.views.words.numbers import figure
 from ekfsim.why.records import Explanation, Mechanism
 
 MORE = 1.5  # times the NIS of all: a target that surprises so much is told
+NOT_WHITE = "not white"
 FEW = 5  # readings; of fewer nothing is told
 
 
@@ -26,12 +27,9 @@ def of_log(explanation: Explanation) -> Iterator[str]:
     sound = explanation.outcome in ("consistent", "recorded")
     if not sound and explanation.outcome != "over-cautious":
         yield from _surprising(explanation, evidence)
-    innovations = Innovations()
-    for step in explanation.lost_steps:
-        innovations.add(step)
-    found = innovations.found()
-    if found.word == "not white":
-        yield f"The innovations are not white (p {float(found.p):.2g}), which no noise makes"
+    was = _whiteness(explanation.lost_steps)
+    if was.word == NOT_WHITE:
+        yield f"The innovations are not white (p {float(was.p):.2g})"
     if sound:
         return
     causes = explanation.causes or (
@@ -40,6 +38,19 @@ def of_log(explanation: Explanation) -> Iterator[str]:
     for cause in causes:
         yield _because(cause)
     yield from _cured(explanation)
+    now = _whiteness(explanation.cured_steps)
+    if explanation.cure and was.word == NOT_WHITE and now.word != "no evidence":
+        word = "are not white with it, either" if now.word == NOT_WHITE else "are white with it"
+        yield f"The innovations {word} (p {float(now.p):.2g})"
+    if explanation.cure and not causes:
+        yield "Other guesses fit as well, or more is wrong than that: no cause is named"
+
+
+def _whiteness(steps: Sequence[Step]) -> Found:
+    innovations = Innovations()
+    for step in steps:
+        innovations.add(step)
+    return innovations.found()
 
 
 def _outcome(explanation: Explanation, evidence: Evidence) -> str:
@@ -98,8 +109,6 @@ def _cured(explanation: Explanation) -> Iterator[str]:
     alone = "" if len(cure) == 1 else "only together: "
     ended = "it ends consistent" if len(cure) > 1 or ends == "consistent" else f"it ends {ends}"
     yield _begun(f"{alone}{all_of(cure)} {ended}")
-    if explanation.mechanism is None and not explanation.causes:
-        yield "Other guesses fit as well, or more is wrong than that: no cause is named"
 
 
 def _begun(text: str) -> str:

@@ -8,7 +8,7 @@ from typing import TextIO
 
 from ekfsim.printable import cell, in_a_line
 from ekfsim.provenance import provenance
-from ekfsim.views.why.changes import PLURALS, ends, named
+from ekfsim.views.why.changes import PLURALS, ends, named, ringed
 from ekfsim.views.words.numbers import figure
 from ekfsim.views.words.text_table import aligned, folded
 from ekfsim.why.records import Explanation, Tried
@@ -53,7 +53,7 @@ def aligned_rows(rows: Sequence[tuple[str, str, str, str]], width: int | None) -
 
 def _row(one: Tried, mark: str, judged: bool) -> tuple[str, str, str, str]:
     obvious = one.change.kind in ("reading", "move")  # what becomes of them is always the same
-    told = f" ({one.change.told})" if one.change.told and not obvious else ""
+    told = f" ({ringed(one.change)})" if one.change.told and not obvious else ""
     at_end = NONE if one.outcome == "recorded" or not judged else nees(one.nees_end)
     return mark, in_a_line(f"{named(one.change)}{told}"), at_end, ends(one)
 

@@ -286,7 +286,7 @@ GRAZING_BEAMS = Change(
     of_entries=without_grazing,
 )  # fmt: skip
 REPEATED = Change(
-    "beams", "the repeated beams", "left out but for the first from a place",
+    "beams", "all repeated beams but the first", "left out",
     of_entries=without_repeated,
 )  # fmt: skip
 

@@ -12,21 +12,25 @@ from ekfsim.scene import Scene
 from ekfsim.systems.estimating import Estimating
 from ekfsim.systems.faults import SOUND, SensorFaults
 from ekfsim.why.changes import maps, told
+from ekfsim.why.changes.recorded import louder_motion
 from ekfsim.why.changes.suspects import HAS_NO_LINES, Suspect, sigma_points
-from ekfsim.why.records import Change, Mechanism, together
+from ekfsim.why.records import Change, Mechanism, Outcome, together
 from ekfsim.world import World
 
 NOISES = ("sigma", "density", "ratio", "floor")  # words by which a number of noise is known
 DELAYS = ("delay",)
 # of DriveFaults, what scales a way, what a turn; all else is a bias of what is measured
 WAYS, TURNS = ("left_scale", "right_scale", "distance_scale"), ("turn_scale",)
+LESS = 1 / 2, 1 / 4, 1 / 8  # times the noise of the motion
 NO_GATE = Change(
     "beams", "the gate", "taken off", of_scene=lambda scene: replace(scene, gate=None)
 )  # fmt: skip
 
 
-def suspects_of_drive(scene: Scene) -> list[Suspect]:
-    """Everything that may be wrong with a run of a driven robot, what explains more first."""
+def suspects_of_drive(scene: Scene, ended: Outcome) -> list[Suspect]:
+    """Everything that may be wrong with a run of a driven robot that ended so, what explains more
+    first.
+    """
     world = scene.world
     found = [*_motion(world), *_sensors(world), *_faults(world), *_faults_of_sensors(world)]
     if (each := tuple(told.starts(world))) and told.surer(world):
@@ -37,6 +41,13 @@ def suspects_of_drive(scene: Scene) -> list[Suspect]:
         found.append(Suspect(Mechanism.WRONG_EQUATIONS, _equations(scene)))
     if scene.filter not in (HAS_NO_LINES, "ukf"):
         found.append(Suspect(Mechanism.HEADING_SPREAD, sigma_points(), reckoning=True))
+    if ended == "over-cautious" and not any(
+        one.mechanism is Mechanism.SENSOR_DISTRUSTED for one in found
+    ):
+        # the noises of the readings are true, so what is too much is the motion's: the equations
+        # that the filter follows may give it more than any number says
+        *others, least = (louder_motion(factor) for factor in LESS)
+        found.append(Suspect(Mechanism.ODOMETRY_DISTRUSTED, least, (*others,), reckoning=True))
     return found
 
 

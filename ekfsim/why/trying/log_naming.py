@@ -45,7 +45,8 @@ def named_of_log(log: LogTrials) -> tuple[tuple[Mechanism, ...], tuple[Change, .
         everywhere = _likeliest(log, curing=False)
         if not sure or likeliest is None or everywhere[0].mechanism is not likeliest:
             return _one_target(log, curing) or ((), (change,))
-        if likeliest not in NOISES_TOO_SMALL or merely_noise(log, change):
+        noise = likeliest in (*NOISES_TOO_SMALL, *NOISES_TOO_LARGE)
+        if not noise or merely_noise(log, change):
             return (likeliest,), (change,)
         return _one_target(log, curing) or ((), (change,))
     if curing:
@@ -54,7 +55,7 @@ def named_of_log(log: LogTrials) -> tuple[tuple[Mechanism, ...], tuple[Change, .
 
 
 def merely_noise(log: LogTrials, change: Change) -> bool:
-    """Whether a larger noise explains all: the innovations are white with it, and no more of them
+    """Whether another noise explains all: the innovations are white with it, and no more of them
     are small than should be, as would be so if a few were far too large.
     """
     innovations, small, read = Innovations(), 0, 0
