@@ -88,12 +88,7 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
     """
     if asked.change == "told":
         return _told(asked, heed)
-    if asked.change == "start":
-        _refuse_where_no_start_is_sought(asked.scene)
-    space, starts = (
-        Lists(Space(asked.scene.world, asked.moves)),
-        Starts(asked.scene.world, asked.scene.commands),
-    )
+    candidates, first = _candidates(asked)
     state, shorter = Search(), None
     end: End = "lists"
     began = time.monotonic()
@@ -101,8 +96,6 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
     def left(share: float) -> bool:
         return time.monotonic() - began < share * asked.seconds
 
-    candidates: Candidates = space if asked.change == "commands" else starts
-    first = [Commanded(one) for one in begun_with(asked)] if asked.change == "commands" else []
     try:
         with crew(asked.workers, asked.counting(), asked.way, heed) as judge:
             for state in searched(asked.scene, candidates, judge, asked.lists, first):
@@ -118,20 +111,29 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
         if not state.best:
             raise
         end = "interrupted"
+    looked, name = state.looked_at, asked.scene.world.name
     if not state.best[0].count.hits:
         raise RunError(
-            f"{asked.scene.world.name}: no run of {state.looked_at} lists does that; look at more "
-            f"(--lists, --budget), allow more commands (--moves), or less error (--off)"
+            f"{name}: no run of {looked} lists does that; look at more (--lists, --budget), allow "
+            "more commands (--moves), or less error (--off)"
         )
     found = _measured(asked, state, end, shorter or _as_it_is(asked, state.best[0]))
     if not found.fresh.hits and end != "interrupted":
         raise RunError(
-            f"{asked.scene.world.name}: the best of {state.looked_at} lists does that in "
-            f"{found.count.hits} of {found.count.of} runs of the search, and in none of "
-            f"{found.fresh.of} fresh ones; look at more (--lists, --budget), or allow less error "
-            "(--off)"
+            f"{name}: the best of {looked} lists does that in {found.count.hits} of "
+            f"{found.count.of} runs of the search, and in none of {found.fresh.of} fresh ones; "
+            "look at more (--lists, --budget), or allow less error (--off)"
         )
     return found
+
+
+def _candidates(asked: Asked) -> tuple[Candidates, list[Variant]]:
+    """What is looked through, and what of it first."""
+    scene = asked.scene
+    if asked.change == "start":
+        _refuse_where_no_start_is_sought(scene)
+        return Starts(scene.world, scene.commands), []
+    return Lists(Space(scene.world, asked.moves)), [Commanded(one) for one in begun_with(asked)]
 
 
 def _less(asked: Asked, best: Variant, judge: Judge, go_on: Callable[[], bool]) -> Shrunk:

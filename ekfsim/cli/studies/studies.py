@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ekfsim.cli.program.asked import engine_of
-from ekfsim.cli.program.options import compare_options, study_options
 from ekfsim.cli.program.process import part_with, say, shown, warn, width
 from ekfsim.cli.program.progress import blocks_bar, study_into
+from ekfsim.cli.program.study_options import compare_options, study_options
 from ekfsim.errors import RunError, UsageError
 
 if TYPE_CHECKING:
