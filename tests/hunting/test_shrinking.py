@@ -8,7 +8,9 @@ import pytest
 from ekfsim.commands import Move, Sense
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.hunting.changes.lists import CLEAR, Space
+from ekfsim.hunting.changes.variants import Commanded
 from ekfsim.hunting.goals import Count
+from ekfsim.hunting.search import Seen
 from ekfsim.hunting.shrinking import RUNS, shrunk
 from ekfsim.hunting.worlds import without
 
@@ -82,3 +84,21 @@ def test_obstacles_go_but_for_the_one_that_is_needed():
     found = less(share, None, barred=without)
     assert [one.name for one in found.scene.world.map.obstacles] == [desk]
     assert [one.name for one in found.scene.world.told.map.obstacles] == [desk]
+
+
+def test_nothing_is_left_out_that_keeps_the_robot_from_a_wall():
+    """Two half turns: without either alone the way would lead through the wall behind."""
+    half = Move(0.0, math.pi)
+    listed = (half, half, Move(3.0, 0.0))
+    assert SPACE.mended(listed) == listed
+    assert SPACE.mended(listed[1:]) != listed[1:]
+    found = less(lambda _, some: 0.6 if some[-1] == listed[-1] else 0.0, None, listed)
+    assert found.listed == listed
+
+
+def test_of_lists_that_do_as_much_the_shorter_is_better():
+    one, two, better = (
+        Seen(Commanded(listed), Count(hits, 10))
+        for listed, hits in (((NEEDED,), 5), ((NEEDED, NEEDED), 5), ((NEEDED, NEEDED), 6))
+    )
+    assert better.rank > one.rank > two.rank
