@@ -129,3 +129,34 @@ def test_every_command_is_told_as_its_file_has_it(tmp_path, monkeypatch):
         "  3 times: sense at 10°",
         "  kidnap to x 3 m, y 2.5 m, 30°",
     ]
+
+
+OPEN = """
+def predict(x, P, u, motion):
+    raise ValueError("open")
+
+
+def update(x, P, z, sensor):
+    return x, P
+"""
+
+
+def test_whose_code_fails_is_not_mixed_up(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "other.py").write_text(OPEN)
+    (tmp_path / "mine.py").write_text(OPEN.replace('raise ValueError("open")', "return x, P"))
+    made = ekfsim("hunt", "room", "--for", "mine.py,other.py", "--goal", "numbers")
+    assert (made.status, made.out) == (1, "")
+    assert made.err.startswith("other.py:3: step 1 (move ")
+    assert made.err.endswith("): ValueError: open; it is what the other is held against\n")
+
+
+def test_of_a_filter_of_ones_own_a_told_number_is_looked_for_by_its_runs(tmp_path, monkeypatch):
+    """Not by its numbers, which is what is usual of a list of commands."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "other.py").write_text(OPEN)
+    (tmp_path / "field.yaml").write_text(FIELD)
+    (tmp_path / "two.yaml").write_text(f"world: field.yaml\n{TURN_AND_SENSE}")
+    made = ekfsim("hunt", "two.yaml", "--for", "other.py", "--change", "told")
+    assert made.status == 1
+    assert made.err == "other.py:3: run 0, step 1 (move 0.5 m, 90°): ValueError: open\n"

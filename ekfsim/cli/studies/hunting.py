@@ -186,7 +186,7 @@ def _asked(
     if len(scene.beside) > 1 or (scene.beside and goal in ("lost", "silent")):
         raise UsageError(f"--for {hunted}: --goal apart and numbers take two filters, no other")
     against = scene.beside[0] if scene.beside else None
-    chosen: Any = goal or _usual(scene)
+    chosen: Any = goal or _usual(scene, numbers["change"])
     if chosen == "apart" and against is None:
         against = "ekf" if scene.filter != "ekf" else None
     if chosen == "apart" and against is None:
@@ -207,11 +207,13 @@ def _asked(
     return Asked(plain, goal=chosen, against=against, way=way, **numbers)
 
 
-def _usual(scene: "Scene") -> str:
-    """What is looked for where nobody says: of a filter of one's own the first wrong number."""
+def _usual(scene: "Scene", change: str) -> str:
+    """What is looked for where nobody says: of a filter of one's own the first wrong number, unless
+    something else than commands is looked for.
+    """
     from ekfsim.filters.place import is_place
 
-    if is_place(scene.filter):
+    if is_place(scene.filter) and change == "commands":
         return "numbers"
     return "apart" if scene.beside else "lost"
 

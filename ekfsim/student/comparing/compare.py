@@ -82,7 +82,7 @@ def compare(
             if failed is None or not isinstance(fault, FaultError):
                 raise fault from error.__cause__
             failed(asked, fault)
-            belief, earlier = made_by(reference, asked)[0], None
+            belief, earlier = _right(reference, asked)[0], None
             continue
         if found is None:
             continue
@@ -101,10 +101,20 @@ def answered(
     """What both make of one entry; None for a reading that is not handed over: one without an echo,
     without a wall, refused, or with nothing to tell.
     """
-    right, made = made_by(reference, asked)
+    right, made = _right(reference, asked)
     if isinstance(made, Correction) and not (made.used and _passes(asked, guard)):
         return None
     return compared(asked, caller.call(asked), right, made, layout)
+
+
+def _right(reference: Filter, asked: Asked) -> tuple[Gaussian, Prediction | Correction]:
+    """What the reference makes of it. Raises StepError where it is code that fails, too: the fault
+    is not the compared code's.
+    """
+    try:
+        return made_by(reference, asked)
+    except FaultError as fault:
+        raise StepError(f"{fault.at(asked.step)}; it is what the other is held against") from None
 
 
 def compared(
