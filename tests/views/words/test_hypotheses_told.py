@@ -29,7 +29,7 @@ def test_where_it_was_sought_elsewhere_is_told(carried):
     before = np.array(sought.prior.means)[sought.prior.weights > 0]
     apart = np.linalg.norm(belief.means[found][:, None, :2] - before[None, :, :2], axis=-1)
     assert apart.min() > 0.1
-    assert f"and {found.sum()} of the hypotheses are of where it may be now" in hypotheses(sought)
+    assert f"sought: {found.sum()} of the hypotheses are found there\n" in hypotheses(sought)
     assert hypotheses(sought).count("; found elsewhere") == found.sum()
     assert weights(sought)[0].startswith(
         "no hypothesis explained the last readings: sought in the whole map; "

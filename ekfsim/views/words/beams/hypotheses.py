@@ -13,10 +13,7 @@ from ekfsim.records import Reading, Step
 from ekfsim.views.words.beams.told import wall_name
 from ekfsim.views.words.numbers import number, pose
 
-SOUGHT = (
-    "No hypothesis explains the last readings: the robot was probably carried away. It was sought "
-    "in the whole map, "
-)
+SOUGHT = "No hypothesis explains the last readings: the robot was probably carried away\n"
 WRITTEN = 0.01  # a lighter hypothesis is counted in a picture, and its weight not told
 ORDINAL = "heaviest", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"
 
@@ -83,7 +80,7 @@ def _sought(parents: list[int]) -> str:
     if not (found := parents.count(-1)):
         return ""
     are = "is" if found == 1 else "are"
-    return f"{SOUGHT}and {found} of the hypotheses {are} of where it may be now\n"
+    return f"{SOUGHT}In the whole map it was sought: {found} of the hypotheses {are} found there\n"
 
 
 def _origin(parent: int, all_of: Counter[int], before: int) -> str:
