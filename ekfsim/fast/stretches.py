@@ -36,8 +36,8 @@ def localize(
     guard: Guard = "warn",
     layout: Layout = POSE,
 ) -> Iterator[Step] | None:
-    """The steps of an EKF that watches a driven robot. None where it is another filter or state."""
-    if type(filter) is not EKF or not layout.is_pose:
+    """The steps of a filter that predicts as the EKF does; None of another, or of another state."""
+    if getattr(type(filter), "predict", None) is not EKF.predict or not layout.is_pose:
         return None
     if belief.mean.ndim > 1:
         return _localized(entries, filter, belief, guard, layout)
@@ -66,7 +66,7 @@ def ahead(coming: Iterable[T]) -> Iterator[T]:
 
 
 def _localized(
-    entries: Iterable[Entry], filter: EKF, belief: Belief, guard: Guard, layout: Layout
+    entries: Iterable[Entry], filter: Filter, belief: Belief, guard: Guard, layout: Layout
 ) -> Iterator[Step]:
     most = min(MOST, AT_ONCE // max(belief.mean.size // 3, 1))
     step: Step | None = None

@@ -144,7 +144,7 @@ TWINS: tuple[Twin, ...] = (
     Twin(
         of="ekfsim.localization:localize",
         form="ekfsim.fast.stretches:localize",
-        when="an EKF of planar odometry: inputs that follow one another are taken together",
+        when="planar odometry, predicted as by the EKF: inputs in a row are taken together",
     ),
 )
 

@@ -11,6 +11,8 @@ from twin_inputs import axes_of, inputs
 from ekfsim.commands import Move
 from ekfsim.diagnostics.summary import Summary
 from ekfsim.filters.belief import Gaussian
+from ekfsim.filters.cures.huber import Huber
+from ekfsim.filters.cures.pdaf import PDAF
 from ekfsim.filters.ekf import EKF
 from ekfsim.filters.iekf import IEKF
 from ekfsim.localization import localize
@@ -50,6 +52,8 @@ def logs(random, runs):
         yield [replace(entry, command=Move(0.1, 0.1)) for entry in log], EKF(), belief
         yield (*log, Entry(INPUTS + 1, Control(beside, U[0, ..., :2]), x)), EKF(), belief
         yield log, IEKF(), belief
+        yield between, Huber(k=0.5), belief
+        yield between, PDAF(clutter=0.4), belief
         yield log[:0], EKF(), belief
 
 

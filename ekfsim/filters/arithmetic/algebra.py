@@ -29,6 +29,9 @@ def uncertain(S: Array) -> tuple[Integers, Array]:
     """How many of the numbers of S : (…, k, k) are uncertain, and ln det S of these : (…). So a
     density is that of what can vary; as in `inverse` the correlations decide what that is.
     """
+    if S.shape[-1] == 1:
+        s = np.nan_to_num(S[..., 0, 0])
+        return np.where(s > 0, 1, 0), np.log(np.where(s > 0, s, 1.0))
     S = np.nan_to_num(S)
     σσ = np.maximum(np.diagonal(S, axis1=-2, axis2=-1), 0.0)
     per = np.divide(1.0, np.sqrt(σσ), out=np.zeros_like(σσ), where=σσ > 0)

@@ -48,7 +48,8 @@ class PDAF(EKF):
         apart = np.matvec(told.K, told.innovation)  # the two parts of the mixture
         outer = apart[..., :, None] * apart[..., None, :]
         spread = np.where(β[..., None, None] < 1, (β * (1 - β))[..., None, None] * outer, 0.0)
-        return Gaussian(x, P + spread), replace(told, trust=β)
+        P += spread
+        return Gaussian(x, P), replace(told, trust=β)
 
 
 def association(told: Correction, clutter: float, density: float) -> Array:
