@@ -11,12 +11,13 @@ import pytest
 from ekfsim.commands import Move, Sense
 from ekfsim.errors import RunError
 from ekfsim.files.scenes.load import load_scene, load_world
-from ekfsim.hunting.changes.starts import Starts
-from ekfsim.hunting.changes.told import needed, untruly
+from ekfsim.hunting.changes.starts import Starts, rounder
+from ekfsim.hunting.changes.told import Needed, needed, untruly
 from ekfsim.hunting.changes.variants import Started, Told
 from ekfsim.hunting.crew import crew
 from ekfsim.hunting.goals import Count, Lost
 from ekfsim.hunting.hunt import Asked, hunt
+from ekfsim.hunting.worlds import without
 
 COMMANDS = (Move(1.0, math.radians(90)), Sense(0.0))
 ROOM = replace(load_scene({"world": "room", "commands": []}), commands=COMMANDS)
@@ -153,3 +154,39 @@ def test_a_start_that_is_unknown_is_no_number_to_change():
     found = [one.told.key for one in needed(scene, judge, 0.5) if one is not None]
     assert found
     assert not [key for key in found if key.startswith("start")]
+
+
+@pytest.mark.parametrize(("told", "factor"), [(0.005, 2.0), (0.04, 4.0)])
+def test_a_change_is_as_large_either_way(told, factor):
+    assert Needed(Told("noise.rangeSigmaRatio", told), 0.01, Count(1, 2)).factor == factor
+
+
+def test_a_map_that_the_filter_is_told_otherwise_loses_no_obstacle():
+    """What it is not told of would be lost with it."""
+    world = {
+        **FIELD,
+        "obstacles": [
+            {"name": name, "circle": {"x": x, "y": 3, "radius": 0.3}}
+            for name, x in (("a", 1), ("b", 3))
+        ],
+    }
+    alike, other = (
+        replace(ROOM, world=load_world(one))
+        for one in (world, {**world, "belief": {"missing": ["a"]}})
+    )
+    assert [one.name for one in without(alike, "a").world.told.map.obstacles] == ["b"]
+    assert without(other, "b") is None
+    assert without(alike, "c") is None
+
+
+def test_a_start_becomes_rounder_only_where_as_many_runs_do_it():
+    """Half of the runs do it, and none where x is below 1.9 or the heading is not as it is."""
+    best = Started(1.93, 2.06, math.radians(37))
+
+    def judge(scene, variants, first, runs):
+        does = [one.x >= 1.9 and one.theta == best.theta for one in variants]
+        return [Count(runs // 2 if yes else 0, runs) for yes in does]
+
+    found, count = rounder(ROOM, Starts(ROOM.world, COMMANDS), best, judge)
+    assert (found.x, found.y, found.theta) == (2.0, 2.0, best.theta)
+    assert count.share == 0.5
