@@ -4,6 +4,7 @@ it rests on, and the table of what was tried.
 
 from collections.abc import Iterator
 
+from ekfsim.diagnostics.shutting_out import shut_out_of
 from ekfsim.printable import in_a_line
 from ekfsim.views.why.changes import all_of, joined, named, put_right
 from ekfsim.views.why.mechanisms import LASER, because, told_noise
@@ -11,6 +12,7 @@ from ekfsim.views.why.recorded import of_log
 from ekfsim.views.why.tried import table
 from ekfsim.views.words.judgement import count
 from ekfsim.views.words.text_table import folded
+from ekfsim.views.words.trust import shutting_out
 from ekfsim.why.records import Explanation, Mechanism, Shares, Tried
 
 TOLD_OTHERS = 3  # changes that cure as well, which are told by name
@@ -63,6 +65,8 @@ def _sentences(explanation: Explanation) -> Iterator[str]:
         yield from (because(explanation, one) for one in explanation.causes)
     elif mechanism is not None and not _said_already(explanation):
         yield because(explanation, mechanism)
+    if (shut := shut_out_of(explanation.lost_steps, explanation.scene)) is not None:
+        yield begun(shutting_out(shut, explanation.outcome == "lost"))
     yield from _cured(explanation)
     if explanation.parts_at is not None and explanation.cure:
         yield f"The two estimates part at step {explanation.parts_at}"
