@@ -64,6 +64,10 @@ class Asked:
                 raise ValueError("numbers are compared in one run: exposing.py")
 
 
+class OverError(Exception):
+    """The clock ends the search within a round."""
+
+
 @dataclass(frozen=True)
 class Hunted:
     """What was found."""
@@ -96,8 +100,14 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
     def left(share: float) -> bool:
         return time.monotonic() - began < share * asked.seconds
 
+    def heeding() -> None:
+        heed()
+        if searching and state.best and not left(1):  # a slow filter's round may be long
+            raise OverError
+
+    searching = True
     try:
-        with crew(asked.workers, asked.counting(), asked.way, heed) as judge:
+        with crew(asked.workers, asked.counting(), asked.way, heeding) as judge:
             for state in searched(asked.scene, candidates, judge, asked.lists, first):
                 heard(state)
                 if _is_best(state, asked.enough):
@@ -106,11 +116,19 @@ def hunt(asked: Asked, heard: Callable[[Search], None], heed: Callable[[], None]
                 if state.looked_at < asked.lists and not left(SEARCHING):
                     end = "seconds"
                     break
+            searching = False
             shorter = _less(asked, state.best[0].variant, judge, lambda: left(1))
+    except OverError:
+        end = "seconds"
     except (KeyboardInterrupt, SystemExit):
         if not state.best:
             raise
         end = "interrupted"
+    return _held(asked, state, end, shorter)
+
+
+def _held(asked: Asked, state: Search, end: End, shorter: Shrunk | None) -> Hunted:
+    """What was found, measured. Raises RunError where no run does it."""
     looked, name = state.looked_at, asked.scene.world.name
     if not state.best[0].count.hits:
         raise RunError(

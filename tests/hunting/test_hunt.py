@@ -1,5 +1,6 @@
 """A hunt: the same list from the same seed, whoever counts; what is written keeps its word."""
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -119,6 +120,17 @@ def test_ctrl_c_keeps_the_best_so_far_and_nothing_keeps_nothing():
 
     with pytest.raises(KeyboardInterrupt):
         hunt(asked, no_ear, at_once)
+
+
+def test_the_clock_ends_a_round_that_is_long(monkeypatch):
+    """Each look at it is a second: the second round is left at its fourth portion of lists."""
+    seconds = itertools.count()
+    monkeypatch.setattr("ekfsim.hunting.hunt.time.monotonic", lambda: float(next(seconds)))
+    found = hunt(Asked(ROOM, lists=1000, runs=50, seconds=5.0), no_ear, no_ear)
+    assert (found.end, found.search.looked_at, found.is_shrunk) == ("seconds", 128, False)
+    assert next(seconds) == 6
+    (low, high), lost = found.scene.expect.lost, found.result.last.lost
+    assert low <= lost.low < lost.high <= high  # rounded outwards
 
 
 def test_from_nothing_half_of_the_runs_are_lost_though_all_is_true():
