@@ -3,12 +3,14 @@ process.
 
 python benchmarks/cures.py [--only WORDS] [--older FOLDER] [--quick]
 
-huber and pdaf beside the ekf of this build; the particle filters, of 1000 particles, beside the pf
-of the build before there were any cures, which is unpacked from git where no folder is named.
+huber, pdaf and mhekf beside the ekf of this build and of the build before there were any cures; the
+particle filters, of 1000 particles, beside the pf of that one. It is unpacked from git where no
+folder is named. huber and pdaf once more with --fast, where Numba is installed.
 """
 
 import argparse
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 from statistics import median
 
@@ -18,8 +20,14 @@ from timing import _time as timed  # one task after the other, in every round
 
 COMMIT = "fa35536"
 ROWS = (  # which filter, beside which, of how many runs, and the most that it may cost
+    ("ekf", "ekf before", 20_480, 1.05),
     ("huber", "ekf", 20_480, 1.3),
+    ("huber", "ekf before", 20_480, 1.3),
     ("pdaf", "ekf", 20_480, 1.3),
+    ("pdaf", "ekf before", 20_480, 1.3),
+    ("huber", "ekf --fast", 20_480, 1.3),
+    ("pdaf", "ekf --fast", 20_480, 1.3),
+    ("mhekf", "ekf", 2048, 15.0),
     ("pf", "pf before", 100, 1.0),
     ("amcl", "pf before", 100, 0.5),
 )
@@ -39,7 +47,10 @@ def main() -> None:
         for name, beside, runs, reach in ROWS:
             if given.only not in f"{name} {beside}":
                 continue
-            words = ("study", scene, "--expect", "--runs", str(runs), "--filter")
+            fast = [word for word in beside.split() if word == "--fast"]
+            if fast and find_spec("numba") is None:
+                continue
+            words = ("study", scene, *fast, "--expect", "--runs", str(runs), "--filter")
             crowd = ("--particles", "1000") if name in ("pf", "amcl") else ()
             ours = newer.task(*words, name, *crowd)
             theirs = (older if "before" in beside else newer).task(*words, beside.split()[0])
