@@ -244,7 +244,12 @@ def test_the_mathematics_reads_and_writes_nothing(room):
 
 # the simulation, and the twin that draws the same numbers in its place, to the last bit
 SEEDING = {"ekfsim.fast.one.draws", *(m for m in MODULES if room_of(m) == "simulation")}
-DRAWING = {"ekfsim.filters.pf", "ekfsim.filters.cures.amcl", "ekfsim.raycast.ground", *SEEDING}
+DRAWING = {
+    "ekfsim.filters.pf",
+    "ekfsim.filters.particles.drawing",
+    "ekfsim.raycast.ground",
+    *SEEDING,
+}
 
 
 @pytest.mark.parametrize("module", [module for module in MODULES if room_of(module) in CORE])

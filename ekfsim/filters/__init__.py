@@ -10,6 +10,7 @@
 
     cures/       for bad readings, each with what it assumes
     variants/    about a plan; noise in the sigma points; a document's listing; counter-examples
+    particles/   crowds whose number varies: how many are enough, and how they are drawn anew
     mixture/     a few Gaussians: mhekf.py, and how they are merged
     arithmetic/  square roots of P, sigma points, the iterated filter's search, quantiles of χ²
 

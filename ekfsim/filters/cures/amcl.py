@@ -5,9 +5,8 @@ them drawn anew from anywhere when readings cannot be explained.
 """
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -16,6 +15,9 @@ from ekfsim.filters.arithmetic.algebra import wrapped
 from ekfsim.filters.arithmetic.chi_square import survival
 from ekfsim.filters.arithmetic.square_root import square_root
 from ekfsim.filters.belief import Belief, Correction, Particles, Prediction, Refused
+from ekfsim.filters.particles.drawing import NEAR, Anywhere, Source, drawn_anew, sources
+from ekfsim.filters.particles.kld import bins
+from ekfsim.filters.particles.roaming import Roaming, together
 from ekfsim.filters.pf import PF, silverman
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans, Integers
@@ -24,87 +26,8 @@ from ekfsim.models.protocols import Motion, Sensor, of_rows
 if TYPE_CHECKING:
     from numpy.random import Generator
 
-Told = TypeVar("Told", Prediction, Correction)
-
-MIXED = 1_000_003  # more than there are bins along any axis
-FEWEST = 300  # particles, however sure they are
-BIN, BIN_ANGLE = 0.2, math.radians(5.0)  # m, rad: what KLD sampling counts as another place
-KLD = 0.05  # how far the crowd may be from what it stands for, in nats …
-Z_99 = 2.3263478740408408  # … in 99 % of draws: the normal quantile
 UNEXPLAINED = 1e-3  # a reading that is less probable than this is not wholly explained
 SLOW, FAST = 0.01, 0.5  # how quickly the two averages of Table 8.3 follow
-NEAR = 1.5  # bins: σ of the kernel that parts particles, at most
-
-ONE, NOWHERE = np.ones(1), np.zeros((1, 1))  # of a Gaussian: one particle, at its mean
-
-Groups = list[tuple[Integers, int]]  # the rows of runs, and how many particles are theirs
-
-
-@dataclass(frozen=True, slots=True)
-class Roaming(Particles):
-    """A crowd whose number varies. Of each run those behind its number have weight 0."""
-
-    number: Integers  # (…) how many particles there are
-    slow: Array  # (…) how well readings were explained, over long …
-    fast: Array  # (…) … and lately
-
-    @property
-    def astray(self) -> Array:
-        """(…) which share of the next crowd is drawn from anywhere: max(0, 1 − fast/slow)"""
-        share: Array = np.maximum(1 - self.fast / self.slow, 0.0)
-        return share
-
-    def groups(self, most: int) -> "Groups":
-        """Runs with about as many particles, and the length of their crowds: a power of two times
-        the fewest, or `most`. So none does the work of the largest, and its sums are the same alone
-        as among others.
-        """
-        number = self.number.reshape(-1)
-        length = FEWEST * 2 ** np.ceil(np.log2(np.maximum(number / FEWEST, 1))).astype(int)
-        length = np.minimum(length, most)
-        return [(np.flatnonzero(length == p), p) for p in np.unique(length).tolist()]
-
-    def part(self, rows: Integers, p: int) -> Particles:
-        """The crowds of some runs, of p particles each; those beyond its number weigh nothing."""
-        n = self.mean.shape[-1]
-        states = self.states.reshape(-1, *self.states.shape[-2:])[rows, :p]
-        weights = self.weights.reshape(-1, self.weights.shape[-1])[rows, :p]
-        if (more := p - weights.shape[-1]) > 0:
-            states = np.concatenate([states, np.repeat(states[:, :1], more, axis=1)], axis=1)
-            weights = np.pad(weights, ((0, 0), (0, more)))
-        return Particles(
-            self.mean.reshape(-1, n)[rows], self.covariance.reshape(-1, n, n)[rows], states, weights
-        )
-
-    def whole(self, parts: list[Particles], groups: "Groups") -> "Roaming":
-        """The crowds of all runs, from those of its groups; nothing is learnt of itself."""
-        axes, n = self.mean.shape[:-1], self.mean.shape[-1]
-        N, p = self.number.size, int(self.number.max())
-        x, P, states, weights = (
-            np.empty((N, n)), np.empty((N, n, n)), np.zeros((N, p, n)), np.zeros((N, p)),
-        )  # fmt: skip
-        for part, (rows, _) in zip(parts, groups, strict=True):
-            x[rows], P[rows] = part
-            of_them = min(p, part.weights.shape[-1])
-            states[rows, :of_them] = part.states[:, :of_them]
-            states[rows, of_them:] = part.states[:, :1]
-            weights[rows, :of_them] = part.weights[:, :of_them]
-        return Roaming(
-            x.reshape(*axes, n), P.reshape(*axes, n, n), states.reshape(*axes, p, n),
-            weights.reshape(*axes, p), self.number, self.slow, self.fast,
-        )  # fmt: skip
-
-
-class Source(NamedTuple):
-    """What the particles of one run are drawn from."""
-
-    ends: Array  # (p,) the weights laid end to end
-    mean: Array  # (n,)
-    away: Array  # (p, n) where the particles are from the mean
-    L: Array  # (n, n) the root of their covariance
-    wide: float  # the largest of their standard deviations, in widths of the widest kernel
-    astray: float  # the share that is drawn from anywhere
-    b: float | None = None  # how wide the kernel is; None: by how many are drawn
 
 
 @dataclass(frozen=True)
@@ -118,8 +41,7 @@ class AMCL(PF):
     the sensor, and almost 0 of a robot that was carried away.
     """
 
-    # states that are drawn from all places where a robot can stand: (generator, number) → (p, n)
-    anywhere: "Callable[[Generator, int], Array] | None" = None
+    anywhere: Anywhere | None = None
 
     @classmethod
     def begin(cls, beginning: Beginning) -> Self:
@@ -150,7 +72,7 @@ class AMCL(PF):
             alike, prediction = PF.predict(self._of(rows, p), crowd.part(rows, p), motion, u[rows])
             moved.append(alike)
             made.append(prediction)
-        return crowd.whole(moved, groups), _together(made, groups, axes)
+        return crowd.whole(moved, groups), together(made, groups, axes)
 
     def update(
         self, prior: Belief, sensor: Sensor, z: Array, skip: Booleans | bool = False
@@ -180,7 +102,7 @@ class AMCL(PF):
             P = np.where(were[..., None], P, alike.covariance)
             weighed.append(Particles(x, P, alike.states, weights))
             corrections.append(told)
-        told = _together(corrections, groups, axes)
+        told = together(corrections, groups, axes)
         seen = self._averaged(crowd.whole(weighed, groups), used.reshape(axes), told, z.shape[-1])
         counted = 1 / np.sum(seen.weights**2, axis=-1)
         few = (counted < seen.number / 2) | (seen.astray > 1 / self.count)
@@ -197,7 +119,7 @@ class AMCL(PF):
         n = crowd.mean.shape[-1]
         b = silverman(number, n)
         σ = np.sqrt(np.maximum(np.diagonal(crowd.covariance, axis1=-2, axis2=-1), 0.0))
-        wide = b * np.max(σ / (NEAR * self.bins(n)), axis=-1)
+        wide = b * np.max(σ / (NEAR * bins(n, self.headings)), axis=-1)
         if not np.any(wide > 1):
             return None
         share = np.where(wide > 1, b / np.maximum(wide, 1.0), 0.0)
@@ -229,10 +151,10 @@ class AMCL(PF):
             x, P, states, weights = *belief, belief.states, belief.weights
             number = np.full(axes, weights.shape[-1])
         else:
-            (x, P), bins = belief, self.bins(n)
+            x, P = belief
             roots = square_root(P).reshape(-1, n, n)
             drawn = [
-                self._one_drawn(generator, Source(ONE, mean, NOWHERE, L, 0.0, 0.0, 1.0), bins)
+                self._one_drawn(generator, Source.of_gaussian(mean, L))
                 for generator, mean, L in zip(self.generators, x.reshape(-1, n), roots, strict=True)
             ]
             number = np.array([len(of_run) for of_run in drawn]).reshape(axes)
@@ -250,10 +172,11 @@ class AMCL(PF):
             return crowd
         axes, n = crowd.mean.shape[:-1], crowd.mean.shape[-1]
         N, number = math.prod(axes), crowd.number.reshape(-1).copy()
-        rows, bins = np.flatnonzero(anew), self.bins(n)
+        rows = np.flatnonzero(anew)
         drawn = dict[int, Array]()
-        for row, source in zip(rows.tolist(), self._sources(crowd, rows), strict=True):
-            drawn[row] = self._one_drawn(self.generators[row], source, bins)
+        of_them = sources(crowd, rows, self.headings)
+        for row, source in zip(rows.tolist(), of_them, strict=True):
+            drawn[row] = self._one_drawn(self.generators[row], source)
             number[row] = len(drawn[row])
         p = int(number.max())
         states, weights = np.zeros((N, p, n)), np.zeros((N, p))
@@ -275,95 +198,11 @@ class AMCL(PF):
             x[rows[these]], P[rows[these]] = summed.mean[these], summed.covariance[these]
         return replace(made, mean=x.reshape(*axes, n), covariance=P.reshape(*axes, n, n))
 
-    def _sources(self, crowd: Roaming, rows: Integers) -> Iterator[Source]:
-        """What the particles of these runs are drawn from, one run after another."""
-        n, P = crowd.mean.shape[-1], crowd.covariance.reshape(-1, *crowd.covariance.shape[-2:])
-        mean, numbers = crowd.mean.reshape(-1, n)[rows], crowd.number.reshape(-1)[rows].tolist()
-        states = crowd.states.reshape(-1, *crowd.states.shape[-2:])[rows]
-        away = wrapped(states - mean[:, None], self.headings)
-        ends = np.cumsum(crowd.weights.reshape(-1, crowd.weights.shape[-1])[rows], axis=-1)
-        σ = np.sqrt(np.maximum(np.diagonal(P[rows], axis1=-2, axis2=-1), 0.0))
-        wide, astray = np.max(σ / (NEAR * self.bins(n)), axis=-1), crowd.astray.reshape(-1)[rows]
-        roots = square_root(P[rows])
-        for i, p in enumerate(numbers):
-            if not ends[i, p - 1] > 0:
-                weights = crowd.weights.reshape(-1, crowd.weights.shape[-1])[rows[i]]
-                first = int(np.argmin(weights > 0))
-                raise ValueError(f"particle {first + 1} has the weight {weights[first]}")
-            yield Source(
-                ends[i, :p], mean[i], away[i, :p], roots[i], float(wide[i]), float(astray[i])
-            )
-
-    def _one_drawn(self, generator: "Generator", source: Source, bins: Array) -> Array:
-        """Particles of one run : (p', n), as many as it needs, all of one weight. Their headings
-        are not wrapped.
-        """
-        ends, n = source.ends, len(source.mean)
-        portions, found = list[Array](), set[int]()
-        there, wanted = 0, FEWEST
-        while there < min(wanted, self.count):
-            p = min(max(there, FEWEST), max(wanted, FEWEST) - there, self.count - there)
-            b = source.b
-            if b is None:
-                b = float(silverman(p, n))
-                b /= max(b * source.wide, 1.0)
-            u = (np.arange(p) + generator.random()) / p
-            hit = np.searchsorted(ends, u * ends[-1], side="right")
-            # beyond the last end, by rounding, is the last particle
-            drawn = math.sqrt(1 - b * b) * source.away.take(hit, axis=0, mode="clip")
-            drawn = drawn + generator.standard_normal((p, n)) @ (b * source.L.T)
-            drawn += source.mean
-            if source.astray > 0:
-                lost = generator.random(p) < source.astray
-                assert self.anywhere is not None
-                drawn[lost] = self.anywhere(generator, int(np.count_nonzero(lost)))
-            portions.append(drawn)
-            found.update(cells(drawn, bins).tolist())
-            there, wanted = there + p, enough(len(found))
-        return np.concatenate(portions)
-
-    def bins(self, n: int) -> Array:
-        """How wide a bin is in each of n entries of the state : (n,)"""
-        widths = np.full(n, BIN)
-        widths[list(self.headings)] = BIN_ANGLE
-        return widths
-
-
-def enough(k: int) -> int:
-    """How many particles are enough for k occupied bins: (k − 1)/2ε (1 − a + √a z)³, a = 2/(9 (k −
-    1)): Fox, 2003, eq. 7
-
-    >>> enough(1), enough(10), enough(100)
-    (300, 300, 1347)
-    """
-    if k <= 1:
-        return FEWEST
-    a = 2 / (9 * (k - 1))
-    return max(FEWEST, math.ceil((k - 1) / (2 * KLD) * (1 - a + math.sqrt(a) * Z_99) ** 3))
-
-
-def cells(states: Array, bins: Array) -> Integers:
-    """In which bin each of the particles (p, n) lies, as one number : (p,)"""
-    digits = np.floor(states / bins).astype(np.int64)
-    # may overflow: it only tells bins apart
-    number: Integers = digits @ np.multiply.accumulate(np.full(len(bins), MIXED))
-    return number
+    def _one_drawn(self, generator: "Generator", source: Source) -> Array:
+        assert self.anywhere is not None
+        return drawn_anew(generator, source, self.headings, self.count, self.anywhere)
 
 
 def followed(average: Array, now: Array, α: float) -> Array:
     """average + α (now − average) : (…), as it was where there is nothing to follow"""
     return np.where(np.isnan(now), average, average + α * (now - average))
-
-
-def _together(parts: "list[Told]", groups: "Groups", axes: tuple[int, ...]) -> "Told":
-    """What was told of groups of runs, of all of them : (…)"""
-    told = dict[str, Any]()
-    for field in fields(parts[0]):
-        first: Any = getattr(parts[0], field.name)
-        if not isinstance(first, np.ndarray):
-            continue
-        whole = np.empty((sum(len(rows) for rows, _ in groups), *first.shape[1:]), first.dtype)
-        for part, (rows, _) in zip(parts, groups, strict=True):
-            whole[rows] = getattr(part, field.name)
-        told[field.name] = whole.reshape((*axes, *first.shape[1:]))
-    return replace(parts[0], **told)

@@ -94,7 +94,7 @@ def crowd(belief: Belief) -> str:
     told = _weighed(belief)
     if type(belief) is Particles:
         return told
-    from ekfsim.filters.cures.amcl import Roaming  # which no other filter needs
+    from ekfsim.filters.particles.roaming import Roaming  # which no other filter needs
 
     if not isinstance(belief, Roaming):
         return told

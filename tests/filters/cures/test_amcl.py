@@ -13,17 +13,9 @@ from ekfsim.commands import Kidnap, Move, Sense
 from ekfsim.errors import InputError, UsageError
 from ekfsim.files.packaged import packaged
 from ekfsim.filters.belief import Gaussian, Particles, Refused
-from ekfsim.filters.cures.amcl import (
-    AMCL,
-    FAST,
-    FEWEST,
-    KLD,
-    SLOW,
-    UNEXPLAINED,
-    cells,
-    enough,
-    followed,
-)
+from ekfsim.filters.cures.amcl import AMCL, FAST, SLOW, UNEXPLAINED, followed
+from ekfsim.filters.particles.drawing import Source, drawn_anew
+from ekfsim.filters.particles.kld import FEWEST, KLD, bins, cells, enough
 from ekfsim.filters.pf import PF
 from ekfsim.filters.protocol import Beginning
 from ekfsim.localization import belief_of, play
@@ -55,8 +47,34 @@ def test_as_many_are_enough_as_the_divergence_asks_for(k):
 
 def test_places_are_bins_that_hold_some():
     states = np.array([[0.1, 0.1, 0.01], [0.15, 0.05, 0.02], [0.1, 0.1, -0.01], [-0.1, 0.1, 0.01]])
-    assert len(set(cells(states, one().bins(3)).tolist())) == 3
-    assert one().bins(3) == pytest.approx([0.2, 0.2, math.radians(5)])
+    assert len(set(cells(states, bins(3, (2,))).tolist())) == 3
+    assert bins(3, (2,)) == pytest.approx([0.2, 0.2, math.radians(5)])
+
+
+@pytest.mark.parametrize("N", [10, 40, 200])
+def test_what_few_say_is_itself_in_doubt(N):
+    """Of N draws of a Gaussian the next one is t-distributed about their mean (numpy draws them, no
+    formula of ours): what is drawn anew covers it, on average over many such N."""
+    generator = np.random.default_rng(N)
+    outside = []
+    for _ in range(400):
+        states = generator.normal(size=(N, 3))
+        mean, P = states.mean(axis=0), np.cov(states.T, ddof=0)
+        L = np.linalg.cholesky(P)
+        source = Source(
+            np.arange(1, N + 1) / N, mean, states - mean, L, wide=0.0, astray=0.0, alike=N
+        )
+        b, β = source.kernel(300)
+        # the covariance of what is drawn, over that of the N
+        grown = 1 - b * b + β * β
+        expected = (N + 1) / (N - 5) if N - 5 >= 6 else 2.0
+        assert grown == pytest.approx(expected)
+        next_one = generator.normal(size=3) - mean
+        outside.append(next_one @ np.linalg.solve(grown * P, next_one))
+    assert np.mean(outside) == pytest.approx(3, rel=0.25)
+    drawn = drawn_anew(generator, source, (2,), 5000, anywhere)
+    assert np.cov(drawn.T) == pytest.approx(grown * P, abs=0.5 * grown)
+    assert drawn.mean(axis=0) == pytest.approx(mean, abs=0.4)
 
 
 def test_averages_by_hand():
@@ -184,7 +202,7 @@ def test_a_sparse_particle_stands_for_those_about_it():
         assert (C is not None) == wide
         if C is None:
             continue
-        widths = np.sqrt(np.diagonal(C[0])) / filter.bins(3)
+        widths = np.sqrt(np.diagonal(C[0])) / bins(3, (2,))
         assert widths.max() == pytest.approx(1.5)
         weights, _, _ = PF(filter.generators, count=400)._weighed(
             alike, laser, z[None], np.array([False]), C
