@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ekfsim.why import Explanation
 
 OFTEN = 0.2  # s between two words on how far it has come
-CALCULATING = "calculating why: the run is played again and again · Ctrl-C stops"
+CALCULATING = "calculating why · Ctrl-C stops"
 
 
 class StoppedError(Exception):

@@ -2,6 +2,7 @@
 map that the filter is told.
 """
 
+import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -106,18 +107,36 @@ class OfItsWall(Sensor):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class OnItsWall(Sensor):
+class LikeLaser(Sensor):
+    """What a laser is, but for what is told of it besides."""
+
+    laser: Laser
+
+    @property
+    def outputs(self) -> tuple[Quantity, ...]:
+        """One range."""
+        return self.laser.outputs
+
+    def h(self, x: Array) -> Array:
+        """(…, 1) m"""
+        return self.laser.h(x)
+
+    def H(self, x: Array) -> Array:
+        """(…, 1, 3)"""
+        return self.laser.H(x)
+
+    def R(self, x: Array) -> Array:
+        """(…, 1, 1)"""
+        return self.laser.R(x)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OnItsWall(LikeLaser):
     """A laser that predicts nothing where the estimate would have it meet another wall line than it
     truly meets: such a reading is not used.
     """
 
-    laser: Laser
     line: Integers  # (…) that it truly meets, −1 where it meets none
-
-    @property
-    def outputs(self) -> tuple[Quantity, ...]:
-        """Those of the laser."""
-        return self.laser.outputs
 
     def h(self, x: Array) -> Array:
         """That of the laser, nan where it is another wall's : (…, 1) m"""
@@ -125,16 +144,29 @@ class OnItsWall(Sensor):
         return np.where(right[..., None], self.laser.h(x), math.nan)
 
     def H(self, x: Array) -> Array:
-        """That of the laser : (…, 1, 3)"""
+        """That of the laser, 0 where h is nan : (…, 1, 3)"""
         return np.where(np.isnan(self.h(x))[..., None], 0.0, self.laser.H(x))
-
-    def R(self, x: Array) -> Array:
-        """That of the laser : (…, 1, 1)"""
-        return self.laser.R(x)
 
     def of_run(self, run: tuple[int | Integers, ...]) -> Sensor:
         """With the line that is met in that run."""
         return replace(self, line=self.line[run] if self.line.ndim else self.line)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OfItsNoise(LikeLaser):
+    """A laser whose noise is that of the range it truly measures, wherever the estimate stands."""
+
+    variance: Array  # (…) m²
+
+    def R(self, x: Array) -> Array:
+        """(ratio · true range)² : (…, 1, 1)"""
+        variance = _beside(self.variance, x)  # a filter about a plan asks of one state for all runs
+        R = np.broadcast_to(variance, np.broadcast_shapes(variance.shape, x.shape[:-1]))
+        return R[..., None, None]
+
+    def of_run(self, run: tuple[int | Integers, ...]) -> Sensor:
+        """With the noise of that run's range."""
+        return replace(self, variance=_one(self.variance, run))
 
 
 def _one(of_runs: Array, run: tuple[int | Integers, ...], inner: int = 0) -> Array:
@@ -148,37 +180,6 @@ def _beside(of_runs: Array | Integers, x: Array) -> Array:
     """
     axes = (1,) * (x.ndim - 1 - of_runs.ndim)
     return np.asarray(of_runs.reshape((*of_runs.shape, *axes)))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class OfItsNoise(Sensor):
-    """A laser whose noise is that of the range it truly measures, wherever the estimate stands."""
-
-    laser: Laser
-    variance: Array  # (…) m²
-
-    @property
-    def outputs(self) -> tuple[Quantity, ...]:
-        """One range."""
-        return self.laser.outputs
-
-    def h(self, x: Array) -> Array:
-        """That of the laser : (…, 1) m"""
-        return self.laser.h(x)
-
-    def H(self, x: Array) -> Array:
-        """That of the laser : (…, 1, 3)"""
-        return self.laser.H(x)
-
-    def R(self, x: Array) -> Array:
-        """(ratio · true range)² : (…, 1, 1)"""
-        variance = _beside(self.variance, x)  # a filter about a plan asks of one state for all runs
-        R = np.broadcast_to(variance, np.broadcast_shapes(variance.shape, x.shape[:-1]))
-        return R[..., None, None]
-
-    def of_run(self, run: tuple[int | Integers, ...]) -> Sensor:
-        """With the noise of that run's range."""
-        return replace(self, variance=_one(self.variance, run))
 
 
 def sensed(entry: Entry, sensor: Callable[[Laser, Array], Sensor]) -> Entry:
@@ -245,16 +246,9 @@ def repeated(entries: Iterable[Entry]) -> Iterator[bool]:
 
 def without_repeated(entries: Iterable[Entry]) -> Iterator[Entry]:
     """Every entry, but only the first of readings in one direction from one place."""
-    looked: set[float] = set()
-    for entry in entries:
-        match entry:
-            case Entry(given=Reading(Laser(bearing=bearing), _)):
-                yield left_out(entry) if bearing in looked else entry
-                looked.add(bearing)
-            case _:
-                if isinstance(entry.given, Control) or isinstance(entry.command, Kidnap):
-                    looked.clear()
-                yield entry
+    kept, asked = itertools.tee(entries)
+    for entry, again in zip(kept, repeated(asked), strict=True):
+        yield left_out(entry) if again else entry
 
 
 WALL = Change(

@@ -16,6 +16,7 @@ from ekfsim.geometry.angles import wrap
 from ekfsim.records import Control, Entry, Reading, Step
 from ekfsim.systems.robot import Robot, Tick
 from ekfsim.why.changes.beams import left_out
+from ekfsim.why.changes.singles import spread_out
 from ekfsim.why.records import Change
 
 STRETCHES = 8  # of a run
@@ -136,7 +137,7 @@ def abreast(entries: Sequence[Entry], some: Sequence[Group]) -> Iterator[Entry]:
         for index in group.at:
             at.setdefault(index, []).append(row)
     for entry in entries:
-        spread = _spread(entry, rows)
+        spread = spread_out(entry, rows)
         changed = at.get(entry.index, ())
         if isinstance(entry.given, Reading) and changed:
             spread = left_out(spread, np.isin(np.arange(rows), changed))
@@ -148,19 +149,6 @@ def abreast(entries: Sequence[Entry], some: Sequence[Group]) -> Iterator[Entry]:
                 u = np.where((np.arange(rows) == row)[:, None], one.given.u, u)
             spread = replace(spread, given=replace(spread.given, u=u))
         yield spread
-
-
-def _spread(entry: Entry, rows: int) -> Entry:
-    """The entry of one run as that of N."""
-    given, truth = entry.given, entry.truth
-    match given:
-        case Reading(_, z):
-            given = replace(given, z=np.broadcast_to(z, (rows, *z.shape)))
-        case Control(_, u):
-            given = replace(given, u=np.broadcast_to(u, (rows, *u.shape)))
-    if truth is not None:
-        truth = np.broadcast_to(truth, (rows, *truth.shape))
-    return replace(entry, given=given, truth=truth)
 
 
 def instants(steps: Sequence[Step]) -> Integers:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ekfsim.diagnostics.innovations import named
 from ekfsim.filters.belief import Gaussian
-from ekfsim.geometry import Array
+from ekfsim.geometry import Array, Integers
 from ekfsim.models.protocols import Motion, Quantity, Sensor
 from ekfsim.printable import in_a_line
 from ekfsim.records import Control, Entry, Reading
@@ -49,6 +49,10 @@ class Louder(Sensor):
     def residual(self, z: Array, h: Array) -> Array:
         """That of the sensor : (…, k)"""
         return self.sensor.residual(z, h)
+
+    def of_run(self, run: tuple[int | Integers, ...]) -> Sensor:
+        """With the factor of that run, where each has its own."""
+        return replace(self, factor=np.asarray(self.factor[run])) if self.factor.ndim else self
 
 
 @dataclass(frozen=True, slots=True, eq=False)

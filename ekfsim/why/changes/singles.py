@@ -68,7 +68,7 @@ def abreast(entries: Sequence[Entry], changes: Sequence[Change]) -> Iterator[Ent
     before: Array | None = None
     for entry in entries:
         given, row = entry.given, at.get(entry.index)
-        spread = _spread(entry, rows)
+        spread = spread_out(entry, rows)
         if row is not None and isinstance(given, Reading):
             spread = left_out(spread, np.arange(rows) == row)
         elif row is not None and isinstance(given, Control) and isinstance(spread.given, Control):
@@ -81,7 +81,7 @@ def abreast(entries: Sequence[Entry], changes: Sequence[Change]) -> Iterator[Ent
         before = entry.truth
 
 
-def _spread(entry: Entry, rows: int) -> Entry:
+def spread_out(entry: Entry, rows: int) -> Entry:
     """The entry of one run as that of N."""
     given, truth = entry.given, entry.truth
     match given:
