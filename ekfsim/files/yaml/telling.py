@@ -233,23 +233,23 @@ def out_of_range(node: Node, schema: Schema) -> tuple[str, str]:
     if isinstance(value, float) and not math.isfinite(value):
         huge = node.written.strip("+-")[:1].isdigit()
         return f"{shown(node)} is {'too large' if huge else 'not a finite number'}", right
-    if "exclusiveMaximum" in schema:
-        low, high = schema["exclusiveMinimum"], schema["exclusiveMaximum"]
+    above, below = "exclusiveMinimum" in schema, "exclusiveMaximum" in schema
+    low = schema["exclusiveMinimum" if above else "minimum"]
+    high = schema["exclusiveMaximum" if below else "maximum"]
+    if above and below:
         return f"{shown(node)} is not strictly between {low} and {high}", right
-    low, high = schema["minimum" if "minimum" in schema else "exclusiveMinimum"], schema["maximum"]
     small = isinstance(value, int | float) and value <= low
-    if small and "exclusiveMinimum" in schema:
+    if small and above:
         return (
             f"{shown(node)} is {'too small' if value == low else 'negative'}",
             f"write more than {spaced(low)}",
         )
-    if high == 1:
+    if high == 1 and not (above or below):
         right = f"write {noun(schema)} from 0 to 1"
+    elif small:
+        right = f"write {noun(schema)} of {spaced(low)} or more"
     else:
-        right = (
-            f"write {noun(schema)} of "
-            f"{f'{spaced(low)} or more' if small else f'at most {spaced(high)}'}"
-        )
+        right = f"write {noun(schema)} of {'less than' if below else 'at most'} {spaced(high)}"
     why = f": {schema['$comment']}" if "$comment" in schema and not small else ""
     return (
         f"{shown(node)} is "

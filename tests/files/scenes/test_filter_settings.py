@@ -92,6 +92,18 @@ def test_as_it_comes_every_filter_is_its_own_default():
         ("pf", "filter.particles=1000001",
          "--set filter.particles=1000001: 1000001 is too large; write a whole number of at most 1 "
          "000 000"),
+        ("adaptive", "filter.adaptive=0",
+         "--set filter.adaptive=0: 0 is too small; write more than 0"),
+        ("adaptive", "filter.adaptive=1.5",
+         "--set filter.adaptive=1.5: 1.5 is too large; write a number of at most 1"),
+        ("pdaf", "filter.clutter=1",
+         "--set filter.clutter=1: 1 is too large; write a number of less than 1"),
+        ("pdaf", "filter.clutter=-0.1",
+         "--set filter.clutter=-0.1: -0.1 is negative; write a number of 0 or more"),
+        ("huber", "filter.huber=-1",
+         "--set filter.huber=-1: -1 is negative; write more than 0"),
+        ("mhekf", "filter.hypotheses=100000",
+         "--set filter.hypotheses=100000: 100000 is too large; write a whole number of at most 64"),
         ("pf", "filter=ukf", "--set filter=ukf: 'filter' is no single value; write e.g. "
                              "filter.particles, and name the "
          "filter itself by --filter"),
