@@ -36,19 +36,25 @@ def alone(name, seed, **cure):
 @pytest.mark.parametrize("name", ["diverge-08-grazing", "diverge-12-close-to-the-wall"])
 def test_a_row_counts_what_each_run_alone_says(monkeypatch, name):
     monkeypatch.setattr(gallery, "RUNS", RUNS)
+    monkeypatch.setattr(gallery, "RUNS_UNDER_A_CURE", RUNS)
     row = gallery.row(name, 5)
     assert len(row) == len(gallery.HEAD)
-    for column, cure in ((1, {}), (6, {"gate": 0.99}), (8, {"guard": "skip"})):
+    huber = gallery.HEAD.index("lost, huber")
+    for column, cure in (
+        (1, {}), (6, {"gate": 0.99}), (8, {"guard": "skip"}), (huber, {"filter": "huber"}),
+    ):  # fmt: skip
         lost, left_out = alone(name, 5, **cure)
-        assert float(row[column].split(" %")[0]) == pytest.approx(100 * lost / RUNS, abs=0.06)
-        if cure:
+        assert float(row[column].split()[0]) == pytest.approx(100 * lost / RUNS, abs=0.06)
+        if column in (6, 8):
             assert float(row[column + 1].split(" of ")[0]) == pytest.approx(left_out, rel=1e-2)
 
 
 def test_all_inputs_are_run_with_one_seed_and_stand_in_the_readme(monkeypatch, tmp_path):
     asked = []
     monkeypatch.setattr(
-        gallery, "row", lambda name, seed: asked.append((name, seed)) or [name, *["-"] * 9]
+        gallery,
+        "row",
+        lambda name, seed: asked.append((name, seed)) or [name, *["-"] * (len(gallery.HEAD) - 1)],
     )
     gallery.draw_gallery(replace(shipped(DIVERGE[0]), seed=2), Album("gallery", "", tmp_path))
     assert asked == [(name, 2) for name in DIVERGE]

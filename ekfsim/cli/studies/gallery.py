@@ -33,7 +33,7 @@ from ekfsim.printable import in_a_line
     default=200,
     show_default=True,
     metavar="N",
-    help="Runs of each scenario under each cure, 50 of a drive at most; 0: no table of them.",
+    help="Runs of each scenario under each cure, 20 of a drive at most; 0: no table of them.",
 )
 @click.option(
     "--workers",

@@ -1,5 +1,5 @@
 """The inputs that make the filter fail, side by side:
-what a thousand runs of each find, as they stand and cured.
+what a thousand runs of each find, as they stand and under each cure.
 """
 
 from collections.abc import Iterator
@@ -17,20 +17,24 @@ from ekfsim.scene import Scene
 from ekfsim.study.block import run_block
 from ekfsim.study.results import Result
 from ekfsim.version import VERSION
+from ekfsim.views.gallery import cures
 from ekfsim.views.study import shares
 from ekfsim.views.study.words import shared
 
 RUNS = 1000
+RUNS_UNDER_A_CURE = 200  # of each: some take long
 GATE = 0.99
 HEAD = (
     *("input", *shares.HEAD),
     *("lost, gate 0.99", "left out by it", "lost, guard skip", "left out by it"),
+    *(f"lost, {name}" for name in (cures.PLAIN, *cures.CURES)),
+    *cures.HEAD[-2:],
 )
 CAPTION = """\
 Of {runs} runs of seed {seed} of each `diverge-…` input that comes along. {meaning} \
-The last columns are the same runs, on the same draws, with
+The columns behind are the same runs, on the same draws, with
 `--gate {gate}` and with `--guard skip`, and how many of a run's readings these leave out on \
-average. Each file's
+average. The last columns are of the first {cured} of them. {cures} Each file's
 description tells its mechanism, and `ekfsim run NAME` one of its runs.
 """
 
@@ -48,12 +52,19 @@ def draw_gallery(scene: Scene, album: Album) -> None:
         "Scenarios that diverge",
         HEAD,
         rows,
-        CAPTION.format(runs=RUNS, seed=scene.seed, meaning=shares.MEANING, gate=GATE),
+        CAPTION.format(
+            runs=RUNS,
+            seed=scene.seed,
+            meaning=shares.MEANING,
+            gate=GATE,
+            cured=RUNS_UNDER_A_CURE,
+            cures=cures.MEANING,
+        ),
     )
 
 
 def row(name: str, seed: int) -> list[str]:
-    """What is found of one input: as it stands, with a gate, and with the guard."""
+    """What is found of one input: as it stands, with gate or guard, and under each cure."""
     plain = replace(shipped(name), filter="ekf", seed=seed)
     cells = [name, *shares.shares(result(plain))]
     for cured, refused in (
@@ -64,7 +75,7 @@ def row(name: str, seed: int) -> list[str]:
             shared(result(cured).last.lost),
             " of ".join(f"{n:.3g}" for n in left_out(cured, refused)),
         ]
-    return cells
+    return [*cells, *cures.cured(plain, RUNS_UNDER_A_CURE).cells]
 
 
 def result(scene: Scene) -> Result:

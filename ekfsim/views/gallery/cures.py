@@ -30,7 +30,7 @@ CURES = tuple(
 )  # fmt: skip
 HEAD = PLAIN, *CURES, "smoothed: steps beyond", "error"
 NONE = "–"
-RUNS, RUNS_OF_A_DRIVE = 200, 50  # of each filter; a drive takes long, and has no more than that
+RUNS, RUNS_OF_A_DRIVE = 200, 20  # of each filter; a drive takes long, and has no more than that
 LEGEND = "✓ heals, ↓ fewer, ↑ more, ✗ kills"
 MOST = 1 / 4  # of the runs that ekf loses, or keeps
 MEANING = """\
