@@ -147,6 +147,9 @@ def unknown_word(node: Node, schema: Schema) -> tuple[str, str]:
     """A word that is none of the few allowed."""
     words = words_of(schema)
     if not isinstance(node.value, str):
+        if "oneOf" in schema and "title" in schema:  # or a mapping
+            right = f"write e.g. {example(schema)}, or {one_of(words)}"
+            return f"{what_stands(node)} where {noun(schema)} belongs", right
         return f"{what_stands(node)} where a word belongs", f"write {one_of(words)}"
     near = nearest(node.value, words)
     right = f"did you mean '{near}'?" if near else f"write {one_of(words)}"

@@ -258,7 +258,11 @@ def test_no_other_filter_begins_with_no_idea():
             "{start: unknown, sigma: {x: 1}}",
             "belief.sigma: nobody is sure to a sigma of a start that is unknown; delete either",
         ),
-        ("{start: 3}", "belief.start: "),
+        (
+            "{start: 3}",
+            "belief.start: 3 is a number where a pose, or the word unknown belongs; "
+            "write e.g. {x: 1.0, y: 1.0, theta: 90}, or unknown",
+        ),
     ],
 )
 def test_a_start_that_cannot_be_unknown_is_told_in_a_line(belief, message, tmp_path):
