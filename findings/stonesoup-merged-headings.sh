@@ -6,13 +6,13 @@
 #            Bearings folds, and calls the result known to 2.2 degrees for the same reason; the mean is a sum of plain
 #            numbers times their weights, and no Bearing any more. It is so only where the two lie on either side
 #            of 180. The library's own mean of the same states is right. Right: merging=False, and that mean instead.
-# Version:   stonesoup 1.9.1 (PyPI), GaussianMixtureReducer, Bearing
+# Version:   stonesoup 1.9.1 (PyPI), GaussianMixtureReducer, Bearing; what it needs for plots is left out
 # Source:    run below; merge_components' merged_mean, beside np.average of StateVectors, which asks Bearing.average
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
-"$folder/venv/bin/pip" install -q stonesoup==1.9.1 numpy==2.4.6 \
+"$folder/venv/bin/pip" install -q --no-deps stonesoup==1.9.1 ordered-set==4.1.0 scipy==1.17.1 numpy==2.4.6 \
   2> "$folder/pip.log" || { cat "$folder/pip.log"; exit 1; }
 "$folder/venv/bin/python" - <<'PYTHON'
 import numpy as np
