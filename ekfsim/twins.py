@@ -17,7 +17,7 @@ import importlib.util
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
-from typing import Literal, ParamSpec, TypeVar, cast, get_args
+from typing import Any, Literal, ParamSpec, TypeVar, cast, get_args
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -99,15 +99,23 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """A function that Numba compiles at its first call, and keeps for later processes where there
     is a folder to keep it in.
 
-    What is kept is thrown away when the function's own file changes, and only then: what another
-    file fixes, a tolerance say, comes as an argument.
+    Numba throws away what it kept when the function's own file changes, and only then, though the
+    functions that it calls are compiled into it. So each state of all these files has its folder.
     """
-    from numba import njit  # the extra `fast`: modules that are made by it alone come here
+    import numba  # the extra `fast`: modules made by it alone come here
 
+    from ekfsim.kept import folder_for
+
+    config: Any = numba.config  # its entries are made as it is imported
+    told = config.CACHE_DIR  # by whoever runs this process, for all of Numba; mostly ""
+    folder = folder_for(told)
+    if folder is None:
+        return cast("Callable[P, R]", numba.njit(nogil=True, error_model="numpy")(function))
+    config.CACHE_DIR = str(folder)  # read as a function is marked, at no other time
     try:
-        made = njit(cache=True, nogil=True, error_model="numpy")(function)
-    except RuntimeError:  # no folder that can be written
-        made = njit(nogil=True, error_model="numpy")(function)
+        made = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    finally:
+        config.CACHE_DIR = told
     return cast("Callable[P, R]", made)
 
 

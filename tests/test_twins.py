@@ -1,6 +1,8 @@
+from pathlib import Path
+
 import pytest
 
-from ekfsim import twins
+from ekfsim import kept, twins
 from ekfsim.fast import table
 from ekfsim.fast.table import Twin
 
@@ -56,8 +58,32 @@ def test_ways_that_are_none_are_refused(monkeypatch):
 
 
 @pytest.mark.skipif(not twins.compiles(), reason="the extra `fast` is not installed")
-def test_where_no_folder_can_be_written_a_function_is_compiled_anew(monkeypatch):
-    from numba.core import caching
-
-    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
+def test_where_no_folder_can_be_written_a_function_is_compiled_anew(monkeypatch, tmp_path):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(kept, "PACKAGE", tmp_path / "file")
+    monkeypatch.setattr(kept, "USERS", tmp_path / "file")
+    kept.folder_for.cache_clear()
     assert twins.compiled(lambda x: x + 1)(1) == 2
+    kept.folder_for.cache_clear()
+
+
+@pytest.mark.skipif(not twins.compiles(), reason="the extra `fast` is not installed")
+def test_what_is_compiled_is_kept_by_the_state_of_all_files_that_are_compiled():
+    from numba import config
+
+    from ekfsim.fast.compiled.carlson import carlson
+
+    before = config.CACHE_DIR
+    assert Path(carlson.stats.cache_path).parent.name == f"ekfsim-{kept.state_of(kept.PACKAGE)}"
+    assert before == config.CACHE_DIR
+
+
+def test_the_state_is_another_where_any_file_that_is_compiled_differs(tmp_path):
+    for name in ("fast/compiled/steps.py", "fast/compiled/carlson.py", "fast/table.py"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("a = 1\n")
+    first = kept.state_of(tmp_path)
+    (tmp_path / "fast/table.py").write_text("a = 2\n")
+    assert kept.state_of(tmp_path) == first
+    (tmp_path / "fast/compiled/carlson.py").write_text("a = 2\n")
+    assert kept.state_of(tmp_path) != first
