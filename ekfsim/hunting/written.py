@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ekfsim.errors import UsageError
-from ekfsim.files.results.writing import refuse_existing, whole_text
+from ekfsim.files.results.writing import refuse_unwritable, whole_text
 from ekfsim.files.scene_text import body
 from ekfsim.files.scenes.settings import kind_of, setting
 from ekfsim.hunting.worlds import plain_of, text_of
@@ -22,12 +22,12 @@ def world_beside(path: Path) -> Path:
     return path.with_name(f"{path.stem}-world{path.suffix}")
 
 
-def refuse_unwritable(path: Path, force: bool) -> None:
-    """Raises UsageError where either file may not be written."""
+def refuse_place(path: Path, force: bool) -> None:
+    """Raises UsageError or RunError where either file cannot be written."""
     if path.suffix.lower() not in (".yaml", ".yml"):
         raise UsageError(f"{path}: a commands file is written; name it e.g. hunt.yaml")
     for file in (path, world_beside(path)):
-        refuse_existing(file, force)
+        refuse_unwritable(file, force)
 
 
 @dataclass(frozen=True)

@@ -57,6 +57,7 @@ def test_the_smallest_wrong_number_keeps_its_word(tmp_path, monkeypatch):
         (["room", "--goal", "apart"], "name two filters, e.g. --for ekf,iekf"),
         (["room", "--for", "ekf,ukf", "--goal", "lost"], "apart and numbers take two filters"),
         (["room", "-o", "a.txt"], "a.txt: a commands file is written; name it e.g. hunt"),
+        (["room", "-o", "/proc/no/hunt.yaml"], "/proc/no/hunt.yaml: cannot be written: No such"),
         (["room", "--change", "told"], "--change told: name COMMANDS that are to be lost"),
         (["room", "--for", "ekf,pf", "--goal", "numbers"], "pf: does not go on from a mean"),
         (["room", "--for", "ekf,ekf-smoothed"], "--for ekf,ekf-smoothed: both believe the same"),

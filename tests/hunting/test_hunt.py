@@ -3,6 +3,7 @@
 import itertools
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from ekfsim.hunting.shrinking import shrunk
 from ekfsim.hunting.worlds import without
 from ekfsim.localization import play
 from ekfsim.study.results import Share
+from ekfsim.views.hunting.words import conclude, description
 
 ROOM = load_scene({"world": "furnished-room", "commands": []})
 
@@ -131,6 +133,21 @@ def test_the_clock_ends_a_round_that_is_long(monkeypatch):
     assert next(seconds) == 6
     (low, high), lost = found.scene.expect.lost, found.result.last.lost
     assert low <= lost.low < lost.high <= high  # rounded outwards
+
+
+def test_what_was_hunted_for_is_told_first_and_not_every_run_that_is_lost():
+    """Rank takes a hair beside a line for a loss: nearly every run, and few of them well off."""
+    half_turn = (Move(0.0, -math.pi), Move(0.5, 0.0))
+    scene = replace(ROOM, commands=half_turn)
+    asked = Asked(scene, off=0.1, lists=1, runs=64, seconds=0.0)
+    found = hunt(asked, no_ear, no_ear)
+    well_off = Lost(0.1)(found.scene, 0, 64)
+    assert found.scene.commands == half_turn
+    assert 0 < well_off.share < 0.2 < 0.9 < Lost()(found.scene, 0, 64).share
+    headline, *_ = conclude(found, [Path("a.yaml")], "ekfsim hunt", None).splitlines()
+    told = f"ekf is lost and more than 0.1 m off in {100 * well_off.share:.3g} % of runs ("
+    assert told in headline
+    assert told in description(found)
 
 
 def test_from_nothing_half_of_the_runs_are_lost_though_all_is_true():

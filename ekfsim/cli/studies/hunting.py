@@ -120,11 +120,11 @@ def hunt(place: str, out: Path, force: bool, fast: bool, **asked: Any) -> None:
     Ctrl-C ends the search, and what was found until then is written.
     """
     from ekfsim.hunting.hunt import hunt as hunted_by
-    from ekfsim.hunting.written import Told, refuse_unwritable, write
+    from ekfsim.hunting.written import Told, refuse_place, write
     from ekfsim.views.hunting.words import conclude, description, interrupted
 
     part_with()
-    refuse_unwritable(out, force)
+    refuse_place(out, force)
     task = _asked(place, out, fast, **asked)
     if task.goal == "numbers":
         return _expose(task, out, force)

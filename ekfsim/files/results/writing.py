@@ -36,6 +36,12 @@ def refuse_existing(path: Path, force: bool) -> None:
             )
 
 
+def refuse_unwritable(path: Path, force: bool) -> None:
+    """Raise what `whole_file` would, before anything takes long: one is begun, and vanishes."""
+    with _beside_for_now(path, force):
+        pass
+
+
 @contextmanager
 def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     """The path of a temporary file that becomes `path` when the block ends well,
@@ -122,8 +128,8 @@ def _exchange(place: Path, new: Path, older: Path) -> None:
 
 
 @contextmanager
-def _beside(path: Path, force: bool) -> Iterator[Path]:
-    """The temporary file of `whole_file`, whatever is told of the block."""
+def _beside_for_now(path: Path, force: bool) -> Iterator[Path]:
+    """A temporary file beside `path`, which vanishes in any case; what is special is itself."""
     refuse_existing(path, force)
     if special(path):
         yield path
@@ -132,6 +138,15 @@ def _beside(path: Path, force: bool) -> Iterator[Path]:
         with told(path):
             beside = stack.enter_context(temporary_file(path))
         yield beside
+
+
+@contextmanager
+def _beside(path: Path, force: bool) -> Iterator[Path]:
+    """The temporary file of `whole_file`, whatever is told of the block."""
+    with _beside_for_now(path, force) as beside:
+        yield beside
+        if beside == path:
+            return
         with told(path):
             os.chmod(beside, 0o666 & ~_umask())  # a temporary file is its owner's alone
             refuse_existing(path, force)  # it may have come meanwhile

@@ -5,24 +5,15 @@ found.
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Literal
 
 from ekfsim.commands import Command, Kidnap, Move, Repeat, Say, Sense
 from ekfsim.filters.place import label
-from ekfsim.hunting.goals import Name
 from ekfsim.hunting.hunt import Hunted
 from ekfsim.printable import in_a_line
 from ekfsim.study.results import Result, Share
 from ekfsim.views.words.text_table import folded
 from ekfsim.world import Faults, World
 
-GOALS: Mapping[
-    Name | Literal["numbers"], str
-] = {  # what is counted, of an estimate that is off by more than `off`
-    "lost": "Lost and well off",
-    "silent": "Lost and well off, with a ΣNIS inside its band",
-    "apart": "Lost and well off more often than under the other filter, on the same draws",
-}
 UNITS: Mapping[str, str] = {"start.x": " m", "start.y": " m", "start.theta": "°"}  # of told numbers
 
 
@@ -42,18 +33,15 @@ def conclude(hunted: Hunted, files: Sequence[Path], repeated: str, width: int | 
 
 def interrupted(hunted: Hunted, file: Path) -> str:
     """What is kept of a hunt that was interrupted, in a line."""
-    lost = _share(hunted.result.last.lost)
     looked = hunted.search.looked_at
     best = f"the best of {looked} lists" if looked else "the smallest change so far"
-    return f"{best} is kept in {file}: {label(hunted.scene.filter)} is lost in {lost}"
+    return f"{best} is kept in {file}: {_done(hunted)}"
 
 
 def description(hunted: Hunted) -> str:
     """What the file says of itself."""
-    name = label(hunted.scene.filter)
-    return f"Found by a hunt: {name}, {_share(hunted.result.last.lost)} lost at the end.\n" + (
-        "\n".join([*_truth(hunted.scene.world), *_beside(hunted)])
-    )
+    found = f"Found by a hunt: {_done(hunted)}."
+    return "\n".join([found, *_truth(hunted.scene.world), *_beside(hunted)])
 
 
 def told(command: Command) -> str:
@@ -77,18 +65,33 @@ def told(command: Command) -> str:
 
 
 def _headline(hunted: Hunted) -> str:
-    n, lost = len(hunted.scene.commands), hunted.result.last.lost
+    n = len(hunted.scene.commands)
     what = f"{n} command{'' if n == 1 else 's'} in {hunted.scene.world.name}"
-    return f"{what}: {label(hunted.scene.filter)} is lost in {_share(lost)}"
+    return f"{what}: {_done(hunted)}"
+
+
+def _done(hunted: Hunted) -> str:
+    """What was wanted, and in how many runs it is so: of runs that are lost and not well off there
+    may be many more.
+    """
+    asked = hunted.asked
+    lost = f"{label(hunted.scene.filter)} is lost and more than {asked.off:g} m off"
+    share = _share(Share(*hunted.fresh))
+    match asked.goal:
+        case "silent":
+            return f"{lost}, with a ΣNIS inside its band, in {share}"
+        case "apart":
+            return f"{lost} more often than {label(str(asked.against))}, by {share}"
+        case _:
+            return f"{lost} in {share}"
 
 
 def _sentences(hunted: Hunted, repeated: str) -> Iterator[str]:
     yield from _truth(hunted.scene.world)
     yield from _beside(hunted)
     yield (
-        f"{GOALS[hunted.asked.goal]}: {_share(Share(*hunted.fresh))}, measured with seed "
-        f"{hunted.scene.seed}, which the search has not seen; on its own draws, seed "
-        f"{hunted.asked.scene.seed}, {_percent(hunted.count.share)}."
+        f"Measured with seed {hunted.scene.seed}, which the search has not seen; on its own draws, "
+        f"seed {hunted.asked.scene.seed}, it was {_percent(hunted.count.share)}."
     )
     yield from _needed(hunted)
     if hunted.search.looked_at:
@@ -135,9 +138,11 @@ def _untrue(world: World) -> Iterator[str]:
 
 
 def _beside(hunted: Hunted) -> Iterator[str]:
+    every = _share(hunted.result.last.lost)
+    yield f"By their NEES alone, however near the truth, {every} are lost: --expect counts these."
     if hunted.against is not None:
         name, lost = label(hunted.against.case.scene.filter), hunted.against.last.lost
-        yield f"On the same draws {name} is lost in {_share(lost)}."
+        yield f"On the same draws {name} loses {_share(lost)}."
     if (nis := _silence(hunted.result)) is not None:
         yield nis
 
