@@ -6,7 +6,7 @@ import numpy as np
 
 from ekfsim.diagnostics.nees import RANK, ROUNDING
 from ekfsim.filters.arithmetic.algebra import symmetric, wrapped
-from ekfsim.filters.belief import Particles
+from ekfsim.filters.belief import Mixture, Particles
 from ekfsim.geometry import Array
 from ekfsim.records import Control, Step
 
@@ -33,21 +33,47 @@ def slope(step: Step) -> Array:
     """F : (…, n, n) with P Fᵀ the covariance of the states before and after a motion.
 
     Every filter tells it: the sigma points' is their statistical linearisation, P_yx P⁺. A crowd
-    that was moved knows the covariance itself, and F is what it makes of that.
+    that was moved, or several hypotheses, each by a slope of its own, know the covariance itself,
+    and F is what it makes of that.
     """
     assert step.prediction is not None
     before, after = step.prior, step.posterior
     F = step.prediction.F
-    if not isinstance(before, Particles) or not isinstance(after, Particles):
-        return F
-    if before.states.shape != after.states.shape:
-        return F
-    headings = step.layout.headings
+    if isinstance(before, Particles) and isinstance(after, Particles):
+        if before.states.shape != after.states.shape:
+            return F
+        return _regression(before.covariance, _of_crowd(before, after, step.layout.headings))
+    if isinstance(before, Mixture) and isinstance(after, Mixture) and before.weights.shape[-1] > 1:
+        several = before.weights[..., :1, None] < 1  # the heaviest comes first, and F is its own
+        made = _regression(before.covariance, _of_mixture(before, after, step))
+        return np.where(several, made, F)
+    return F
+
+
+def _of_crowd(before: Particles, after: Particles, headings: tuple[int, ...]) -> Array:
+    """P_xy : (…, n, n) of the particles before and after a motion."""
     δ = wrapped(before.states - before.mean[..., None, :], headings)
     δ_after = wrapped(after.states - after.mean[..., None, :], headings)
-    cross = δ.mT @ (before.weights[..., None] * δ_after)
-    regression: Array = (inverse_on_range(before.covariance) @ cross).mT
-    return regression
+    return δ.mT @ (before.weights[..., None] * δ_after)
+
+
+def _of_mixture(before: Mixture, after: Mixture, step: Step) -> Array:
+    """P_xy = Σ wᵢ (Pᵢ Fᵢᵀ + (xᵢ − x)(xᵢ⁻ − x⁻)ᵀ) : (…, n, n)"""
+    given, headings = step.entry.given, step.layout.headings
+    assert isinstance(given, Control)
+    F = given.motion.F(before.means, given.u[..., None, :])
+    w = before.weights[..., None]
+    δ = wrapped(before.means - before.mean[..., None, :], headings)
+    δ_after = wrapped(after.means - after.mean[..., None, :], headings)
+    each = np.sum(w[..., None] * (before.covariances @ F.mT), axis=-3)
+    cross: Array = each + δ.mT @ (w * δ_after)
+    return cross
+
+
+def _regression(P: Array, cross: Array) -> Array:
+    """F = P_yx P⁺ : (…, n, n)"""
+    F: Array = (inverse_on_range(P) @ cross).mT
+    return F
 
 
 def noise(step: Step, F: Array) -> Array:
