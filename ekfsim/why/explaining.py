@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ekfsim.filters.tuning import reads
 from ekfsim.records import Step
 from ekfsim.scene import Scene
 from ekfsim.why.changes.beams import AMBIGUOUS
@@ -24,7 +25,12 @@ from ekfsim.why.trying.trials import Trials
 BUDGET = 400  # replays of one run
 # of a driven robot, whose run has thousands of steps
 STEPS_REPLAYED = 3_000_000  # of all replays of one run
+STEPS_OBEYED = 600_000  # the same of the classroom's robot, whose beams take longer
 LEAST_BUDGET = 40
+LEAST_OF_CROWDS = 10  # the same of particles
+# steps of the ekf that take as long as one of another filter, and how many particles do
+PRICES = {"iekf": 3, "ukf": 3, "ukf-augmented": 3, "mhekf": 3}
+PARTICLES_OF_ONE = 25
 STEPS_OF_RUNS = 200_000  # of all of many runs, with each change
 STEPS_OF_OBEYED = 2_000_000  # the same of the classroom's robot
 FEWEST_DRIVEN = 20  # runs; of fewer nothing is to be learnt, and this one speaks for itself
@@ -34,22 +40,21 @@ FEWEST = 100  # runs that it is tried in all the same
 
 
 def explain(
-    scene: Scene, runs: int = 1000, budget: int = BUDGET, heard: Heard | None = None
+    scene: Scene, runs: int = 1000, budget: int | None = None, heard: Heard | None = None
 ) -> Explanation:
     """Why the scene's run ended as it did.
 
     runs : how many stand behind the shares; budget : how many times one run is played again at
-    most; heard : is told how many of these are done, and the budget, then how far many runs have
-    come. Ctrl-C ends it with what is known by then, once the run itself is.
+    most; where nobody says it, what is affordable; heard : is told how many of these are done, and
+    the budget, then how far many runs have come. Ctrl-C ends it with what is known by then, once
+    the run itself is.
     """
     if scene.log is not None:
         from ekfsim.why.recorded import explain_log  # of no use to a simulation
 
-        steps_at_once = max(len(scene.log.entries), 1)
-        limit = max(LEAST_BUDGET, STEPS_REPLAYED // steps_at_once)
-        return explain_log(scene, min(budget, limit), heard)
+        return explain_log(scene, budget or affordable(scene, len(scene.log.entries)), heard)
     steps = tuple(Trials.first(scene))
-    budget = min(budget, max(LEAST_BUDGET, STEPS_REPLAYED // len(steps)))
+    budget = budget or affordable(scene, len(steps))
     if scene.commanded:
         runs = min(runs, max(FEWEST, STEPS_OF_OBEYED // len(steps)))
     else:
@@ -87,6 +92,17 @@ def explain(
         cured,
         stopped,
     )
+
+
+def affordable(scene: Scene, steps: int) -> int:
+    """How many replays of a run of so many steps are asked at most: fewer of a filter whose step
+    takes longer, so that what is tried ends.
+    """
+    in_all = STEPS_OBEYED if scene.commanded else STEPS_REPLAYED
+    crowd = scene.tuning.crowd(scene.filter) if reads(scene.filter, "particles") else 0
+    price = max(PRICES.get(scene.filter, 1), crowd // PARTICLES_OF_ONE)
+    least = LEAST_OF_CROWDS if crowd else LEAST_BUDGET
+    return min(BUDGET, max(least, in_all // (price * max(steps, 1))))
 
 
 class Named(NamedTuple):

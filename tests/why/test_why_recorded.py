@@ -15,6 +15,7 @@ from ekfsim.systems.drives import Square
 from ekfsim.views.why.answer import answer
 from ekfsim.why import Change, Mechanism, explain
 from ekfsim.why.changes.recorded import Louder, later, louder, louder_motion
+from ekfsim.why.explaining import affordable
 from ekfsim.why.trying.logs import rows_of
 from ekfsim.why.trying.replaying import ending, replayed
 
@@ -99,6 +100,26 @@ def test_the_budget_is_kept():
     found = explain(recorded(CASES[Mechanism.SENSOR_OVERTRUSTED]), budget=50)
     assert found.replays <= 50
     assert found.replays == len(found.tried)
+
+
+@pytest.mark.parametrize("filter_name", ["ekf", "iekf", "pf"])
+def test_a_log_of_a_slow_filter_is_played_again_less_often(filter_name):
+    scene = replace(recorded(landmarks), filter=filter_name)
+    replays = affordable(scene, 10_000)
+    assert replays == {"ekf": 300, "iekf": 100, "pf": 10}[filter_name]
+    assert affordable(scene, 10) == 400
+    fewer = replace(scene, tuning=replace(scene.tuning, particles=100))
+    assert affordable(fewer, 10_000) == {"ekf": 300, "iekf": 100, "pf": 75}[filter_name]
+
+
+def test_how_far_replays_have_come_is_told_while_they_are_under_way():
+    heard = []
+    scene = recorded(CASES[Mechanism.SENSOR_OVERTRUSTED])
+    found = explain(scene, budget=12, heard=lambda *one: heard.append(one))
+    done = [one for one, of, _ in heard if of == 12]
+    assert done == sorted(done)
+    assert done[-1] == found.replays <= 12
+    assert set(done) >= set(range(1, 9))  # of those side by side, too
 
 
 def test_rows_side_by_side_are_what_each_is_alone():

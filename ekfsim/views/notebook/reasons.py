@@ -20,4 +20,4 @@ def why(scene: Scene | str | Path, runs: int = 1000, budget: int | None = None) 
         raise UsageError("why: one filter is asked; name one")
     if runs < 1 or (budget is not None and budget < 1):
         raise UsageError(f"why: runs {runs}, budget {budget}: each is 1 at least")
-    return explain(one, runs) if budget is None else explain(one, runs, budget)
+    return explain(one, runs, budget)

@@ -1,7 +1,7 @@
 """One recorded log, filtered again with one change after another, within a budget."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from ekfsim.diagnostics.verdict import Evidence
@@ -14,6 +14,7 @@ from ekfsim.why.trying.minimal import SpentError
 from ekfsim.why.trying.replaying import cured, replayed
 
 MOST_ROWS = 64  # at once
+TOLD_IN = 100  # parts of replays, how far they have come
 
 
 class Guess(NamedTuple):
@@ -47,7 +48,7 @@ class LogTrials:
         self.was: Outcome = rows.outcome(0)
         self.lost_from = int(rows.lost_from[0]) if rows.lost_from[0] >= 0 else None
         self.likelihood, self.dof = float(rows.likelihood[0]), int(rows.dof[0])
-        self.replays = 0
+        self.replays = self._before = 0  # _before: those that are not under way
         self.guesses: list[Guess] = []
         self.surprising: dict[int, str] = {}  # the target of each reading that is, by its index
 
@@ -60,7 +61,7 @@ class LogTrials:
         for first in range(0, min(len(changes), fit), MOST_ROWS):
             some = changes[first : min(first + MOST_ROWS, fit)]
             self._count(len(some))
-            rows = rows_of(self.scene, self.entries, some)
+            rows = rows_of(self.scene, self.entries, some, self._along)
             found += [
                 self._guess(rows, row, change, *of[first + row]) for row, change in enumerate(some)
             ]
@@ -72,7 +73,7 @@ class LogTrials:
     def alone(self, change: Change, family: Family | None = None, value: float = 0.0) -> Guess:
         """Try one change by itself."""
         self._count(1)
-        rows = gathered(replayed(self.scene, (change,)), 1)
+        rows = gathered(self._along(replayed(self.scene, (change,))), 1)
         found = self._guess(rows, 0, change, family, value)
         self.guesses.append(found)
         return found
@@ -80,7 +81,8 @@ class LogTrials:
     def cures(self, changes: Sequence[Change]) -> bool:
         """Whether changes of single entries cure together."""
         self._count(1)
-        rows = rows_of(self.scene, self.entries, [together("all of these", tuple(changes))])
+        one = together("all of these", tuple(changes))
+        rows = rows_of(self.scene, self.entries, [one], self._along)
         return cured(self.was, rows.outcome(0))
 
     def _guess(
@@ -98,7 +100,16 @@ class LogTrials:
     def _count(self, replays: int) -> None:
         if self.replays + replays > self.budget:
             raise SpentError
-        self.replays += replays
+        self._before, self.replays = self.replays, self.replays + replays
+
+    def _along(self, steps: Iterable[Step]) -> Iterator[Step]:
+        """The steps of some replays, and how far they have come."""
+        often = max(len(self.entries) // TOLD_IN, 1)
+        for number, step in enumerate(steps):
+            if self._heard is not None and number % often == 0:
+                now = (self.replays - self._before) * number // len(self.entries)
+                self._heard(self._before + now, self.budget, REPLAYS)
+            yield step
         if self._heard is not None:
             self._heard(self.replays, self.budget, REPLAYS)
 

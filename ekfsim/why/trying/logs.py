@@ -1,6 +1,6 @@
 """One log filtered many times side by side, with another change in each row."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -39,8 +39,13 @@ class Rows(NamedTuple):
         return "over-cautious" if self.nis[row] < low else "consistent"
 
 
-def rows_of(scene: Scene, entries: Sequence[Entry], changes: Sequence[Change]) -> Rows:
-    """The log with each of some changes of its entries, side by side."""
+def rows_of(
+    scene: Scene,
+    entries: Sequence[Entry],
+    changes: Sequence[Change],
+    along: Callable[[Iterable[Step]], Iterable[Step]] = iter,
+) -> Rows:
+    """The log with each of some changes of its entries, side by side. along : sees every step"""
     assert scene.log is not None
     N = len(changes)
     x, P = scene.log.first
@@ -49,7 +54,7 @@ def rows_of(scene: Scene, entries: Sequence[Entry], changes: Sequence[Change]) -
     steps = localize(
         abreast(entries, changes), filter_of(scene, runs), belief, scene.guard, scene.world.layout
     )
-    return gathered(steps, N)
+    return gathered(along(steps), N)
 
 
 def gathered(steps: Iterable[Step], N: int) -> Rows:
