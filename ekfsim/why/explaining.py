@@ -25,7 +25,7 @@ from ekfsim.why.trying.trials import Trials
 BUDGET = 400  # replays of one run
 # of a driven robot, whose run has thousands of steps
 STEPS_REPLAYED = 3_000_000  # of all replays of one run
-STEPS_OBEYED = 600_000  # the same of the classroom's robot, whose beams take longer
+STEPS_OBEYED = 300_000  # the same of the classroom's robot, whose beams take longer
 LEAST_BUDGET = 40
 LEAST_OF_CROWDS = 10  # the same of particles
 # steps of the ekf that take as long as one of another filter, and how many particles do
