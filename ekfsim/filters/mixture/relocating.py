@@ -127,11 +127,14 @@ def sought(heard: list[Heard], places: Array, headings: tuple[int, ...]) -> Foun
 
 
 def _score(sensor: Sensor, x: Array, z: Array) -> Array:
-    """How well readings fit places that are about GRAIN from where they should be : (r, p)"""
+    """How well readings fit places that are about GRAIN from where they should be : (r, p); what is
+    no reading fits all alike.
+    """
     h = sensor.h(x)
     ν = sensor.residual(z, h)
     square = np.sum(np.square(ν / GRAIN), axis=-1)
-    return -np.log1p(np.where(np.isnan(square), np.inf, square))  # far off is far off
+    square = np.where(np.isnan(square), np.inf, square)  # where no wall is met: far off
+    return -np.log1p(np.where(np.isnan(z).any(axis=-1), 0.0, square))
 
 
 def _sharpened(heard: list[Heard], start: Array, headings: tuple[int, ...]) -> Array:

@@ -77,15 +77,17 @@ def test_a_span_is_the_density_of_anything_between():
     assert math.isnan(span(np.full((3, 1), math.nan)))
 
 
-def test_a_place_is_found_by_what_is_read_there():
-    """Eight exact beams from two places of a room without symmetry."""
+@pytest.mark.parametrize("silent", [(), (2,), (0, 1)])
+def test_a_place_is_found_by_what_is_read_there(silent):
+    """Exact beams from two places of a room without symmetry; one without an echo tells nothing."""
     truth, motion, u = np.array([2.1, 3.4, 0.7]), MoveTurn(0.01, 0.01), np.array([0.3, 0.4])
     memory, x = Memory.empty((1,)), truth
     for k in range(8):
         if k == 4:
             memory, x = memory.moved(motion, u[None]), motion.f(x, u)
         laser = Laser(L_ROOM, k * math.pi / 4 + 0.1 * (k > 3), 0.01)
-        memory = memory.read(laser, laser.h(x)[None], np.array([9.0]), np.array([True]))
+        z = np.where(k in silent, math.nan, laser.h(x)[None])
+        memory = memory.read(laser, z, np.array([9.0]), np.array([True]))
     random = np.random.default_rng(1)
     places = random.uniform([0, 0, -math.pi], [7, 5, math.pi], (2048, 3))
     places = places[(places[:, 0] < 3) | (places[:, 1] < 3)]
