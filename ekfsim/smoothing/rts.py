@@ -26,7 +26,6 @@ class Kept:
 
     step: Step  # its beliefs with a mean and a covariance alone
     F: Array | None = None  # (…, n, n) of a motion
-    noise: Array | None = None  # (…, n, n)
 
 
 def smooth(steps: Iterable[Step]) -> list[Step]:
@@ -62,23 +61,24 @@ def smoothed(steps: Iterable[Step]) -> Iterator[Step]:
 
 def of_step(step: Step) -> Kept:
     """What is kept of a step until the run is over."""
-    plain = replace(step, prior=Gaussian(*step.prior), posterior=Gaussian(*step.posterior))
-    if step.prediction is None:
-        return Kept(plain)
-    F = slope(step)
-    return Kept(plain, F, noise(step, F))
+    prior, posterior = Gaussian(*step.prior), Gaussian(*step.posterior)
+    plain = replace(step, prior=prior, posterior=posterior, nees=None)
+    return Kept(plain, None if step.prediction is None else slope(step))
 
 
-def _forth(kept: Sequence[Kept]) -> Iterator[Step]:
-    """The smoothed steps, in the order of the run."""
+def _forth(kept: list[Kept]) -> Iterator[Step]:
+    """The smoothed steps, in the order of the run. Of many runs they take the memory, so that each
+    step takes the place of what was kept of it: nothing is left in the list.
+    """
     if not kept:
         return iter(())
     last = kept[-1].step.posterior
     runs = max(last.mean.size // last.mean.shape[-1], 1)
     portion, made = max(TOGETHER // runs, 1), list[list[Step]]()
     after = Gaussian(*last)
-    for end in range(len(kept), 0, -portion):
-        some = kept[max(end - portion, 0) : end]
+    while kept:
+        some = kept[-portion:]
+        del kept[-portion:]
         beliefs = _back(some, after)
         made.append(_revised(some, beliefs))
         after = beliefs[0]
@@ -101,9 +101,9 @@ def _back(kept: Sequence[Kept], after: Gaussian) -> list[Gaussian]:
 def _passings(kept: Sequence[Kept]) -> list[Passing]:
     """Those of the motions among some steps, the last of them first."""
     moved = [
-        (one.step.prior.covariance, one.step.posterior.covariance, one.F, one.noise)
+        (one.step.prior.covariance, one.step.posterior.covariance, one.F, noise(one.step, one.F))
         for one in reversed(kept)
-        if one.F is not None and one.noise is not None
+        if one.F is not None
     ]
     if not moved:
         return []

@@ -30,8 +30,8 @@ from ekfsim.study.tally import AtSteps, OfRuns, Tally, dtype_of
 from ekfsim.twins import Way, taken, taking, twinned
 
 MOST_PARTICLES = 2_000_000  # of all runs that are watched at once: they take some 400 bytes each
-# of all steps and runs that are smoothed at once: entries of a covariance, at some 80 bytes each
-MOST_KEPT = 4_000_000
+# of all steps and runs that are smoothed at once: entries of a covariance, at some 40 bytes each
+MOST_KEPT = 16_000_000
 MOST_STEPS = 1000  # of a longer run so many are told of, evenly spaced, and the last
 
 
