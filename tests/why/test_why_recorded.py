@@ -9,11 +9,12 @@ import systems_scenes
 from scipy.stats import multivariate_normal
 from wrong_drives import faulty, of_sensor, slower, told_robot, told_sensor, told_start
 
-from ekfsim.localization import entries_of
+from ekfsim.localization import entries_of, play
 from ekfsim.records import Log, Reading
 from ekfsim.systems.drives import Square
 from ekfsim.views.why.answer import answer
 from ekfsim.why import Change, Mechanism, explain
+from ekfsim.why.changes.guesses import families
 from ekfsim.why.changes.recorded import Louder, later, louder, louder_motion
 from ekfsim.why.explaining import affordable
 from ekfsim.why.trying.logs import rows_of
@@ -81,6 +82,21 @@ def test_a_landmark_that_is_told_elsewhere_is_named():
     found = explain(moved(recorded(landmarks), "landmark 1", 1.2), budget=BUDGET)
     assert found.mechanism is Mechanism.MISPLACED_LANDMARK
     assert [one.name for one in found.cure] == ["the landmark 1"]
+
+
+def test_biases_of_many_targets_are_told_by_their_span():
+    steps = list(play(recorded(landmarks)))
+    of_target = {}
+    for step in steps:
+        if step.correction is not None and isinstance(step.entry.given, Reading):
+            name = step.entry.given.name
+            of_target.setdefault(name, []).append(step.correction.innovation)
+    means = [np.mean(each, axis=0) for each in of_target.values() if len(each) >= 10]
+    (family,) = [one for one in families(steps, None) if "each target" in one.make(1.0).name]
+    for often in (1.0, 2.0, 4.0):
+        least, most = often * np.min(means, axis=0), often * np.max(means, axis=0)
+        spans = [f"{low:+.3g} to {high:+.3g}" for low, high in zip(least, most, strict=True)]
+        assert ", ".join(spans) in family.make(often).name
 
 
 def test_an_honest_log_is_consistent():

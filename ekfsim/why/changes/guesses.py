@@ -92,7 +92,7 @@ def _biases(steps: Sequence[Step]) -> Iterator[Family]:
         yield _bias(sensor, dict.fromkeys(targets, mean))
         own = {t: np.mean(some, axis=0) for t, some in targets.items() if len(some) >= ENOUGH}
         if len(targets) > 1 and own:
-            yield _bias(f"each {sensor} by itself", own)
+            yield _bias(f"{sensor}, of each target its own,", own)
             for target, one in own.items():
                 yield _bias(target, {target: one})
 
@@ -100,9 +100,11 @@ def _biases(steps: Sequence[Step]) -> Iterator[Family]:
 def _bias(name: str, means: Mapping[str, Array]) -> Family:
     def make(often: float) -> Change:
         biases = {target: often * mean for target, mean in means.items()}
-        (first, *others) = biases.values()
-        alike = all((other == first).all() for other in others)
-        told = ", ".join(f"{value:+.3g}" for value in first.tolist()) if alike else "each its own"
+        least, most = np.min(list(biases.values()), axis=0), np.max(list(biases.values()), axis=0)
+        told = ", ".join(
+            f"{low:+.3g}" if low == high else f"{low:+.3g} to {high:+.3g}"
+            for low, high in zip(least.tolist(), most.tolist(), strict=True)
+        )
         return unbiased(name, biases, told)
 
     return Family(make, OFTEN, lambda often: Mechanism.SENSOR_BIAS, by_factor=True)
