@@ -74,8 +74,9 @@ def test_runs_that_are_kept_or_of_particles_are_watched_in_portions() -> None:
     assert at_once(many, 5, 1000)[:2] == [(5, 200), (205, 200)]
     drive = load_scene("gnss").with_(filter="ekf-smoothed")
     portions = at_once(drive, 0, 1024)
-    assert len(portions) > 10
-    assert sum(runs for _, runs in portions) == 1024
+    assert portions == [(first, 128) for first in range(0, 1024, 128)]
+    kept = 128 * 7801 * 4**2  # entries of covariances of so many runs, 7800 motions and the start
+    assert kept <= 16_000_000 < kept * 129 / 128
 
 
 def test_shares_count_what_is_judged() -> None:
