@@ -1,6 +1,6 @@
 """What a filter asks of a motion and of a sensor. All arrays carry leading axes (…)."""
 
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, TypeVar, cast, runtime_checkable
 
 from ekfsim.geometry import Array, Integers
 from ekfsim.twins import twinned
@@ -92,6 +92,9 @@ class Sensor(Protocol):
         return z - h
 
 
+Model = TypeVar("Model", bound=Motion | Sensor)
+
+
 @runtime_checkable
 class OfRuns(Protocol):
     """A sensor that holds something of each of N runs side by side."""
@@ -100,10 +103,10 @@ class OfRuns(Protocol):
         """The sensor of one of them; of some of them, where the index is an array."""
 
 
-def of_rows(sensor: Sensor, rows: Integers) -> Sensor:
-    """The sensor of some of N runs. rows : (m,)"""
-    of_run = getattr(sensor, "of_run", None)  # a protocol would take far longer to be asked
-    return sensor if of_run is None else of_run((rows,))
+def of_rows(model: Model, rows: Integers) -> Model:
+    """The sensor, or the motion, of some of N runs. rows : (m,)"""
+    of_run = getattr(model, "of_run", None)  # a protocol would take far longer to be asked
+    return model if of_run is None else cast(Model, of_run((rows,)))
 
 
 @runtime_checkable

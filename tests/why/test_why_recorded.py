@@ -10,12 +10,20 @@ from scipy.stats import multivariate_normal
 from wrong_drives import faulty, of_sensor, slower, told_robot, told_sensor, told_start
 
 from ekfsim.localization import entries_of, play
-from ekfsim.records import Log, Reading
+from ekfsim.models.protocols import of_rows
+from ekfsim.records import Control, Log, Reading
 from ekfsim.systems.drives import Square
 from ekfsim.views.why.answer import answer
 from ekfsim.why import Change, Mechanism, explain
 from ekfsim.why.changes.guesses import families
-from ekfsim.why.changes.recorded import Louder, later, louder, louder_motion
+from ekfsim.why.changes.recorded import (
+    Louder,
+    LouderMotion,
+    later,
+    louder,
+    louder_all,
+    louder_motion,
+)
 from ekfsim.why.explaining import affordable
 from ekfsim.why.trying.logs import rows_of
 from ekfsim.why.trying.replaying import ending, replayed
@@ -155,6 +163,34 @@ def test_rows_side_by_side_are_what_each_is_alone():
         assert rows.likelihood[row] == pytest.approx(density, rel=1e-9)
         assert rows.nees[row] == pytest.approx(float(steps[-1].nees.value), rel=1e-9)
     assert len({round(value, 6) for value in rows.nis}) == 3
+
+
+def test_amcl_whose_crowds_differ_gives_each_row_its_own_noise():
+    scene = recorded(systems_scenes.ultrasonic(), truth=True)
+    scene = replace(
+        scene, filter="amcl", gate=None, tuning=replace(scene.tuning, particles=3000),
+        log=replace(scene.log, entries=scene.log.entries[:60]),
+    )  # fmt: skip
+    changes = Change("reading", "nothing"), louder_motion(30.0), louder_all(3.0)
+    rows = rows_of(scene, list(scene.log.entries), changes)
+    for row, change in enumerate(changes):
+        steps = replayed(scene, (change,))
+        corrections = [step.correction for step in steps if step.correction is not None]
+        alone = sum(float(one.nis) for one in corrections if not np.isnan(one.nis))
+        assert rows.nis[row] == pytest.approx(alone, rel=1e-9)
+
+
+def test_a_louder_sensor_and_a_louder_motion_of_some_runs_keep_their_factors():
+    (_, target), *_ = landmarks.world.targets("corrected")
+    loud = Louder(target.sensor, np.array([2.0, 3.0, 5.0]))
+    x = np.array([0.0, 0.0, 0.1])
+    np.testing.assert_allclose(loud.of_run((1,)).R(x), 9.0 * target.sensor.R(x))
+    np.testing.assert_array_equal(of_rows(loud, np.array([0, 2])).factor, [2.0, 5.0])
+    one = Louder(target.sensor, np.array(2.0))
+    assert one.of_run((1,)) is one
+    control = next(one.given for one in entries_of(landmarks) if isinstance(one.given, Control))
+    moved = LouderMotion(control.motion, np.array([2.0, 3.0, 5.0])).of_run((2,))
+    np.testing.assert_allclose(moved.M(control.u), 25.0 * control.motion.M(control.u))
 
 
 def test_a_louder_sensor_has_its_factor_squared():

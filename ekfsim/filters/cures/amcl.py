@@ -69,7 +69,8 @@ class AMCL(PF):
         moved, made = list[Particles](), list[Prediction]()
         groups = crowd.groups(self.count)
         for rows, p in groups:
-            alike, prediction = PF.predict(self._of(rows, p), crowd.part(rows, p), motion, u[rows])
+            theirs = of_rows(motion, rows)
+            alike, prediction = PF.predict(self._of(rows, p), crowd.part(rows, p), theirs, u[rows])
             moved.append(alike)
             made.append(prediction)
         return crowd.whole(moved, groups), together(made, groups, axes)

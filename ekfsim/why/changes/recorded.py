@@ -88,6 +88,10 @@ class LouderMotion(Motion):
         Q = self.motion.Q(u)
         return Q if np.ndim(Q) == 0 else _squared(self.factor, u.ndim - 1) * np.asarray(Q)
 
+    def of_run(self, run: tuple[int | Integers, ...]) -> Motion:
+        """With the factor of that run, where each has its own."""
+        return replace(self, factor=np.asarray(self.factor[run])) if self.factor.ndim else self
+
 
 def _squared(factor: Array, axes: int) -> Array:
     """factor² beside matrices of states with so many leading axes, of which some may be sigma
