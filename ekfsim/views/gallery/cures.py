@@ -37,10 +37,11 @@ MEANING = """\
 How many runs in a hundred are lost as the scenario stands, under each filter, on the same draws. \
 ✓ heals: it loses at most a quarter of the runs that ekf loses. ✗ kills: it keeps at most a \
 quarter of those that ekf keeps. ↓ fewer, ↑ more. No mark: their 95 % intervals (Wilson) meet, \
-and chance may do as much. –: the filter cannot watch this scenario, as amcl where no map has a \
-boundary. A smoother loses the runs that its filter loses, for at the last step both are one; told \
-of it are how many of all steps have a NEES beyond its χ² 99.9 % quantile, ekf → ekf-smoothed, and \
-the error of position over all steps (RMSE), as a multiple of that of ekf."""
+and chance may do as much. –: the filter cannot watch this scenario, for amcl needs a map with \
+a boundary, and all others a start. A smoother loses the runs that its filter \
+loses, for at the last step both are one; told of it are how many of all steps have a NEES \
+beyond its χ² 99.9 % quantile, ekf → ekf-smoothed, and the error of position over all steps \
+(RMSE), as a multiple of that of ekf."""
 
 
 class Mark(StrEnum):

@@ -15,7 +15,7 @@ from ekfsim.study.results import Result
 from ekfsim.study.running.engines import serial
 from ekfsim.views.gallery import making
 from ekfsim.views.gallery.making import chosen, write_gallery
-from ekfsim.views.gallery.markdown import section
+from ekfsim.views.gallery.markdown import row, section
 from ekfsim.views.gallery.site import site
 from ekfsim.views.study.shares import HEAD, shares
 
@@ -129,6 +129,7 @@ def test_the_page_of_docs_is_what_the_program_makes(made):
     for wing in made[1]:
         for shown in wing.exhibits:
             assert section(shown, Path("pictures/gallery")) in text
+            assert row(shown.name, shown.cured) in text.splitlines()
     for path in pictures.iterdir():
         assert path.stat().st_size <= 20_000
         assert f"commands/{path.stem}.yaml" in Image.open(path).text["Description"]
