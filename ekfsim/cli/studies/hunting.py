@@ -128,7 +128,7 @@ def hunt(place: str, out: Path, force: bool, fast: bool, **asked: Any) -> None:
     task = _asked(place, out, fast, **asked)
     if task.goal == "numbers":
         return _expose(task, out, force)
-    with _rounds_bar(task.lists) as heard:
+    with _rounds_bar(task.lists, task.seconds) as heard:
         found = hunted_by(task, heard, heed)
     repeated = _repeating(found.search.looked_at or None, task.scene.seed)
     told = Told(description(found), repeated, f"`ekfsim study {out.name} --expect` confirms it")
@@ -235,20 +235,21 @@ def _repeating(lists: int | None, seed: int) -> str:
 
 
 @contextmanager
-def _rounds_bar(total: int) -> "Iterator[Callable[[Search], None]]":
-    """A bar of the lists that were looked at, with the share of runs of the best so far."""
+def _rounds_bar(lists: int, seconds: float) -> "Iterator[Callable[[Search], None]]":
+    """A bar of the lists that were looked at or of the time that is over, whichever ends first,
+    with the share of runs of the best so far; no wider than 80 columns.
+    """
+    begin = time.monotonic()
     with click.progressbar(
-        length=total, label="lists", file=sys.stderr, hidden=not sys.stderr.isatty(),
+        length=1000, label="search", file=sys.stderr, hidden=not sys.stderr.isatty(), width=20,
         item_show_func=lambda told: told,
     ) as bar:  # fmt: skip
-        before = 0
 
         def heard(search: "Search") -> None:
-            nonlocal before
             best = search.best[0]
             told = f"best {100 * best.count.share:.3g} % by {best.variant.size} commands"
-            bar.update(search.looked_at - before, told)
-            before = search.looked_at
+            over = max(search.looked_at / lists, (time.monotonic() - begin) / seconds)
+            bar.update(round(1000 * min(over, 1)) - bar.pos, told)
             heed()
 
         yield heard

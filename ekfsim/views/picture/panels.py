@@ -62,7 +62,6 @@ class Main:
             probability,
             conditional,
             not scene.commanded,
-            crowd=scene.filter == "pf",
             true=_true(scene),
         )
         self.others = others(axes, scene, probability)

@@ -7,12 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 from ekfsim import load_scene
 from ekfsim.files.results.trajectories import Table
 from ekfsim.localization import play
 from ekfsim.views.page.told import Teller
 from ekfsim.views.picture.belief.shape import Shape
+from ekfsim.views.picture.extent import scope as scopes
+from ekfsim.views.picture.frames import Picture
 from ekfsim.views.picture.look import Look
 from ekfsim.views.playback.playback import views
 from ekfsim.views.terminal.drawing import draw
@@ -75,6 +79,18 @@ def test_no_picture_gives_it_a_place(shown, scene):
         assert "particles" in text
     assert len(shown[0].path()) == 0
     assert np.isnan(shown[-1].reckoned.points()).all()
+
+
+def test_the_legend_names_particles_and_no_place(shown, steps, scene):
+    figure = Figure(figsize=(9, 7), dpi=50)
+    FigureCanvasAgg(figure)
+    picture = Picture(figure, scene, scopes.of_all(scene, [steps]))
+    for view in (shown[0], shown[-1]):
+        picture.show(view)
+        words = [text.get_text() for text in picture.legend.get_texts()]
+        assert "particles" in words
+        assert ("95.4 % ellipse (2.48 σ)" in words) != view.unplaced
+        assert ("estimate" in words) != view.unplaced
 
 
 def test_a_page_is_told_so(shown, scene):

@@ -53,15 +53,14 @@ class BeliefArtists:
         conditional: bool,
         driven: bool,
         body: bool = True,
-        crowd: bool = False,
         true: bool = True,
     ) -> None:
         """driven : whether the path has a corner for each of many instants, not for each command;
-        body : whether to draw the robot. For the legend, crowd : whether the belief may be
-        particles; true : whether the truth is known
+        body : whether to draw the robot; true : whether the truth is known, for the legend
         """
         self._driven = driven
-        self._probability, self._crowd, self._true = probability, crowd, true
+        self._probability, self._true = probability, true
+        self._placed = True  # whether the belief that is shown tells a place
         self.ways = WayArtists(axes)
         self.ghost = GhostArtists(axes)
         self.cone = area(axes, SKY, 0.35, "--", 1.0, 2.0, "cone", cone_label(probability))
@@ -90,6 +89,7 @@ class BeliefArtists:
     def show(self, shape: Shape, unit: float) -> None:
         """Move everything to a view. unit : m, what the robot's body measures in this Axes"""
         view, stands, half = shape.view, shape.stands, shape.region.half
+        self._placed = not view.unplaced
         x, P = shape.region.pose, view.pose.covariance
         self._cone.show(sector(x, half, CONE * unit), stands.outside_cone)
         self._ellipse.show(shape.region.rim, stands.outside_ellipse)
@@ -129,13 +129,13 @@ class BeliefArtists:
 
     def handles(self) -> Iterator[Artist | tuple[Artist, ...]]:
         """What the legend shows of it."""
-        yield self.reference if self.body is None else (self.body, self.reference)
-        yield self.path
-        yield self.ellipse
-        yield self.cone
+        if self._placed:
+            yield self.reference if self.body is None else (self.body, self.reference)
+            yield self.path
+            yield self.ellipse
+            yield self.cone
         yield from self.conditioned.values()
-        if self._crowd:
-            yield self.particles
+        yield self.particles
         if self._true:
             yield self.heading, self.truth
             yield self.ways.true
