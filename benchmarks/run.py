@@ -24,7 +24,7 @@ from ekfsim.localization import play
 from ekfsim.scene import Scene
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.closing import conclude
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 from ekfsim.world import Noise, Told, World
 
 COMMANDS = 1000

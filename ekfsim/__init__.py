@@ -115,7 +115,7 @@ if TYPE_CHECKING:
     from ekfsim.views.picture.look import Look as Look
     from ekfsim.views.playback.playback import Playback as Playback
     from ekfsim.views.words.closing import conclude as conclude
-    from ekfsim.views.words.narrative import narrate as narrate
+    from ekfsim.views.words.narrative.narrating import narrate as narrate
     from ekfsim.world import World as World
 
     scene = load_scene  # the module of that name, as it is called
@@ -148,7 +148,7 @@ _HOMES = {
     "views.notebook.studies": ("compare",),
     "views.notebook.table": ("table",),
     "views.picture.look": ("Look",),
-    "views.words.narrative": ("narrate",),
+    "views.words.narrative.narrating": ("narrate",),
     "views.playback.playback": ("Playback",),
     "world": ("World",),
 }

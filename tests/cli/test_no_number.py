@@ -18,7 +18,7 @@ from ekfsim.views.picture.sights import sight
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.beams.beam import beam
 from ekfsim.views.words.captions import notes, spread, title
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 
 NO_NUMBER = re.compile(r"\b(nan|inf|infinity)\b", re.IGNORECASE)
 EVERY = [(scene, filter) for scene in ("square", "tour") for filter in FILTERS]

@@ -43,7 +43,7 @@ def run(
     from ekfsim.views.playback.kept import kept
     from ekfsim.views.playback.playback import together
     from ekfsim.views.words.closing import conclude_all
-    from ekfsim.views.words.narrative import narrate
+    from ekfsim.views.words.narrative.narrating import narrate
 
     scene = scene_of(**chosen)
     alone, outputs = scene.alone(), Outputs(trace, tum, csv, summary, force)

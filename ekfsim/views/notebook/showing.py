@@ -17,7 +17,7 @@ from ekfsim.views.playback.playback import views
 from ekfsim.views.playback.view import Judged, View
 from ekfsim.views.why.answer import answer
 from ekfsim.views.words.closing import conclude
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 from ekfsim.why.records import Explanation
 
 # the last one that was drawn, with its picture: a notebook asks for both, HTML and PNG

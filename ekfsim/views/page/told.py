@@ -24,7 +24,7 @@ from ekfsim.views.playback.view import View
 from ekfsim.views.words.beams.beam import beam
 from ekfsim.views.words.captions import away, notes, spread, title
 from ekfsim.views.words.judgement import judgement, standing
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 
 FAR = 2  # of what is shown of the plane: how long a beam is drawn that meets nothing
 CROWD = 150  # particles that are drawn of a belief, at most

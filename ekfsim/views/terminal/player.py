@@ -24,8 +24,8 @@ from ekfsim.views.terminal.pace import Pace
 from ekfsim.views.terminal.reason import Reason
 from ekfsim.views.terminal.screens.moment import HINTS, Moment, Screen
 from ekfsim.views.words.closing import conclude_all
-from ekfsim.views.words.long_form import WORDS
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.long_form import WORDS
+from ekfsim.views.words.narrative.narrating import narrate
 
 CHANGED = "changed"  # comes in place of a key where the files of the run were saved anew
 OFTEN = 0.2  # s between two words on how far a long way has come

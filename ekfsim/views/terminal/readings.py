@@ -14,7 +14,7 @@ from ekfsim.views.playback.view import View
 from ekfsim.views.terminal.braille import Canvas, Pen, ansi
 from ekfsim.views.words.beams.hypotheses import weights
 from ekfsim.views.words.changes import revised
-from ekfsim.views.words.trust import believed
+from ekfsim.views.words.narrative.trust import believed
 
 READ = ansi("#D55E00")
 BEAM, REFUSED_BEAM = Pen(READ, "-"), Pen(READ, "-", on=2, off=3)

@@ -15,9 +15,9 @@ from ekfsim.scene import Scene
 from ekfsim.smoothing.shares import Shares
 from ekfsim.views.playback.parting import Apart
 from ekfsim.views.playback.view import View
+from ekfsim.views.words.narrative.trust import shut_briefly, shutting_out
 from ekfsim.views.words.numbers import between, figure, number, turn
 from ekfsim.views.words.text_table import aligned
-from ekfsim.views.words.trust import shut_briefly, shutting_out
 from ekfsim.views.words.whiteness import sentence as whiteness
 
 REASONS = {

@@ -20,7 +20,7 @@ from ekfsim.records import Control, Step
 from ekfsim.scene import Scene
 from ekfsim.views.playback.playback import views
 from ekfsim.views.playback.view import View
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 ORIGIN = "   ("  # before the equation that the long form tells after a number

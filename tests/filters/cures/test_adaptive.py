@@ -20,9 +20,9 @@ from ekfsim.models.sensors.laser import Laser
 from ekfsim.study.block import run_block
 from ekfsim.twins import taking
 from ekfsim.views.playback.playback import views
-from ekfsim.views.words.narrative import narrate
-from ekfsim.views.words.opening import UNTAUGHT, opening
-from ekfsim.views.words.trust import believed
+from ekfsim.views.words.narrative.narrating import narrate
+from ekfsim.views.words.narrative.opening import UNTAUGHT, opening
+from ekfsim.views.words.narrative.trust import believed
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -96,7 +96,7 @@ def test_what_it_cures(scene, most):
 
 def test_the_narrative_tells_the_weight():
     from ekfsim.views.playback.playback import views
-    from ekfsim.views.words.narrative import narrate
+    from ekfsim.views.words.narrative.narrating import narrate
 
     scene = replace(load_scene("diverge-01-wrong-wall"), filter="huber")
     short, long = (
@@ -113,7 +113,7 @@ def test_the_narrative_tells_the_weight():
 )
 def test_a_gate_beside_a_weight_is_never_without_saying_so(name, gate, told):
     """Rule 31."""
-    from ekfsim.views.words.opening import opening
+    from ekfsim.views.words.narrative.opening import opening
 
     scene = replace(load_scene("diverge-11-short-returns"), filter=name, gate=gate)
     assert ("A gate and a weight judge each reading" in opening(scene)) == told

@@ -94,7 +94,7 @@ def test_what_it_cures_and_where_it_dies(scene, low, high):
 
 def test_the_narrative_tells_beta():
     from ekfsim.views.playback.playback import views
-    from ekfsim.views.words.narrative import narrate
+    from ekfsim.views.words.narrative.narrating import narrate
 
     scene = replace(load_scene("diverge-01-wrong-wall"), filter="pdaf")
     short, long = (

@@ -21,7 +21,7 @@ from ekfsim.student.own.loading import Code
 from ekfsim.views.picture.extent import scope as scopes
 from ekfsim.views.playback.playback import views
 from ekfsim.views.words.closing import conclude
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 
 TOUR = load_scene("tour")
 ENTRIES = list(simulate(TOUR))[:8]  # with moves, and beams that are read

@@ -11,7 +11,7 @@ from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
 from ekfsim.student.printed.held import held_narrative
 from ekfsim.views.playback.playback import views
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 
 K = math.sqrt(-2 * math.log(1 - 0.954))
 

@@ -22,7 +22,7 @@ from ekfsim.views.playback.playback import views
 from ekfsim.views.terminal.drawing import draw
 from ekfsim.views.words.captions import notes, spread
 from ekfsim.views.words.judgement import judgement, standing
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 
 
 @pytest.fixture(scope="module")

@@ -20,8 +20,8 @@ from ekfsim.views.terminal.player import Player
 from ekfsim.views.terminal.screens.moment import Together
 from ekfsim.views.terminal.screens.stream import Stream
 from ekfsim.views.words.closing import conclude
-from ekfsim.views.words.long_form import WORDS
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.long_form import WORDS
+from ekfsim.views.words.narrative.narrating import narrate
 
 NEXT, BACK, QUIT, RESTART, SAVE, EXPLAIN = "npqrse"
 PLACE = scene(Move(1.0, 0.5), Sense(0.2), Move(0.5, 0.0))  # five views

@@ -13,7 +13,7 @@ from ekfsim.files.scenes.load import read_scene
 from ekfsim.localization import play
 from ekfsim.simulation import simulate
 from ekfsim.views.playback.playback import views
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 from ekfsim.views.worksheet.sheets import sheets
 
 

@@ -18,7 +18,7 @@ from ekfsim.views.terminal.driving.keys import Order
 from ekfsim.views.terminal.keys.keyboard import NO_MORE
 from ekfsim.views.terminal.screens.moment import Together
 from ekfsim.views.terminal.screens.stream import Stream
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 
 ROOM = replace(load_scene("square"), commands=())
 FORWARD, LEFT = Move(0.25, 0.0), Move(0.0, math.radians(15))

@@ -10,7 +10,7 @@ from ekfsim.views.playback.playback import views
 from ekfsim.views.terminal.braille import CONTROL_SEQUENCE, cells
 from ekfsim.views.terminal.screens.layout import Layout, Look, Panes, ample
 from ekfsim.views.terminal.screens.moment import Moment
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 
 PLACE = scene(
     Move(1.0, 0.5), Sense(0.2), Say("一句很长的话 " * 9), Kidnap(3.0, 1.0, 2.0), Sense(0.0)

@@ -10,7 +10,7 @@ from ekfsim.files.scenes.load import load_scene
 from ekfsim.filters.belief import Mixture
 from ekfsim.localization import play
 from ekfsim.views.words.beams.hypotheses import SOUGHT, hypotheses, weights
-from ekfsim.views.words.opening import opening
+from ekfsim.views.words.narrative.opening import opening
 
 
 @pytest.fixture(scope="module")

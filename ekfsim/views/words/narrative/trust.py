@@ -10,7 +10,7 @@ from ekfsim.filters.belief import Correction
 from ekfsim.filters.cures.huber import limit
 from ekfsim.filters.place import forward
 from ekfsim.scene import Scene
-from ekfsim.views.words.long_form import SHORT, Form
+from ekfsim.views.words.narrative.long_form import SHORT, Form
 from ekfsim.views.words.numbers import number
 
 LITTLE = 0.01  # of β; a reading that is believed less changes nothing

@@ -17,7 +17,7 @@ from ekfsim.records import Entry, Reading, Step
 from ekfsim.version import VERSION
 from ekfsim.views.playback.playback import views
 from ekfsim.views.playback.view import View
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
 from ekfsim.views.words.numbers import matrix, pose, state
 
 GOLDEN = Path(__file__).with_name("recorded_narrative.txt")

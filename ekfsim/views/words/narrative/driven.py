@@ -12,7 +12,8 @@ from ekfsim.scene import Scene
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.beams.hypotheses import hypotheses
 from ekfsim.views.words.beams.told import doubts, expected_wall
-from ekfsim.views.words.long_form import SHORT, Form
+from ekfsim.views.words.narrative.long_form import SHORT, Form
+from ekfsim.views.words.narrative.trust import learnt, trusted
 from ekfsim.views.words.numbers import (
     MANY,
     instant,
@@ -24,7 +25,6 @@ from ekfsim.views.words.numbers import (
     quantity,
     state,
 )
-from ekfsim.views.words.trust import learnt, trusted
 from ekfsim.views.words.uncertainty import crowd, judged, rest, surprise, uncertainty
 
 REFUSED = {

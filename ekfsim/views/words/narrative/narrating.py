@@ -10,14 +10,14 @@ from ekfsim.printable import shown
 from ekfsim.records import Control, Reading, Step
 from ekfsim.scene import Scene
 from ekfsim.views.playback.view import View
-from ekfsim.views.words import driven as driven_narrative
 from ekfsim.views.words.beams.hypotheses import hypotheses
 from ekfsim.views.words.beams.told import doubts, edge_of, expected_wall
-from ekfsim.views.words.driven import REFUSED
-from ekfsim.views.words.long_form import SHORT, Form, LongForm
+from ekfsim.views.words.narrative import driven as driven_narrative
+from ekfsim.views.words.narrative.driven import REFUSED
+from ekfsim.views.words.narrative.long_form import SHORT, Form, LongForm
+from ekfsim.views.words.narrative.opening import opening, plain
+from ekfsim.views.words.narrative.trust import learnt, trusted
 from ekfsim.views.words.numbers import fill, fill_vector, fine, matrix, number, pose, turn
-from ekfsim.views.words.opening import opening, plain
-from ekfsim.views.words.trust import learnt, trusted
 from ekfsim.views.words.uncertainty import crowd, judged, rest, surprise, uncertain
 
 DERIVATIVES = "  dh/dx = %.6g, dh/dy = %.6g, dh/dth = %.6g\n"

@@ -14,8 +14,8 @@ from ekfsim.records import Control, Step
 from ekfsim.scene import Scene
 from ekfsim.views.playback.view import View
 from ekfsim.views.words.beams.told import corners, others_met, wall_name, walls_of
+from ekfsim.views.words.narrative.origins import Origins, named, origins
 from ekfsim.views.words.numbers import fine, matrix, number, pose, state
-from ekfsim.views.words.origins import Origins, named, origins
 
 WORDS = """\
 matrices, derivatives  in m and rad; P' is P transposed, P^-1 its inverse

@@ -18,9 +18,9 @@ from ekfsim.provenance import VERSION
 from ekfsim.records import Control, Entry, Nees, Reading, Step
 from ekfsim.views.playback.playback import views
 from ekfsim.views.playback.view import View
-from ekfsim.views.words.narrative import narrate
+from ekfsim.views.words.narrative.narrating import narrate
+from ekfsim.views.words.narrative.origins import BY_FILTER
 from ekfsim.views.words.numbers import heading
-from ekfsim.views.words.origins import BY_FILTER
 from ekfsim.world import Noise
 
 TURN = math.pi / 2
