@@ -27,7 +27,7 @@ from timing import WAYS, Task, optional, ratios
 
 from ekfsim import twins
 from ekfsim.commands import Move, Repeat, Sense
-from ekfsim.fast.one.angles import wrap_one
+from ekfsim.fast.one.geometry.angles import wrap_one
 from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.belief import Gaussian
 from ekfsim.filters.ekf import EKF

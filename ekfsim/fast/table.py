@@ -44,12 +44,12 @@ SOUND = "a covariance that needs no force but to be symmetric, as mostly"
 # The quickest of one function first. How to add a row is told in tests/fast/test_table.py.
 TWINS: tuple[Twin, ...] = (
     # geometry/
-    Twin("ekfsim.geometry.ellipse:ellipse", f"{ONE}.ellipse:ellipse", ALONE),
+    Twin("ekfsim.geometry.ellipse:ellipse", f"{ONE}.geometry.ellipse:ellipse", ALONE),
     # raycast/
     Twin(f"{RAYS}.walls:Walls.cast", f"{SEARCHES}.compiled:cast", "many beams", compiled=True),
     Twin(f"{RAYS}.walls:Walls.cast", f"{SEARCHES}.choice:cast", "any beams"),
     Twin(f"{RAYS}.walls:Walls.first", f"{SEARCHES}.single_beam:first", "any beam"),
-    Twin(f"{RAYS}.ground:Ground.reach", f"{ONE}.ground:reach", "from one place"),
+    Twin(f"{RAYS}.ground:Ground.reach", f"{ONE}.geometry.ground:reach", "from one place"),
     # models/
     Twin(MOTION, f"{ONE}.motions:move_turn", ALONE, "MoveTurn"),
     Twin(MOTION, f"{COMPILED}.models:move_turn", "x, u : (N, …)", "MoveTurn", True),
@@ -83,15 +83,15 @@ TWINS: tuple[Twin, ...] = (
     # filters/
     Twin(f"{KALMAN}:predict", f"{COMPILED}.kalman:predict", ALIKE, compiled=True),
     Twin(f"{KALMAN}:predict", f"{MANY}.kalman:predict", ALIKE),
-    Twin(f"{KALMAN}:update", f"{ONE}.kalman:update", ALONE),
+    Twin(f"{KALMAN}:update", f"{ONE}.filtering.kalman:update", ALONE),
     Twin(f"{KALMAN}:update", f"{COMPILED}.kalman:update", ONE_NUMBER, compiled=True),
     Twin(f"{KALMAN}:update", f"{MANY}.kalman:update", ONE_NUMBER),
-    Twin(f"{ROOT}:covariance", f"{ONE}.square_root:covariance", f"{ALONE}; {SOUND}"),
+    Twin(f"{ROOT}:covariance", f"{ONE}.filtering.square_root:covariance", f"{ALONE}; {SOUND}"),
     Twin(f"{ROOT}:covariance", f"{MANY}.square_root:covariance", f"{ANY}; {SOUND}"),
-    Twin(f"{ROOT}:square_root", f"{ONE}.square_root:square_root", ALONE),
-    Twin(f"{ROOT}:slope", f"{ONE}.square_root:slope", ALONE),
-    Twin(f"{ROOT}:conditioned", f"{ONE}.square_root:conditioned", ALONE),
-    Twin(DESCEND, f"{ONE}.descent:descend", ALONE),
+    Twin(f"{ROOT}:square_root", f"{ONE}.filtering.square_root:square_root", ALONE),
+    Twin(f"{ROOT}:slope", f"{ONE}.filtering.square_root:slope", ALONE),
+    Twin(f"{ROOT}:conditioned", f"{ONE}.filtering.square_root:conditioned", ALONE),
+    Twin(DESCEND, f"{ONE}.filtering.descent:descend", ALONE),
     Twin("ekfsim.filters.stretch:stretch", "ekfsim.fast.many_steps:stretch", ANY),
     Twin(
         of="ekfsim.filters.arithmetic.chi_square:quantile",
@@ -104,8 +104,8 @@ TWINS: tuple[Twin, ...] = (
     Twin(f"{CLASSROOM}:paired", f"{ONE}.classroom:paired", ALONE),
     Twin(f"{CLASSROOM}:until_wall", f"{MANY}.classroom:until_wall", "pose : (N, 3)"),
     # diagnostics/
-    Twin(f"{AMBIGUITY}:sighting", f"{ONE}.ambiguity:sighting", ALONE),
-    Twin(f"{NEES}:nees", f"{ONE}.nees:nees", f"{ALONE}; P clearly of full rank"),
+    Twin(f"{AMBIGUITY}:sighting", f"{ONE}.geometry.ambiguity:sighting", ALONE),
+    Twin(f"{NEES}:nees", f"{ONE}.filtering.nees:nees", f"{ALONE}; P clearly of full rank"),
     Twin(f"{NEES}:nees", f"{MANY}.nees:nees", OF_MANY),
     Twin(
         of=f"{NEES}:squared_mahalanobis",

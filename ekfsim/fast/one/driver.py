@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ekfsim.fast.one.angles import wrap_one
+from ekfsim.fast.one.geometry.angles import wrap_one
 from ekfsim.geometry import Array
 from ekfsim.simulation.driver import Gains
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ekfsim.fast.one.angles import wrap_one
+from ekfsim.fast.one.geometry.angles import wrap_one
 from ekfsim.geometry import Array
 from ekfsim.models.noise import independent
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ekfsim.diagnostics.nees import OUTSIDE, ROUNDING
 from ekfsim.fast.many.nees import CLEAR
-from ekfsim.fast.one.angles import wrap_one
+from ekfsim.fast.one.geometry.angles import wrap_one
 from ekfsim.filters.belief import Gaussian
 from ekfsim.geometry import Array, Booleans
 from ekfsim.geometry.ellipse import cone_factor, radius_factor

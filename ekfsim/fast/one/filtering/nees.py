@@ -4,7 +4,7 @@ import numpy as np
 
 from ekfsim.diagnostics.nees import ROUNDING
 from ekfsim.fast.many.nees import CLEAR
-from ekfsim.fast.one.angles import wrap_one
+from ekfsim.fast.one.geometry.angles import wrap_one
 from ekfsim.filters.belief import Belief, posed
 from ekfsim.geometry import Array
 from ekfsim.models.layout import POSE, Layout

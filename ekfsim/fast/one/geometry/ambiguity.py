@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ekfsim.diagnostics.ambiguity import FLAT, REACH, BeamSensor, Sighting
-from ekfsim.fast.one.ground import reach_of_each
+from ekfsim.fast.one.geometry.ground import reach_of_each
 from ekfsim.fast.one.normal import normal_one
 from ekfsim.geometry import Array
 from ekfsim.raycast.searches.single_beam import first, found

@@ -6,7 +6,7 @@ search ends.
 
 import numpy as np
 
-from ekfsim.fast.one.square_root import Rows, conditioned_one, slope_one
+from ekfsim.fast.one.filtering.square_root import Rows, conditioned_one, slope_one
 from ekfsim.filters.arithmetic.algebra import wrapped
 from ekfsim.filters.arithmetic.descent import SHORTEST, TRIES, Search
 from ekfsim.filters.arithmetic.tolerances import CONVERGED, ROUNDING

@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 
-from ekfsim.fast.one.angles import wrap_one
-from ekfsim.fast.one.square_root import (
+from ekfsim.fast.one.filtering.square_root import (
     conditioned_one,
     nis_one,
     slope_one,
     square_root_one,
     squared_one,
 )
+from ekfsim.fast.one.geometry.angles import wrap_one
 from ekfsim.filters.arithmetic.chi_square import quantile
 from ekfsim.filters.arithmetic.tolerances import SHARP
 from ekfsim.filters.belief import Correction, Gaussian, Refused

@@ -1,0 +1,1 @@
+"""Twins of the filters and of how their beliefs are judged, for one robot."""
