@@ -21,6 +21,7 @@ from ekfsim.filters.particles.roaming import Roaming, together
 from ekfsim.filters.pf import PF, silverman
 from ekfsim.filters.protocol import Beginning
 from ekfsim.geometry import Array, Booleans, Integers
+from ekfsim.geometry.soa import soa_zeros
 from ekfsim.models.protocols import Motion, Sensor, of_rows
 
 if TYPE_CHECKING:
@@ -160,9 +161,9 @@ class AMCL(PF):
             ]
             number = np.array([len(of_run) for of_run in drawn]).reshape(axes)
             p = int(number.max())
-            states = np.stack(
-                [of_run[np.minimum(np.arange(p), len(of_run) - 1)] for of_run in drawn]
-            )
+            states = soa_zeros((len(drawn), p), n)
+            for crowd, of_run in zip(states, drawn, strict=True):
+                crowd[: len(of_run)], crowd[len(of_run) :] = of_run, of_run[-1]
             states = wrapped(states, self.headings).reshape(*axes, p, n)
             weights = (np.arange(p) < number[..., None]) / number[..., None]
         return Roaming(x, P, states, weights, number, np.ones(axes), np.ones(axes))
@@ -180,7 +181,7 @@ class AMCL(PF):
             drawn[row] = self._one_drawn(self.generators[row], source)
             number[row] = len(drawn[row])
         p = int(number.max())
-        states, weights = np.zeros((N, p, n)), np.zeros((N, p))
+        states, weights = soa_zeros((N, p), n), np.zeros((N, p))
         kept = min(p, crowd.states.shape[-2])
         states[:, :kept] = crowd.states.reshape(N, -1, n)[:, :kept]
         weights[:, :kept] = crowd.weights.reshape(N, -1)[:, :kept]
@@ -194,9 +195,9 @@ class AMCL(PF):
         )  # fmt: skip
         x, P = crowd.mean.reshape(N, n).copy(), crowd.covariance.reshape(N, n, n).copy()
         for rows, length in made.groups(self.count):
-            alike, these = made.part(rows, length), anew.reshape(N)[rows]
-            summed = self._summed(alike.states, alike.weights)
-            x[rows[these]], P[rows[these]] = summed.mean[these], summed.covariance[these]
+            if (these := rows[anew.reshape(N)[rows]]).size:
+                alike = made.part(these, length)
+                x[these], P[these] = self._summed(alike.states, alike.weights)
         return replace(made, mean=x.reshape(*axes, n), covariance=P.reshape(*axes, n, n))
 
     def _one_drawn(self, generator: "Generator", source: Source) -> Array:

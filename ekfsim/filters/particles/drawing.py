@@ -94,7 +94,7 @@ def sources(crowd: Roaming, rows: Integers, headings: Sequence[int]) -> Iterator
     """
     n, P = crowd.mean.shape[-1], crowd.covariance.reshape(-1, *crowd.covariance.shape[-2:])[rows]
     mean, numbers = crowd.mean.reshape(-1, n)[rows], crowd.number.reshape(-1)[rows].tolist()
-    states = crowd.states.reshape(-1, *crowd.states.shape[-2:])[rows]
+    states = crowd.part(rows, crowd.states.shape[-2]).states
     weights = crowd.weights.reshape(-1, crowd.weights.shape[-1])[rows]
     away = wrapped(states - mean[:, None], tuple(headings))
     ends = np.cumsum(weights, axis=-1)

@@ -8,6 +8,7 @@ import numpy as np
 from ekfsim.filters.belief import Correction, Particles, Prediction
 from ekfsim.filters.particles.kld import FEWEST
 from ekfsim.geometry import Array, Integers
+from ekfsim.geometry.soa import from_soa, soa_zeros, to_soa
 
 Told = TypeVar("Told", Prediction, Correction)
 
@@ -41,10 +42,12 @@ class Roaming(Particles):
     def part(self, rows: Integers, p: int) -> Particles:
         """The crowds of some runs, of p particles each; those beyond its number weigh nothing."""
         n = self.mean.shape[-1]
-        states = self.states.reshape(-1, *self.states.shape[-2:])[rows, :p]
+        states = self.states.reshape(-1, *self.states.shape[-2:])
+        states = from_soa(to_soa(states, 1)[:, rows, :p], 1)
         weights = self.weights.reshape(-1, self.weights.shape[-1])[rows, :p]
         if (more := p - weights.shape[-1]) > 0:
-            states = np.concatenate([states, np.repeat(states[:, :1], more, axis=1)], axis=1)
+            padding = np.broadcast_to(states[:, :1], (len(rows), more, n))
+            states = from_soa(np.concatenate([to_soa(states, 1), to_soa(padding, 1)], axis=-1), 1)
             weights = np.pad(weights, ((0, 0), (0, more)))
         return Particles(
             self.mean.reshape(-1, n)[rows], self.covariance.reshape(-1, n, n)[rows], states, weights
@@ -55,7 +58,7 @@ class Roaming(Particles):
         axes, n = self.mean.shape[:-1], self.mean.shape[-1]
         N, p = self.number.size, int(self.number.max())
         x, P, states, weights = (
-            np.empty((N, n)), np.empty((N, n, n)), np.zeros((N, p, n)), np.zeros((N, p)),
+            np.empty((N, n)), np.empty((N, n, n)), soa_zeros((N, p), n), np.zeros((N, p)),
         )  # fmt: skip
         for part, (rows, _) in zip(parts, groups, strict=True):
             x[rows], P[rows] = part
