@@ -5,6 +5,7 @@ them drawn anew from anywhere when readings cannot be explained.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
@@ -155,10 +156,9 @@ class AMCL(PF):
         else:
             x, P = belief
             roots = square_root(P).reshape(-1, n, n)
-            drawn = [
-                self._one_drawn(generator, Source.of_gaussian(mean, L))
-                for generator, mean, L in zip(self.generators, x.reshape(-1, n), roots, strict=True)
-            ]
+            drawn = self._drawn(
+                self.generators, list(map(Source.of_gaussian, x.reshape(-1, n), roots))
+            )
             number = np.array([len(of_run) for of_run in drawn]).reshape(axes)
             p = int(number.max())
             states = soa_zeros((len(drawn), p), n)
@@ -169,23 +169,23 @@ class AMCL(PF):
         return Roaming(x, P, states, weights, number, np.ones(axes), np.ones(axes))
 
     def _redrawn(self, crowd: Roaming, anew: Booleans) -> Roaming:
-        """The crowd, drawn anew in those runs : (…), one by one: each draws as many as it needs."""
+        """The crowd, drawn anew in those runs : (…); each draws as many as it needs."""
         if not anew.any():
             return crowd
         axes, n = crowd.mean.shape[:-1], crowd.mean.shape[-1]
         N, number = math.prod(axes), crowd.number.reshape(-1).copy()
         rows = np.flatnonzero(anew)
-        drawn = dict[int, Array]()
-        of_them = sources(crowd, rows, self.headings)
-        for row, source in zip(rows.tolist(), of_them, strict=True):
-            drawn[row] = self._one_drawn(self.generators[row], source)
-            number[row] = len(drawn[row])
+        drawn = self._drawn(
+            [self.generators[row] for row in rows.tolist()],
+            list(sources(crowd, rows, self.headings)),
+        )
+        number[rows] = [len(of_run) for of_run in drawn]
         p = int(number.max())
         states, weights = soa_zeros((N, p), n), np.zeros((N, p))
         kept = min(p, crowd.states.shape[-2])
         states[:, :kept] = crowd.states.reshape(N, -1, n)[:, :kept]
         weights[:, :kept] = crowd.weights.reshape(N, -1)[:, :kept]
-        for row, of_run in drawn.items():
+        for row, of_run in zip(rows.tolist(), drawn, strict=True):
             states[row], states[row, : len(of_run)] = of_run[0], of_run
             weights[row], weights[row, : len(of_run)] = 0.0, 1 / len(of_run)
         states = wrapped(states, self.headings)
@@ -200,9 +200,9 @@ class AMCL(PF):
                 x[these], P[these] = self._summed(alike.states, alike.weights)
         return replace(made, mean=x.reshape(*axes, n), covariance=P.reshape(*axes, n, n))
 
-    def _one_drawn(self, generator: "Generator", source: Source) -> Array:
+    def _drawn(self, generators: Sequence["Generator"], of_runs: Sequence[Source]) -> list[Array]:
         assert self.anywhere is not None
-        return drawn_anew(generator, source, self.headings, self.count, self.anywhere)
+        return drawn_anew(generators, of_runs, self.headings, self.count, self.anywhere)
 
 
 def followed(average: Array, now: Array, α: float) -> Array:

@@ -2,5 +2,5 @@
 
 kld.py      how many particles are enough for the bins that they lie in
 roaming.py  such crowds, of many runs side by side
-drawing.py  particles drawn anew, of one run: by weights, parted, some from anywhere
+drawing.py  particles drawn anew, of each run: by weights, parted, some from anywhere
 """

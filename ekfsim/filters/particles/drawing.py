@@ -1,4 +1,4 @@
-"""Particles drawn anew of one run: by their weights, parted, and some of them from anywhere."""
+"""Particles drawn anew of each run: by their weights, parted, and some of them from anywhere."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -8,10 +8,10 @@ import numpy as np
 
 from ekfsim.filters.arithmetic.algebra import wrapped
 from ekfsim.filters.arithmetic.square_root import square_root
-from ekfsim.filters.particles.kld import FEWEST, bins, cells, enough
+from ekfsim.filters.particles.kld import FEWEST, bins, cells, enough, occupied
 from ekfsim.filters.particles.roaming import Roaming
 from ekfsim.filters.pf import silverman
-from ekfsim.geometry import Array, Integers
+from ekfsim.geometry import Array, Booleans, Integers
 
 if TYPE_CHECKING:
     from numpy.random import Generator
@@ -60,31 +60,60 @@ class Source(NamedTuple):
 
 
 def drawn_anew(
-    generator: "Generator", source: Source, headings: Sequence[int], most: int, anywhere: Anywhere
-) -> Array:
-    """Particles of one run : (p', n), as many as it needs, all of one weight. Their headings are
+    generators: Sequence["Generator"],
+    of_runs: Sequence[Source],
+    headings: Sequence[int],
+    most: int,
+    anywhere: Anywhere,
+) -> list[Array]:
+    """Particles of each run : (p', n), as many as it needs, all of one weight. Their headings are
     not wrapped.
+
+    The fewest are drawn of all runs side by side, and few need more: these go on one by one.
     """
-    ends, n = source.ends, len(source.mean)
-    widths = bins(n, headings)
-    portions, found = list[Array](), set[int]()
-    there, wanted = 0, FEWEST
-    while there < min(wanted, most):
-        p = min(max(there, FEWEST), max(wanted, FEWEST) - there, most - there)
-        b, β = source.kernel(p)
+    if not of_runs:
+        return []
+    widths, p = bins(len(of_runs[0].mean), headings), min(FEWEST, most)
+    begun = _portions(generators, of_runs, p, anywhere)
+    places = cells(begun, widths)
+    drawn = list(begun)
+    for i, k in enumerate(occupied(places).tolist()):
+        there, wanted, found = p, enough(k), places[i]
+        while there < min(wanted, most):
+            more = min(max(there, FEWEST), wanted - there, most - there)
+            (portion,) = _portions(generators[i : i + 1], of_runs[i : i + 1], more, anywhere)
+            drawn[i] = np.concatenate([drawn[i], portion])
+            found = np.concatenate([found, cells(portion, widths)])
+            there, wanted = there + more, enough(int(occupied(found)))
+    return drawn
+
+
+def _portions(
+    generators: Sequence["Generator"], of_runs: Sequence[Source], p: int, anywhere: Anywhere
+) -> Array:
+    """p particles of each run : (N, p, n). Each draws from its own generator, and all are parted
+    side by side.
+    """
+    N, n = len(of_runs), len(of_runs[0].mean)
+    away, noise = np.empty((N, n, p)), np.empty((N, p, n))
+    astray = list[tuple[int, Booleans, Array]]()
+    for i, (generator, source) in enumerate(zip(generators, of_runs, strict=True)):
         u = (np.arange(p) + generator.random()) / p
-        hit = np.searchsorted(ends, u * ends[-1], side="right")
+        hit = np.searchsorted(source.ends, u * source.ends[-1], side="right")
         # beyond the last end, by rounding, is the last particle
-        drawn = math.sqrt(1 - b * b) * source.away.take(hit, axis=0, mode="clip")
-        drawn = drawn + generator.standard_normal((p, n)) @ (β * source.L.T)
-        drawn += source.mean
+        away[i] = source.away.T.take(hit, axis=1, mode="clip")
+        generator.standard_normal(out=noise[i])
         if source.astray > 0:
             lost = generator.random(p) < source.astray
-            drawn[lost] = anywhere(generator, int(np.count_nonzero(lost)))
-        portions.append(drawn)
-        found.update(cells(drawn, widths).tolist())
-        there, wanted = there + p, enough(len(found))
-    return np.concatenate(portions)
+            astray.append((i, lost, anywhere(generator, int(np.count_nonzero(lost)))))
+    b, β = np.array([source.kernel(p) for source in of_runs]).T[..., None, None]
+    mean, L = np.stack([s.mean for s in of_runs]), np.stack([s.L for s in of_runs])
+    # one entry of the state of all particles side by side in memory
+    drawn: Array = (np.sqrt(1 - b * b) * away + (β * L) @ noise.mT).mT
+    drawn += mean[:, None]
+    for i, lost, poses in astray:
+        drawn[i, lost] = poses
+    return drawn
 
 
 def sources(crowd: Roaming, rows: Integers, headings: Sequence[int]) -> Iterator[Source]:
@@ -105,7 +134,7 @@ def sources(crowd: Roaming, rows: Integers, headings: Sequence[int]) -> Iterator
         if not ends[i, p - 1] > 0:
             first = int(np.argmin(weights[i] > 0))
             raise ValueError(f"particle {first + 1} has the weight {weights[i, first]}")
-        alike = 1 / float(np.sum(np.square(weights[i])))
+        alike = 1 / float(np.vecdot(weights[i, :p], weights[i, :p]))
         yield Source(
             ends[i, :p], mean[i], away[i, :p], roots[i], float(wide[i]), float(astray[i]), alike
         )

@@ -30,10 +30,21 @@ def enough(k: int) -> int:
 
 
 def cells(states: Array, bins: Array) -> Integers:
-    """In which bin each of the particles (p, n) lies, as one number : (p,)"""
+    """In which bin each of the particles (…, p, n) lies, as one number : (…, p)"""
     digits = np.floor(states / bins).astype(np.int64)
     # may overflow: it only tells bins apart
     number: Integers = digits @ np.multiply.accumulate(np.full(len(bins), MIXED))
+    return number
+
+
+def occupied(cells: Integers) -> Integers:
+    """How many different bins there are among those of p particles : (…). cells : (…, p)
+
+    >>> occupied(np.array([[7, 3, 7, 3], [5, 5, 5, 5]])).tolist()
+    [2, 1]
+    """
+    ordered = np.sort(cells, axis=-1)
+    number: Integers = 1 + np.count_nonzero(ordered[..., 1:] != ordered[..., :-1], axis=-1)
     return number
 
 

@@ -15,7 +15,7 @@ from ekfsim.files.packaged import packaged
 from ekfsim.filters.belief import Gaussian, Particles, Refused
 from ekfsim.filters.cures.amcl import AMCL, FAST, SLOW, UNEXPLAINED, followed
 from ekfsim.filters.particles.drawing import Source, drawn_anew
-from ekfsim.filters.particles.kld import FEWEST, KLD, bins, cells, enough
+from ekfsim.filters.particles.kld import FEWEST, KLD, bins, cells, enough, occupied
 from ekfsim.filters.pf import PF
 from ekfsim.filters.protocol import Beginning
 from ekfsim.localization import belief_of, play
@@ -72,9 +72,35 @@ def test_what_few_say_is_itself_in_doubt(N):
         next_one = generator.normal(size=3) - mean
         outside.append(next_one @ np.linalg.solve(grown * P, next_one))
     assert np.mean(outside) == pytest.approx(3, rel=0.25)
-    drawn = drawn_anew(generator, source, (2,), 5000, anywhere)
+    (drawn,) = drawn_anew([generator], [source], (2,), 5000, anywhere)
     assert np.cov(drawn.T) == pytest.approx(grown * P, abs=0.5 * grown)
     assert drawn.mean(axis=0) == pytest.approx(mean, abs=0.4)
+
+
+def test_drawn_side_by_side_each_run_is_as_alone():
+    """Those that need more than the others, and those of which some go astray, among them."""
+    generator = np.random.default_rng(7)
+    of_runs = []
+    for N, σ, astray in [(300, 0.01, 0.0), (400, 1.0, 0.3), (350, 0.5, 0.0), (300, 0.02, 0.9)]:
+        away = generator.normal(scale=σ, size=(N, 3))
+        ends = np.cumsum(generator.random(N))
+        of_runs.append(Source(ends, np.ones(3), away, σ * np.eye(3), 0.0, astray, N))
+    fresh = [np.random.default_rng(i) for i in range(4)]
+    together = drawn_anew(fresh, of_runs, (2,), 2000, anywhere)
+    numbers = [len(of_run) for of_run in together]
+    assert numbers[0] == 300
+    assert min(numbers[1:]) > 300
+    for i, of_run in enumerate(together):
+        its_own = np.random.default_rng(i)
+        (alone,) = drawn_anew([its_own], [of_runs[i]], (2,), 2000, anywhere)
+        assert np.array_equal(of_run, alone)
+        assert fresh[i].random() == its_own.random()
+
+
+def test_occupied_bins_are_counted_as_a_set_counts_them():
+    places = np.random.default_rng(3).integers(-40, 40, size=(5, 60))
+    assert occupied(places).tolist() == [len(set(row)) for row in places.tolist()]
+    assert occupied(np.array([4])) == 1
 
 
 def test_averages_by_hand():
