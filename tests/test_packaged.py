@@ -117,7 +117,7 @@ def test_every_scene_runs_to_its_end_and_bumps_into_nothing(name):
 
 @pytest.mark.parametrize("name", [name for name in COMMANDS if scene(name).expect])
 def test_every_promise_of_a_file_is_kept(name):
-    runs = 20 if scene(name).filter in CROWDS else scene(name).expect.runs  # particles take long
+    runs = 60 if scene(name).filter in CROWDS else scene(name).expect.runs  # particles take long
     kept = {finding.name: finding.kept for finding in verified(studied(name, runs))}
     assert kept == dict.fromkeys(kept, True)
 

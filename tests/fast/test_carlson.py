@@ -39,7 +39,10 @@ def test_an_update_by_the_square_root_of_P_is_the_texts(rank, R, gate):
     limit = math.inf if gate is None else quantile(gate, 1)
     means, upper, room = x.T.copy(), P[:, *UPPER].T.copy(), np.empty((3, 3))
     for n in range(N):
-        nis = carlson(means, upper, n, H[n, 0], R, 1.0, z[n, 0] - 1.0, limit, ROUNDING, room)
+        ν = z[n, 0] - 1.0
+        nis = carlson(
+            means, upper, n, H[n, 0], R, 1.0, ν, limit, math.inf, -math.inf, ROUNDING, room
+        )
         assert_allclose(nis, correction.nis[n], 1e-12)
         assert correction.refused[n] == (Refused.GATE if nis > limit else Refused.NOT)
     assert_allclose(means.T, posterior.mean, 1e-12, 1e-12)

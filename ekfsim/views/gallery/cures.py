@@ -57,7 +57,7 @@ class Mark(StrEnum):
     def of(cls, cured: Share, plain: Share) -> "Mark":
         """The mark of a share of lost runs beside that of ekf.
 
-        >>> [Mark.of(Share(n, 1000), Share(400, 1000)).value for n in (90, 350, 420, 500, 900)]
+        >>> [Mark.of(Share(n, 1000), Share(400, 1000)).value for n in (90, 300, 420, 500, 900)]
         ['✓', '↓', '', '↑', '✗']
         """
         if cured.high < plain.low:
