@@ -251,7 +251,9 @@ def test_a_picture_tells_it_in_a_word_or_two():
 
 def test_the_page_prints_what_it_says(capsys):
     """Its block of Python, of 1000 runs, and the block beneath it."""
-    page = (Path(__file__).parents[3] / "docs/judging/cures/adaptive.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs/judging/cures/adaptive.md").read_text(
+        encoding="utf-8"
+    )
     code, printed = re.search(r"```python\n(.*?)```\n\n```\n(.*?)```", page, re.DOTALL).groups()
     exec(compile(code, "adaptive.md", "exec"), {})
     assert capsys.readouterr().out == printed
