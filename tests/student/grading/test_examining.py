@@ -13,11 +13,14 @@ STAYS = """\
 if u[0] and not os.path.exists("begun"):
     open("begun", "w").close()
     print("away")
+    hear, tell = os.pipe()
     if os.fork() == 0:
         os.setsid()
         os.close(1)
         os.close(2)
-        time.sleep(60)"""
+        os.write(tell, b"gone")
+        time.sleep(60)
+    os.read(hear, 4)  # else it may be ended before it has left its group"""
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="nobody takes in orphans elsewhere")
