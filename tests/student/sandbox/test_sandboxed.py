@@ -334,6 +334,21 @@ def test_what_it_started_ends_with_it_wherever_it_has_gone(mine):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="nobody takes in orphans elsewhere")
+def test_what_is_left_is_told_also_where_the_code_ends_before_who_watches_it(mine, monkeypatch):
+    def later(process, number):
+        if number == signal.SIGCONT:  # it is stopped, as on a busy machine; the code ends meanwhile
+            time.sleep(0.3)
+            os.kill(process.pid, number)
+
+    monkeypatch.setattr(subprocess.Popen, "send_signal", later)
+    caller = Sandboxed(mine(doing(STAYS)), limits=AMPLE)
+    asked_once(caller)
+    os.kill(caller._process._process.pid, signal.SIGSTOP)
+    caller.close()
+    assert caller.left == 1
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="nobody takes in orphans elsewhere")
 def test_all_ends_when_the_parent_is_killed(mine, tmp_path):
     program = f"""
 import sys, time
