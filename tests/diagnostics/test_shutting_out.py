@@ -12,7 +12,8 @@ from ekfsim.diagnostics.summary import Summary
 from ekfsim.files.scenes.load import load_scene
 from ekfsim.localization import play
 from ekfsim.views.playback.playback import views
-from ekfsim.views.words.closing import conclude, conclude_all, meaning
+from ekfsim.views.words.closing import conclude, conclude_all
+from ekfsim.views.words.verdict import meaning
 
 PDAF = Weighing("pdaf", 0.1, 0.1)
 

@@ -27,7 +27,7 @@ from ekfsim.views.film.still import save
 from ekfsim.views.picture.look import SCREEN, STANDARD, Paper
 from ekfsim.views.picture.written.lettering import drawable, families, shortened, wrapped
 from ekfsim.views.words.captions import percent, source
-from ekfsim.views.words.closing import sentence
+from ekfsim.views.words.verdict import sentence
 
 WIDTH = 10.0  # in
 AROUND, VERDICT, UNIT = 1.5, 0.3, 1.3  # in: above and below, for each filter, for a panel of 1

@@ -14,8 +14,8 @@ from ekfsim.views.gallery.still import draw_last
 from ekfsim.views.page.writing import write
 from ekfsim.views.picture.look import STANDARD
 from ekfsim.views.study.shares import shares
-from ekfsim.views.words.closing import sentence
 from ekfsim.views.words.judgement import judgement, warns
+from ekfsim.views.words.verdict import sentence
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from ekfsim.student.comparing.naming import At, Seen
 from ekfsim.student.comparing.rounding import LEAST
 from ekfsim.student.mistakes.guessing import Guess
 from ekfsim.student.mistakes.mistake import elsewhere
-from ekfsim.views.student.telling import apart, counted, filled
-from ekfsim.views.words.numbers import ROUNDING, cleared
+from ekfsim.views.student.telling import apart, filled
+from ekfsim.views.words.numbers import ROUNDING, cleared, count
 from ekfsim.views.words.text_table import aligned
 
 MOST_ENTRIES = 12  # that are told of a step; of more only so many
@@ -51,8 +51,8 @@ def told(found: Found, sides: Sides) -> str:
 
 
 def _headline(found: Found, sides: Sides) -> str:
-    moves, readings = counted(found.moves, "move"), counted(found.readings, "reading")
-    of = f"{counted(found.steps, 'step')} ({moves}, {readings}) of {counted(found.runs, 'run')}"
+    moves, readings = count(found.moves, "move"), count(found.readings, "reading")
+    of = f"{count(found.steps, 'step')} ({moves}, {readings}) of {count(found.runs, 'run')}"
     ends = "its numbers end" if sides.printed else "its code fails"
     until = "" if found.fault is None else f"Before {ends}, "
     if not found.steps:

@@ -5,7 +5,8 @@ from collections.abc import Iterator, Sequence
 
 from ekfsim.student.printed.narrative.found import NarrativeFound
 from ekfsim.student.printed.narrative.numbers import Wrong
-from ekfsim.views.student.telling import apart, counted, filled
+from ekfsim.views.student.telling import apart, filled
+from ekfsim.views.words.numbers import count
 
 MOST = 40  # wrong numbers that are told; of more only how many
 
@@ -24,14 +25,14 @@ def told(found: NarrativeFound, made: str) -> str:
 
 
 def _headline(found: NarrativeFound) -> str:
-    steps = counted(found.steps, "step")
+    steps = count(found.steps, "step")
     if not found.wrong:
         return (
             f"{found.file} is right: all {found.checked} numbers of {steps} that can be "
             "calculated from those before them are these, as far as its digits go."
         )
     if found.checked < len(found.wrong):  # what cannot be read was not calculated
-        return f"{found.file} is wrong in {counted(len(found.wrong), 'place')}."
+        return f"{found.file} is wrong in {count(len(found.wrong), 'place')}."
     return (
         f"{found.file} is wrong in {len(found.wrong)} of the {found.checked} numbers of {steps} "
         "that can be calculated from those before them."

@@ -21,15 +21,6 @@ def apart(theirs: float, right: float) -> tuple[str, str]:
     return told
 
 
-def counted(number: int, what: str) -> str:
-    """So many of something.
-
-    >>> counted(1, "step"), counted(3, "step")
-    ('1 step', '3 steps')
-    """
-    return f"{number} {what}{'' if number == 1 else 's'}"
-
-
 def filled(part: str) -> str:
     """Lines of at most 80 columns; what stands in columns stays as it is, but for long rows."""
     return "\n".join(

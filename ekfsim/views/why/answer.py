@@ -10,8 +10,8 @@ from ekfsim.views.why.changes import all_of, joined, named, put_right
 from ekfsim.views.why.mechanisms import LASER, because, told_noise
 from ekfsim.views.why.recorded import of_log
 from ekfsim.views.why.tried import table
-from ekfsim.views.words.judgement import count
 from ekfsim.views.words.narrative.trust import shutting_out
+from ekfsim.views.words.numbers import count
 from ekfsim.views.words.text_table import folded
 from ekfsim.why.records import Explanation, Mechanism, Shares, Tried
 

@@ -9,8 +9,7 @@ from ekfsim.diagnostics.verdict import BAND, Evidence
 from ekfsim.records import Reading, Step
 from ekfsim.views.why.changes import all_of
 from ekfsim.views.why.driven import CLAUSES
-from ekfsim.views.words.judgement import count
-from ekfsim.views.words.numbers import figure
+from ekfsim.views.words.numbers import count, figure
 from ekfsim.why.records import Explanation, Mechanism
 
 MORE = 1.5  # times the NIS of all: a target that surprises so much is told

@@ -16,8 +16,8 @@ from ekfsim.views.playback.view import View
 from ekfsim.views.words.beams.beam import Beam, called
 from ekfsim.views.words.beams.hypotheses import weights
 from ekfsim.views.words.changes import ARROWS, carried, losing, revised
-from ekfsim.views.words.closing import meaning
 from ekfsim.views.words.numbers import length
+from ekfsim.views.words.verdict import meaning
 
 REFUSALS = {
     Refused.NO_ECHO: "no echo: nothing to learn",

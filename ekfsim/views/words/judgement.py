@@ -17,7 +17,7 @@ from ekfsim.printable import in_a_line, short
 from ekfsim.records import Nees
 from ekfsim.scene import Scene
 from ekfsim.views.playback.view import View
-from ekfsim.views.words.numbers import between, figure
+from ekfsim.views.words.numbers import between, count, figure
 
 COLUMNS = 118  # signs in the line of a picture
 NAME = 24  # signs of a filter's name
@@ -280,15 +280,6 @@ def fatal(view: View) -> bool:
     """Whether it is this view's own step since which the run is lost."""
     nees, since = view.step.nees, view.judged.lost_from
     return not view.beam and nees is not None and lost(nees) and since == view.step.entry.index
-
-
-def count(n: int, thing: str) -> str:
-    """So many things.
-
-    >>> count(1, "reading"), count(12, "reading")
-    ('1 reading', '12 readings')
-    """
-    return f"{n} {thing}" if n == 1 else f"{n} {thing}s"
 
 
 def _percent(probability: float) -> str:

@@ -250,3 +250,12 @@ def _beside(A: Array, rounding: float) -> Array:
         size.max(axis=0, initial=0.0), size.max(axis=1, keepdims=True, initial=0.0)
     )
     return largest
+
+
+def count(n: int, thing: str) -> str:
+    """So many things.
+
+    >>> count(1, "reading"), count(12, "reading")
+    ('1 reading', '12 readings')
+    """
+    return f"{n} {thing}" if n == 1 else f"{n} {thing}s"

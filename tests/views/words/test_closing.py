@@ -11,7 +11,8 @@ from ekfsim.filters.belief import Refused
 from ekfsim.localization import play
 from ekfsim.records import Nees
 from ekfsim.views.playback.playback import views
-from ekfsim.views.words.closing import conclude, meaning, sentence
+from ekfsim.views.words.closing import conclude
+from ekfsim.views.words.verdict import meaning, sentence
 
 IMPOSSIBLE = "the belief is impossible: the error has a part where the covariance claims certainty"
 

@@ -29,8 +29,8 @@ from ekfsim.views.terminal.readings import Item
 from ekfsim.views.terminal.screens.moment import Moment
 from ekfsim.views.terminal.wrapping import within, wrapped
 from ekfsim.views.words.changes import losing
-from ekfsim.views.words.closing import meaning
 from ekfsim.views.words.judgement import judgement, warns
+from ekfsim.views.words.verdict import meaning
 
 # from so many columns side by side, from so many rows one above the other; the last column of a
 # terminal is left free
